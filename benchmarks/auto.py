@@ -24,24 +24,24 @@ def auto_program(directory: Path, equations: str) -> Path | None:
     return directory / "rod" if done.returncode == 0 else None
 
 
-def run_auto(program: Path, place: Path, constants: str) -> str:
-    """Standard output of a run of the program in the directory `place`, on one core.
+def run_auto(program: Path, folder: Path, constants: str) -> str:
+    """Standard output of a run of the program in the directory `folder`, on one core.
 
     constants: content of AUTO's constants file fort.2. Raises RuntimeError if the program fails.
     """
-    (place / "fort.2").write_text(constants)
+    (folder / "fort.2").write_text(constants)
     environment = os.environ | {"OMP_NUM_THREADS": "1"}
-    done = subprocess.run([program], cwd=place, capture_output=True, text=True, check=False, env=environment)
-    table = place / "fort.7"
+    done = subprocess.run([program], cwd=folder, capture_output=True, text=True, check=False, env=environment)
+    table = folder / "fort.7"
     if done.returncode or not (table.exists() and table.stat().st_size):
         raise RuntimeError(f"{AUTO} ended with status {done.returncode}")
     return done.stdout
 
 
-def table_lines(place: Path) -> list[list[str]]:
-    """Words of each line of AUTO's table fort.7 in the directory `place`, one line per point of the branch.
+def table_lines(folder: Path) -> list[list[str]]:
+    """Words of each line of AUTO's table fort.7 in the directory `folder`, one line per point of the branch.
 
     The head of the table is left out.
     """
-    lines = [line.split() for line in (place / "fort.7").read_text().splitlines()]
+    lines = [line.split() for line in (folder / "fort.7").read_text().splitlines()]
     return [words for words in lines if words[0] != HEAD_MARK]

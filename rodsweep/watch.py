@@ -84,23 +84,23 @@ def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator
         _parts.reset(token)
 
 
-def report(place: MakePosition = SolvePosition) -> None:
+def report(make_position: MakePosition = SolvePosition) -> None:
     """Reports the position of the solve to all listeners.
 
-    place: function that returns the position. By default the position is empty, and the report only lets a
-    listener end the solve.
+    make_position: function that returns the position. By default the position is empty, and the report only
+    lets a listener end the solve.
     """
     for listener, outside in _listeners.get():
-        listener(partial(_in_whole, place, outside))
+        listener(partial(_in_whole, make_position, outside))
 
 
-def _in_whole(place: MakePosition, outside: int) -> SolvePosition:
+def _in_whole(make_position: MakePosition, outside: int) -> SolvePosition:
     """Position within the whole solve that a listener observes.
 
-    place: function that returns the position within the innermost part. outside: number of parts that enclose
-    the listener's `with` block.
+    make_position: function that returns the position within the innermost part. outside: number of parts that
+    enclose the listener's `with` block.
     """
-    position = place()
+    position = make_position()
     if not position.words:
         return position
     for outer in reversed(_parts.get()[outside:]):

@@ -12,9 +12,9 @@ from .continuation import compare_with_auto
 from .integrators import CVODE, CVODE_SKIPPED, installed_families
 
 
-def peers(quick: bool, place: Path) -> Peers:
-    """All installed integrators, and AUTO-07p, compiled in `place`. quick: fewer settings of AUTO-07p."""
-    every, program = installed_families(), auto_program(place, EQUATIONS)
+def peers(quick: bool, folder: Path) -> Peers:
+    """All installed integrators, and AUTO-07p, compiled in `folder`. quick: fewer settings of AUTO-07p."""
+    every, program = installed_families(), auto_program(folder, EQUATIONS)
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return Peers(
         contenders={

@@ -85,15 +85,15 @@ def continue_cycles(program: Path, first: Orbit, setting: AutoSetting, step: flo
         step=step,
     )
     with tempfile.TemporaryDirectory(dir=program.parent) as directory:
-        place = Path(directory)
-        (place / "rod").write_bytes(rod_file(first.form))
-        (place / "start").write_bytes(start_file(first, setting.intervals * setting.points))
-        said, lines = run_auto(program, place, constants), table_lines(place)
+        folder = Path(directory)
+        (folder / "rod").write_bytes(rod_file(first.form))
+        (folder / "start").write_bytes(start_file(first, setting.intervals * setting.points))
+        said, lines = run_auto(program, folder, constants), table_lines(folder)
         if lines[-1][2] == NO_CONVERGENCE:
             raise RuntimeError(f"{AUTO} ends after {len(lines) - 1} of {cycles} cycles")
         F, period = map(float, re.findall(r"^at(.*)", said, re.MULTILINE)[-1].split())
-        times, states = last_solution((place / "fort.8").read_text())
-        pairs = re.findall(r"Multiplier +\d+ +(\S+) +(\S+) ", (place / "fort.9").read_text())
+        times, states = last_solution((folder / "fort.8").read_text())
+        pairs = re.findall(r"Multiplier +\d+ +(\S+) +(\S+) ", (folder / "fort.9").read_text())
     multipliers = np.array([complex(*map(float, pair)) for pair in pairs[-unknowns:]])
     form = replace(first.form, rod=replace(first.form.rod, F=F))
     return AutoCycle(F, period, largest_y(form, period * times, states), multipliers)
@@ -126,15 +126,17 @@ def last_solution(fort8: str) -> tuple[Array, Array]:
 
     fort8: text of AUTO's solution file fort.8.
     """
-    lines, place = fort8.splitlines(), 0
+    lines, line_number = fort8.splitlines(), 0
     times, states = np.empty(0), np.empty((0, 0))
-    while place < len(lines):
-        head = list(map(int, lines[place].split()))
+    while line_number < len(lines):
+        head = list(map(int, lines[line_number].split()))
         count, width, rows, points = head[6], head[7], head[8], head[10]
-        numbers = np.array(" ".join(lines[place + 1 : place + 1 + rows]).split()[: count * width], float)
+        numbers = np.array(
+            " ".join(lines[line_number + 1 : line_number + 1 + rows]).split()[: count * width], float
+        )
         values = numbers.reshape(count, width)[::points]
         times, states = values[:, 0], values[:, 1:]
-        place += rows + 1
+        line_number += rows + 1
     return times, states
 
 

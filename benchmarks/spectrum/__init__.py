@@ -9,6 +9,6 @@ from rodsweep.bench.spectrum.study import SPECTRUM_RACE
 from .eigensolvers import arm_contenders, contenders
 
 
-def peers(quick: bool, place: Path) -> Peers:
-    """All eigensolvers at all sizes. A quick study skips sizes itself; nothing is compiled in `place`."""
+def peers(quick: bool, folder: Path) -> Peers:
+    """All eigensolvers at all sizes. A quick study skips sizes itself; nothing is compiled in `folder`."""
     return Peers({SPECTRUM_RACE: contenders(), ARM_RACE: arm_contenders()})

@@ -20,7 +20,7 @@ from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT, PENCIL_GROUP, 
 from rodsweep.bench.spectrum.study import ORDERS, pencil_mesh
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refine_eigenvalue
-from rodsweep.discretization.straight.pencil import PENCIL_NORM, assemble_pencil
+from rodsweep.discretization.straight.pencil import PENCIL_NORM_SETTINGS, assemble_pencil
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.problem import transverse_problem
 
@@ -36,7 +36,7 @@ def dense_qz(rod: Rod, size: int) -> Eigenvalues:
     """Leading eigenvalues by LAPACK's QZ (ggev). The shear unknowns are scaled to limit rounding errors."""
     A, B = pencil_matrices(rod, size)
     scale = np.ones(len(B))
-    scale[2 * len(B) // 3 :] = PENCIL_NORM.shear_weight
+    scale[2 * len(B) // 3 :] = PENCIL_NORM_SETTINGS.shear_weight
     return leading_eigenvalues(qz_spectrum(A * scale[:, None] * scale, np.diag(B)), MODE_COUNT + 1)
 
 

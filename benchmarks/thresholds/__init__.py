@@ -29,12 +29,12 @@ CODE_NOTES = {
 """Remarks on the continuation codes for the report, by code."""
 
 
-def peers(quick: bool, place: Path) -> Peers:
+def peers(quick: bool, folder: Path) -> Peers:
     """Grids and root finding for the onset; for the Hopf point also continuation codes.
 
-    quick: fewer settings. place: directory in which AUTO-07p is compiled.
+    quick: fewer settings. folder: directory in which AUTO-07p is compiled.
     """
-    codes, skipped = continuation_codes(place, quick)
+    codes, skipped = continuation_codes(folder, quick)
     names = dict.fromkeys(code.method for code in codes)
     return Peers(
         contenders={ONSET: contenders(ONSET, quick), HOPF: contenders(HOPF, quick) + codes},

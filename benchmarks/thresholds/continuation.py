@@ -126,8 +126,8 @@ def matrix_polynomial(case: ThresholdCase) -> Array:
 def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCase) -> FirstThreshold:
     """The first Hopf point by AUTO-07p, from F = 0 in equal steps; tolerance: EPSS, of the located point."""
     pieces = matrix_polynomial(case)
-    with tempfile.TemporaryDirectory(dir=program.parent) as place:
-        directory = Path(place)
+    with tempfile.TemporaryDirectory(dir=program.parent) as folder:
+        directory = Path(folder)
         (directory / "matrices").write_bytes(pieces.transpose(0, 2, 1).tobytes())
         constants = AUTO_CONSTANTS.format(
             unknowns=pieces.shape[1], top=case.search_end, tolerance=tolerance, step=step

@@ -49,8 +49,8 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
         section = _section_of(name, sections)
         if section is None:
             section = _section_of(_similar_key(name, sections), sections)
-        place = tree.setdefault(section, {}) if section else tree
-        place[name] = plain_keyword(f"{section}.{name}" if section else name, value)
+        values_of_section = tree.setdefault(section, {}) if section else tree
+        values_of_section[name] = plain_keyword(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
     return tree
 

@@ -146,13 +146,13 @@ def _solve_joint_variables(together: JointVariables, view: View, shown: Display)
     """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
     progress display.
     """
-    units = together.units(view)
+    items = together.items(view)
     results = dict[int, NamedArrays]()
-    while units is not None and (wanted := units.units_to_solve(results)):
-        name = units.unit_label(wanted[0])
+    while items is not None and (chosen := items.items_to_solve(results)):
+        name = items.item_label(chosen[0])
         with solve_part(name), reporting_to(progress_listener(shown, name)):
-            results[wanted[0]] = together.solve(units, wanted[0])
-    return together.variables(view, units, results)
+            results[chosen[0]] = together.solve(items, chosen[0])
+    return together.variables(view, items, results)
 
 
 def _outcomes(left: Sequence[int], count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
@@ -208,7 +208,7 @@ def progress_listener(shown: Display, name: str) -> RankListener:
     KeyboardInterrupt.
     """
     return RankListener(
-        SingleRankCommunication(lambda place: shown.place(place.words, place.share or 0.0)),
+        SingleRankCommunication(lambda position: shown.show_position(position.words, position.share or 0.0)),
         StopRequest(),
         lambda: name,
     )

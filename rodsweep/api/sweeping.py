@@ -81,14 +81,14 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
     points = tree["parameters"].get("points")
     if points is not None:
         tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
-    with TemporaryDirectory(prefix="rodsweep-") as place:
-        config = Path(place, f"{task}.yaml")
-        output = Path(place, f"{task}.h5")
+    with TemporaryDirectory(prefix="rodsweep-") as folder:
+        config = Path(folder, f"{task}.yaml")
+        output = Path(folder, f"{task}.h5")
         config.write_text(yaml_of(tree), encoding="utf-8")
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
         try:
-            status, errors = _run_with_progress(words, place, shown)
+            status, errors = _run_with_progress(words, folder, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPLETE_STATUSES:
@@ -98,13 +98,13 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
         return open_result(output)
 
 
-def _run_with_progress(words: list[str], place: str, shown: Display) -> tuple[int, str]:
-    """Runs the command `words` in the directory `place` and shows its progress; returns (exit status,
+def _run_with_progress(words: list[str], folder: str, shown: Display) -> tuple[int, str]:
+    """Runs the command `words` in the directory `folder` and shows its progress; returns (exit status,
     standard error).
     """
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
-        words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        words, cwd=folder, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
     assert run.stderr is not None
     errors: list[str] = []
@@ -112,7 +112,7 @@ def _run_with_progress(words: list[str], place: str, shown: Display) -> tuple[in
     try:
         for line in run.stderr:
             errors.append(line)
-            shown.place(line.strip())
+            shown.show_position(line.strip())
         return run.wait(), "".join(errors)
     except BaseException:  # Ctrl-C: the launcher ends its ranks within a second
         run.terminate()

@@ -7,9 +7,9 @@ The folder is a Python package that is not installed with rodsweep. The package 
 which returns the versions of the installed peers by name. For each study with peers, it has a module with the
 name of the study and the function
 
-    peers(quick: bool, place: Path) -> Peers
+    peers(quick: bool, folder: Path) -> Peers
 
-where `place` is an empty directory for the programs that peers compile.
+where `folder` is an empty directory for the programs that peers compile.
 """
 
 import sys
@@ -94,14 +94,14 @@ def _loaded(directory: Path) -> ModuleType:
     return package
 
 
-def study_peers(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
+def study_peers(package: ModuleType | None, study: str, quick: bool, folder: Path) -> Peers:
     """Contribution of the installed peers to the study with the name `study`. package: as returned by
-    `peer_package`. quick: whether to use fewer settings. place: empty directory in which programs are
+    `peer_package`. quick: whether to use fewer settings. folder: empty directory in which programs are
     compiled."""
     module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
-    found: Peers = import_module(module).peers(quick, place)
+    found: Peers = import_module(module).peers(quick, folder)
     return found
 
 

@@ -57,8 +57,8 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         blocks.append(sentence)
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
-        with TemporaryDirectory(prefix="rodsweep-bench-") as place:
-            study = studies[name](quick, study_peers(package, name, quick, Path(place)))
+        with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
+            study = studies[name](quick, study_peers(package, name, quick, Path(folder)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))

@@ -9,7 +9,7 @@ from rich.table import Table
 from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import given_text
 from ..config.arm.section import ArmSection
-from ..discretization.elements.resolution import RESOLUTION
+from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity import plane_lines, validity_sentence
@@ -48,8 +48,8 @@ def describe_job(job: Job) -> None:
         sampled = min(MAX_SAMPLE, job.points.count)
         console.print(
             f"warning: {cost.too_large} of {sampled} sampled points need more than the "
-            f"{RESOLUTION.max_unknowns} unknowns allowed and will end with status failed; use a smaller F, "
-            "fewer modes or a larger number for the accuracy"
+            f"{RESOLUTION_SETTINGS.max_unknowns} unknowns allowed and will end with status failed; "
+            "use a smaller F, fewer modes or a larger number for the accuracy"
         )
 
 

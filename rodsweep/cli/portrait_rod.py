@@ -75,8 +75,8 @@ def solve_with_progress(shown: "ProgressReporter", solve: "Solve") -> "Iterator[
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
     numbers = count(1)
 
-    def show(place: SolvePosition) -> None:
-        shown.place(place.words, place.share or 0.0)
+    def show(position: SolvePosition) -> None:
+        shown.show_position(position.words, position.share or 0.0)
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")

@@ -128,12 +128,12 @@ def read_profile(path: Path) -> dict[str, list[float]]:
         raise InputError(f"{where}: the header must name u and any of {', '.join(FACTORS)}, each once")
     columns: dict[str, list[float]] = {name: [] for name in header}
     for number, row in enumerate(rows[1:], 1):
-        place = f"{where}: row {number}"
+        row_name = f"{where}: row {number}"
         if len(row) != len(header):
-            raise InputError(f"{place} has {len(row)} values, but the header names {len(header)}")
+            raise InputError(f"{row_name} has {len(row)} values, but the header names {len(header)}")
         for name, cell in zip(header, row, strict=True):
             try:
                 columns[name].append(cell_number(cell))
             except ValueError:
-                raise InputError(f"{place}: {name} = {short_repr(cell)} is not a number") from None
+                raise InputError(f"{row_name}: {name} = {short_repr(cell)} is not a number") from None
     return columns

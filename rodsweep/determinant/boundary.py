@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .exponents import EXPONENTS
-from .parameter_plane import CENTRAL_STENCIL, PLANE, Plane
+from .exponents import EXPONENT_SETTINGS
+from .parameter_plane import CENTRAL_STENCIL, PLANE_SETTINGS, Plane
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoundarySettings:
+class BoundaryPointSettings:
     """Settings of Newton's method for a point on a stability boundary."""
 
     max_steps: int = 12
@@ -27,7 +27,7 @@ class BoundarySettings:
     """Newton's method fails after a step larger than this number, in units of the scaled axes or of h."""
     converged_step: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the point."""
-    min_determinant: float = EXPONENTS.least_divisor
+    min_determinant: float = EXPONENT_SETTINGS.least_divisor
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
     stagnant_step: float = 1e-10
@@ -35,7 +35,7 @@ class BoundarySettings:
     |step|: such a step is rounding error."""
 
 
-BOUNDARY = BoundarySettings()
+BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
 
 
 class BoundarySolution(NamedTuple):
@@ -86,23 +86,28 @@ class Boundary:
         """
         v = guess.copy()
         last = math.inf
-        for _ in range(BOUNDARY.max_steps):
+        for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):
             try:
                 residual, jacobian, blur = self.equations(v)
             except (ValueError, ArithmeticError):
                 return None
             matrix = np.vstack([jacobian, normal])
             right = np.append(-residual, -normal @ (v - guess))
-            if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix)) < BOUNDARY.min_determinant:
+            if (
+                not np.isfinite(matrix).all()
+                or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_determinant
+            ):
                 return None
             inverse = np.linalg.inv(matrix)
             step = inverse @ right
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
             size = float(np.abs(step).max())
             v = v + step
-            if size <= BOUNDARY.converged_step * error or (size < BOUNDARY.stagnant_step and size > last / 2):
+            if size <= BOUNDARY_POINT_SETTINGS.converged_step * error or (
+                size < BOUNDARY_POINT_SETTINGS.stagnant_step and size > last / 2
+            ):
                 return BoundarySolution(v, jacobian, max(error, size))
-            if size > BOUNDARY.max_step or not np.isfinite(v).all():
+            if size > BOUNDARY_POINT_SETTINGS.max_step or not np.isfinite(v).all():
                 return None
             last = size
         return None
@@ -127,7 +132,9 @@ class Boundary:
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
             stencil, h = (
-                self.plane.stencil(v[0], v[1], i) if i < 2 else (CENTRAL_STENCIL, PLANE.difference_step)
+                self.plane.stencil(v[0], v[1], i)
+                if i < 2
+                else (CENTRAL_STENCIL, PLANE_SETTINGS.difference_step)
             )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:

@@ -36,7 +36,7 @@ class EvenFunctionSettings(CompiledSettings):
             )
 
 
-EVEN_FUNCTIONS = EvenFunctionSettings()
+EVEN_FUNCTION_SETTINGS = EvenFunctionSettings()
 
 
 class EvenFunctions(NamedTuple):
@@ -168,7 +168,7 @@ def even_functions_by_series(
     three = 0j  # of (z+, z+, z-)
     four = 0j  # of (z+, z+, z-, z-)
     factor = size / 2
-    for n in range(1, EVEN_FUNCTIONS.series_terms):
+    for n in range(1, EVEN_FUNCTION_SETTINGS.series_terms):
         # 1/(2n + 2)!, updated from term to term.
         factor /= (2 * n + 1) * (2 * n + 2)
         s1 += n * factor * (power_plus + power_minus)

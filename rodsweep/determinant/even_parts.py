@@ -14,8 +14,13 @@ import math
 
 from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .even_functions import EVEN_FUNCTIONS, EvenFunctions, even_functions_by_roots, even_functions_by_series
-from .exponents import EXPONENTS, NOISE_UNIT, entire_cosh, modulus, squared_exponents
+from .even_functions import (
+    EVEN_FUNCTION_SETTINGS,
+    EvenFunctions,
+    even_functions_by_roots,
+    even_functions_by_series,
+)
+from .exponents import EXPONENT_SETTINGS, NOISE_UNIT, entire_cosh, modulus, squared_exponents
 
 EvenSum = tuple[EvenFunctions, complex, float]
 """(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is
@@ -64,7 +69,7 @@ def _noise_by_squares(
             blur = (blur_product + z * blur_large) / large
             blur_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
             blur_slope = blur_slope / large + steep * blur_large / large
-        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENTS.least_divisor))
+        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENT_SETTINGS.least_divisor))
         noise += bound * (blur_slope + steep * (1 + q / 4 + blur / 2 / max(1.0, q)))
     return noise
 
@@ -134,8 +139,8 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     # Three formulas: a series for small z+ and z-, the roots q if neither z+ nor z- is small, else z+ and z-.
     size_M = modulus(M)
     size_square = modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTIONS.by_series_below
-    close = EVEN_FUNCTIONS.by_squares_below * (size_M * size_M + 4 * size_square)
+    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.by_series_below
+    close = EVEN_FUNCTION_SETTINGS.by_squares_below * (size_M * size_M + 4 * size_square)
     if small or modulus(M * M - 4 * square) > close:
         if small:
             even, noise_s, noise_d = even_functions_by_series(M, cmath.sqrt(square), blur_M, blur_square)

@@ -22,7 +22,7 @@ class ExponentSettings(CompiledSettings):
     least_divisor: float = 1e-300
     """A divisor with a smaller modulus is replaced by this number, which is far below every nonzero number in
     the formulas of D and has a finite inverse."""
-    largest_exponent: float = 600.0
+    max_exponent: float = 600.0
     """In exp(x), an x above this number is replaced by this number, since exp overflows at 709."""
     cosh_series_below: float = 0.1
     """For |z| below this number, E(z) and dE/dz are computed by series, because the closed form of dE/dz
@@ -30,10 +30,10 @@ class ExponentSettings(CompiledSettings):
     sinh_series_below: float = 0.25
     """For |q^2| below this number, sinh(q)/q and its slope are computed by series, because the closed form of
     the slope would cancel."""
-    ranges: ClassVar = {"largest_exponent": (0.0, 709.0)}
+    ranges: ClassVar = {"max_exponent": (0.0, 709.0)}
 
 
-EXPONENTS = ExponentSettings()
+EXPONENT_SETTINGS = ExponentSettings()
 
 ROUND_OFF = sys.float_info.epsilon
 """Distance from 1 to the next larger double-precision number."""
@@ -82,7 +82,7 @@ def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, 
 @compiled
 def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
     """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root: sqrt(z)."""
-    if abs(z) < EXPONENTS.cosh_series_below:
+    if abs(z) < EXPONENT_SETTINGS.cosh_series_below:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
         slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
         size = math.exp(-scale)
@@ -97,7 +97,7 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
 @compiled
 def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
     """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, times exp(-Re q), for q = `root`; v: q^2."""
-    if modulus(v) < EXPONENTS.sinh_series_below:
+    if modulus(v) < EXPONENT_SETTINGS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
         second = (1 + v / 10 * second) / 3

@@ -17,14 +17,14 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX, box_from_amplification, squared_amplification_between
+from .certificate.box import BOX_SETTINGS, box_from_amplification, squared_amplification_between
 from .certificate.covering import (
     distance_from_zero_bound,
     exponent_changes,
     is_remainder_below,
     mean_growth_rates,
 )
-from .certificate.discs import DISCS, bidisc_centre
+from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
 from .parameter_path import coefficient_derivatives, determinant_along
 
 
@@ -103,17 +103,20 @@ def is_free_of_zeros(
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(at.line, y)
     D, D_w, D_p, S, noise = determinant_along(w, at.coefficients, direction)
-    rounding = DISCS.rounding_over_noise * noise
+    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * noise
     centre = bidisc_centre(w, at.coefficients, coefficient_derivatives(at.coefficients, direction), S)
     radii = (math.hypot(half_y, tilt * half_p), half_p)
     if abs(D) > 2 * rounding:
-        if is_remainder_below(centre, (D_w / D, D_p / D), radii, DISCS.clearance * abs(D) - rounding, 1):
+        if is_remainder_below(
+            centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.clearance * abs(D) - rounding, 1
+        ):
             return True, 0.0, 0.0
         mean = mean_growth_rates(centre)
         in_w = D_w - mean[0] * D
         in_p = D_p - mean[1] * D
         room = (
-            DISCS.clearance * distance_from_zero_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p)
+            DISC_BOUND_SETTINGS.clearance
+            * distance_from_zero_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p)
             - rounding
         )
         if room > 0 and is_remainder_below(centre, mean, radii, room, 1):
@@ -136,7 +139,9 @@ def proves_no_crossing(
     if first.p > last.p:
         first, last = last, first
     depth = -min(first.line, last.line)
-    a = math.sqrt((1 + BOX.margin) * squared_amplification_between(first.coefficients, last.coefficients))
+    a = math.sqrt(
+        (1 + BOX_SETTINGS.margin) * squared_amplification_between(first.coefficients, last.coefficients)
+    )
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
     top = box_from_amplification(a, depth)[1]

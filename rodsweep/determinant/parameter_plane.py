@@ -26,7 +26,7 @@ class PlaneSettings:
     """Largest step of a difference, as a fraction of the distance along the axis to a crushed rod."""
 
 
-PLANE = PlaneSettings()
+PLANE_SETTINGS = PlaneSettings()
 
 
 CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
@@ -50,7 +50,7 @@ class PlaneAxis:
         """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`. x just beyond an end is moved
         to the end.
         """
-        if -PLANE.end_tolerance < x < 0 or 1 < x < 1 + PLANE.end_tolerance:
+        if -PLANE_SETTINGS.end_tolerance < x < 0 or 1 < x < 1 + PLANE_SETTINGS.end_tolerance:
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
@@ -126,7 +126,7 @@ class Plane:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
         (x, y). The stencil is one-sided if the rod two steps back is invalid.
         """
-        h = self.small_step(x, y, which, PLANE.difference_step)
+        h = self.small_step(x, y, which, PLANE_SETTINGS.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
 
@@ -165,7 +165,7 @@ class Plane:
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
         slope = rate * axis.parameter_slope(getattr(rod, axis.name))
-        return min(largest, PLANE.step_to_crushing * (force - rod.F) / slope)
+        return min(largest, PLANE_SETTINGS.step_to_crushing * (force - rod.F) / slope)
 
     def is_valid(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates (x, y) is valid."""

@@ -28,7 +28,7 @@ class StabilityChangeSettings(CompiledSettings):
     converges to rounding error, far below this number."""
 
 
-STABILITY_CHANGES = StabilityChangeSettings()
+STABILITY_CHANGE_SETTINGS = StabilityChangeSettings()
 
 
 class ForceChange(NamedTuple):
@@ -115,12 +115,12 @@ def crossings_between(
                     continue
                 is_new = True
                 for i in range(n):
-                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGES.same_crossing_distance * (
+                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (
                         1 + abs(found[i, 0])
                     )
                     same_eta = abs(
                         zero.eta_or_x - found[i, 1]
-                    ) <= STABILITY_CHANGES.same_crossing_distance * (1 + abs(found[i, 1]))
+                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (1 + abs(found[i, 1]))
                     is_new = is_new and not (same_F and same_eta)
                 if is_new:
                     found[n] = zero.p, zero.eta_or_x, zero.error_of_p

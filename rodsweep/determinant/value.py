@@ -27,7 +27,7 @@ from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
-from .exponents import EXPONENTS, squared_exponents
+from .exponents import EXPONENT_SETTINGS, squared_exponents
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +45,7 @@ class DeterminantSettings(CompiledSettings):
     square of this number: enough to distinguish a double root from two close roots."""
 
 
-DETERMINANT = DeterminantSettings()
+DETERMINANT_SETTINGS = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
@@ -84,10 +84,10 @@ def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDeri
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
     """D and dD/dw of a uniform rod at w, times exp(-S).
 
-    w = 0 is replaced by `DETERMINANT.zero_replacement`, where D equals D(0) = 1 within rounding.
+    w = 0 is replaced by `DETERMINANT_SETTINGS.zero_replacement`, where D equals D(0) = 1 within rounding.
     """
     if w == 0:
-        w = complex(DETERMINANT.zero_replacement, 0.0)
+        w = complex(DETERMINANT_SETTINGS.zero_replacement, 0.0)
     return determinant_from_parts(w, coefficients, even_parts(w, coefficients))
 
 
@@ -114,7 +114,7 @@ def second_difference(after: DeterminantValue, before: DeterminantValue, S: floa
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) of a uniform rod at w, by a central difference of D'; real for real w."""
-    h = DETERMINANT.second_difference_step * abs(w)
+    h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
     after = scaled_determinant(w + h, coefficients)
     before = scaled_determinant(w - h, coefficients)
     second = second_difference(after, before, S, h)
@@ -128,7 +128,11 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
     The estimate is accurate if the two eigenvalues are close.
     """
     here = scaled_determinant(w, coefficients)
-    return 2 * abs(here.D_w) / max(abs(second_derivative(w, here.S, coefficients)), EXPONENTS.least_divisor)
+    return (
+        2
+        * abs(here.D_w)
+        / max(abs(second_derivative(w, here.S, coefficients)), EXPONENT_SETTINGS.least_divisor)
+    )
 
 
 @compiled
@@ -142,7 +146,9 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     """
     value, slope, _, noise = scaled_determinant(w, coefficients)
     # |D| far below its rounding error is accidental and does not mean a smaller error of w.
-    error = max(abs(value), DETERMINANT.typical_noise * noise) / max(abs(slope), EXPONENTS.least_divisor)
+    error = max(abs(value), DETERMINANT_SETTINGS.typical_noise * noise) / max(
+        abs(slope), EXPONENT_SETTINGS.least_divisor
+    )
     P, P1, _, plus, minus = exponent_derivatives(w, coefficients)
     root_plus = math.sqrt(abs(plus))
     root_minus = math.sqrt(abs(minus))
@@ -150,4 +156,4 @@ def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, fl
     # D is even in P: for z+ close to z- the branch point of P does not affect D, and P' is limited.
     P1 *= min(1.0, abs(P) / max(1.0, root_plus, root_minus))
     fast = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
-    return error, 2 / max(fast, EXPONENTS.least_divisor), (root_plus + root_minus) / 2
+    return error, 2 / max(fast, EXPONENT_SETTINGS.least_divisor), (root_plus + root_minus) / 2

@@ -17,7 +17,7 @@ from ..model.balance import Material
 from ..model.material.build import Build, Sections
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
-from .elements.elements import ELEMENTS
+from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
@@ -116,12 +116,12 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside`,
     (m, points).
     """
-    place, weights = _places_of(grid)
-    mean: Array = np.array([np.bincount(place, weights * row) for row in values]) / grid.quadrature
+    element, weights = _places_of(grid)
+    mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / grid.quadrature
     return mean
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _places_of(grid: Mesh) -> tuple[IntegerArray, Array]:
     """Returns (nodes, weights) of all `points_inside`, (elements (order + 1),) each: node of the mesh, and
     quadrature weight within the element.

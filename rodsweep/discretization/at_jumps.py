@@ -17,7 +17,7 @@ from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
 from .elements.basis import interpolation
-from .elements.elements import ELEMENTS
+from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh, interpolation_matrix
 from .elements.quadrature import gauss_lobatto
 from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
@@ -126,7 +126,7 @@ def _interpolation_at_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _extrapolation_weights(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
     at jumps.

@@ -20,7 +20,7 @@ from .stress.rates import write_rate_jacobians, write_rates
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BeamSettings:
+class TipVelocitySettings:
     """Settings for the velocity of the tip."""
 
     tip_step: float = 1e-30
@@ -28,7 +28,7 @@ class BeamSettings:
     underflows, so the derivative has no truncation error."""
 
 
-BEAM = BeamSettings()
+TIP_VELOCITY_SETTINGS = TipVelocitySettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,10 +96,10 @@ class Beam(RodOnMesh):
 
         z, direction: (..., unknowns). The velocity is a complex-step derivative, which has no cancellation.
         """
-        change = self.element_strain_changes(z, BEAM.tip_step * direction)
+        change = self.element_strain_changes(z, TIP_VELOCITY_SETTINGS.tip_step * direction)
         moved = shape_from_strains(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
         # The imaginary part is the derivative times the step.
-        return moved.real, moved.imag / BEAM.tip_step
+        return moved.real, moved.imag / TIP_VELOCITY_SETTINGS.tip_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """Time derivative of (x, y, theta) of the tip at z for dz/dt = direction, (3, ...); z, direction:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..model.balance import Material
 from ..model.material.jump import COLUMNS
-from .elements.elements import ELEMENTS
+from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
 
 IntegerArray = NDArray[np.int64]
@@ -92,7 +92,7 @@ def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) ->
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _resistance_of(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:

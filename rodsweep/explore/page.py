@@ -173,14 +173,14 @@ class Page:
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
         """Sends a new question. A stored answer replaces the solve, unless `is_solved_again`."""
         question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
-        wanted = needs(question)
-        if self.asked.get(kind) == wanted:
+        needed = needs(question)
+        if self.asked.get(kind) == needed:
             return
-        self.asked[kind] = wanted
+        self.asked[kind] = needed
         stored = None if self.stored is None or is_solved_again else self.stored.answer(kind, self.state)
         if stored is not None:
             self._drop(kind)
-            self.asked[kind] = wanted
+            self.asked[kind] = needed
             self.contents.show(kind, stored, self.state)
             return
         self.solving.add(kind)

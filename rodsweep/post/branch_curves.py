@@ -192,9 +192,9 @@ def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch
     special = np.flatnonzero(v["special_branch"] == number)
     before = special[v["special_point"][special] == 0]
     order: list[tuple[bool, int]] = [(False, int(i)) for i in before]
-    for place in cycles:
-        order.append((True, int(place)))
-        order += [(False, int(i)) for i in special[v["special_point"][special] == place + 1]]
+    for index in cycles:
+        order.append((True, int(index)))
+        order += [(False, int(i)) for i in special[v["special_point"][special] == index + 1]]
     values = [
         (v[f"branch_{along}"][i], v["tip_y_max"][i], v["period"][i])
         if is_cycle
@@ -210,9 +210,9 @@ def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch
     return StoredBranch(at, y, period, stability_of_pieces(counts), is_cycle, points)
 
 
-def _special_point(v: dict[str, Array], place: int) -> StoredSpecialPoint:
-    """Special point at index `place` of the stored list. v: variables of the rod."""
-    values = {field.name: v[f"special_{field.name}"][place].item() for field in fields(StoredSpecialPoint)}
+def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
+    """Special point at index `index` of the stored list. v: variables of the rod."""
+    values = {field.name: v[f"special_{field.name}"][index].item() for field in fields(StoredSpecialPoint)}
     words = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
     return StoredSpecialPoint(**values | words)
 

@@ -101,12 +101,14 @@ class StoredChanges:
         at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
         for i in np.flatnonzero(along):
-            place = float(at[i])
+            parameter = float(at[i])
             word = CROSSING_KINDS[int(kind[i])]
             if word == "onset":
-                point = LocatedChange(place, float(error[i]) * (abs(place) or 1.0), word)
+                point = LocatedChange(parameter, float(error[i]) * (abs(parameter) or 1.0), word)
             elif after is None or (word, int(after[i])) in STABILITY_CHANGES:
-                point = LocatedChange(place, float(error[i]) * (abs(place) or 1.0), word, float(frequency[i]))
+                point = LocatedChange(
+                    parameter, float(error[i]) * (abs(parameter) or 1.0), word, float(frequency[i])
+                )
             else:
                 continue
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)

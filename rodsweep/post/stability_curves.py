@@ -23,10 +23,10 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
     kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
     on = {number: v["curve_number"] == number for number in numbers}
     paths = {number: (v[f"curve_{line}"][own], v[f"curve_{row}"][own]) for number, own in on.items()}
-    for place, i in zip(*np.nonzero(np.isfinite(at)), strict=True):
-        kind = CROSSING_KINDS[int(kinds[place, i])]
-        if numbers and (kind, int(after[place, i])) in STABILITY_CHANGES and np.isfinite(rows[place]):
-            position = float(at[place, i]), float(rows[place])
+    for index, i in zip(*np.nonzero(np.isfinite(at)), strict=True):
+        kind = CROSSING_KINDS[int(kinds[index, i])]
+        if numbers and (kind, int(after[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):
+            position = float(at[index, i]), float(rows[index])
             distances = {n: _distance(x, y, *position) for n, (x, y) in paths.items()}
             found[min(distances, key=distances.__getitem__)] = True
     return found

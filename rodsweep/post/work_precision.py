@@ -77,12 +77,12 @@ def _looks(groups: dict[str, str]) -> dict[str, dict]:
     order = list(dict.fromkeys(groups.values()))
     looks = {}
     for method, group in groups.items():
-        place = [other for other, its in groups.items() if its == group].index(method)
+        index = [other for other, its in groups.items() if its == group].index(method)
         first = group == order[0]
         colour = GROUP_COLOURS[order.index(group) % len(GROUP_COLOURS)]
         looks[method] = {
             "color": colour,
-            "marker": METHOD_MARKERS[place % len(METHOD_MARKERS)],
+            "marker": METHOD_MARKERS[index % len(METHOD_MARKERS)],
             "ms": 5,
             "lw": 2.2 if first else 1.1,
             "mfc": colour if first else "white",

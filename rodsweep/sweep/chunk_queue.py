@@ -1,8 +1,8 @@
 """Distribution of work items over ranks, in small chunks whose size follows from each rank's time per item.
 
-A work item, in the code a unit, is a point, a chain or a stretch of points. A rank with a slow chunk returns
-the unsolved units of the chunk with the next request. No rank ends while another rank may still return units,
-and all ranks finish within about the time of one unit. `rodsweep.sweep.chunk_requests` sends the messages.
+A work item, item for short, is a point, a chain or a stretch of points. A rank with a slow chunk returns
+the unsolved items of the chunk with the next request. No rank ends while another rank may still return items,
+and all ranks finish within about the time of one item. `rodsweep.sweep.chunk_requests` sends the messages.
 """
 
 import threading
@@ -20,14 +20,14 @@ CHUNK_SECONDS_A_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""Time after which a rank returns the unsolved units of a chunk to the queue, divided by the planned time of
+"""Time after which a rank returns the unsolved items of a chunk to the queue, divided by the planned time of
 the chunk."""
 LARGEST_CHUNK = 1 << 16
-"""Maximum number of units in a chunk."""
-MIN_UNITS_AHEAD = 4
-"""A rank gets its next chunk in advance only if the queue has at least this number of units per rank."""
+"""Maximum number of items in a chunk."""
+MIN_ITEMS_AHEAD = 4
+"""A rank gets its next chunk in advance only if the queue has at least this number of items per rank."""
 NO_WORK_LEFT: IndexRange = (0, 0)
-"""Empty range of units: the answer to a request for a chunk if no unit is left to solve."""
+"""Empty range of items: the answer to a request for a chunk if no item is left to solve."""
 
 
 def chunk_seconds(ranks: int) -> float:
@@ -40,90 +40,90 @@ class RankReport:
     """Report of a rank on its last chunk, sent with the request for the next chunk."""
 
     done: int = 0
-    """Number of units finished since the last report."""
+    """Number of items finished since the last report."""
     seconds: float = 0.0
     """Time spent since the last report, in s."""
     returned: IndexRange = NO_WORK_LEFT
-    """Range of the units of the last chunk that the rank did not solve."""
+    """Range of the items of the last chunk that the rank did not solve."""
     points: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
     is_in_advance: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
     stop: str = ""
-    """Name of the stop signal that the rank received, or empty. Units returned after a stop signal are left
+    """Name of the stop signal that the rank received, or empty. Items returned after a stop signal are left
     for another run."""
     results: dict[int, Any] = field(default_factory=dict)
-    """Results of finished units, by number of the unit; empty if no unit depends on the results of other
-    units."""
+    """Results of finished items, by number of the item; empty if no item depends on the results of other
+    items."""
 
 
 class ChunkQueue:
-    """Queue of the unsolved units, on the first rank; safe to use from two threads. todo: ranges of units.
+    """Queue of the unsolved items, on the first rank; safe to use from two threads. todo: ranges of items.
     ranks: number of ranks.
     """
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.unsolved = deque(todo)
-        self.units_left = index_count(todo)
+        self.items_left = index_count(todo)
         self.ranks = ranks
         self.outstanding: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
         self.points = 0
         """Total number of points that the ranks have reported as stored."""
-        self.seconds_per_unit: dict[int, float] = {}
-        """Latest time per unit, in s, by rank."""
+        self.seconds_per_item: dict[int, float] = {}
+        """Latest time per item, in s, by rank."""
         self.stopped = False
         self.change = threading.Condition()
 
     def add_report(self, rank: int, report: RankReport) -> None:
-        """Updates the queue from a rank's report on finished and returned units."""
+        """Updates the queue from a rank's report on finished and returned items."""
         with self.change:
             if self.outstanding[rank]:
                 self.outstanding[rank] -= 1
             self.points += report.points
             if report.done:
-                self.seconds_per_unit[rank] = report.seconds / report.done
+                self.seconds_per_item[rank] = report.seconds / report.done
             first, end = report.returned
             if end > first and not self.stopped:
-                self.seconds_per_unit[rank] = (
+                self.seconds_per_item[rank] = (
                     report.seconds
-                )  # pessimistic, so that its next chunk is one unit
+                )  # pessimistic, so that its next chunk is one item
                 self.unsolved.appendleft(report.returned)
-                self.units_left += end - first
+                self.items_left += end - first
             self.change.notify_all()
 
     def next_chunk(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank; NO_WORK_LEFT if no unit is left, None if the rank has to wait."""
+        """The next chunk for a rank; NO_WORK_LEFT if no item is left, None if the rank has to wait."""
         with self.change:
             if self.unsolved:
                 return self._pop_chunk(rank)
             return None if self.outstanding.total() and not self.stopped else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank that still works on a chunk; None if few units are left in the queue."""
+        """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
         with self.change:
             return (
                 self._pop_chunk(rank)
-                if self.unsolved and self.units_left >= MIN_UNITS_AHEAD * self.ranks
+                if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.ranks
                 else None
             )
 
     def _pop_chunk(self, rank: int) -> IndexRange:
-        """Removes and returns the next chunk, sized by the rank's time per unit; the lock must be held."""
+        """Removes and returns the next chunk, sized by the rank's time per item; the lock must be held."""
         # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
-        share = max(1, self.units_left // (2 * self.ranks))
-        pace = self.seconds_per_unit.get(rank)
+        share = max(1, self.items_left // (2 * self.ranks))
+        pace = self.seconds_per_item.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
         first, last = self.unsolved.popleft()
         end = min(last, first + max(1, min(size, share, LARGEST_CHUNK)))
         if end < last:
             self.unsolved.appendleft((end, last))
-        self.units_left -= end - first
+        self.items_left -= end - first
         self.outstanding[rank] += 1
         return first, end
 
     def stop(self) -> None:
-        """Empties the queue after a stop request; a later run solves the units."""
+        """Empties the queue after a stop request; a later run solves the items."""
         with self.change:
             self.stopped = True
             self.unsolved.clear()
@@ -131,15 +131,15 @@ class ChunkQueue:
 
 
 class UnitChooser(Protocol):
-    """Chooses the units to solve next, the most urgent unit first, from the results of solved units."""
+    """Chooses the items to solve next, the most urgent item first, from the results of solved items."""
 
-    def units_to_solve(self, results: Mapping[int, Any]) -> list[int]: ...
+    def items_to_solve(self, results: Mapping[int, Any]) -> list[int]: ...
 
 
-class DependentUnitQueue(ChunkQueue):
-    """`ChunkQueue` whose units depend on the results of solved units, one unit in a chunk.
+class DependentItemQueue(ChunkQueue):
+    """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk.
 
-    work: chooses the next units from the results. results: by number of the unit, at first from an earlier
+    work: chooses the next items from the results. results: by number of the item, at first from an earlier
     run; reported results are added.
     """
 
@@ -148,39 +148,39 @@ class DependentUnitQueue(ChunkQueue):
         self.work = work
         self.results = results
         self.in_progress: dict[int, IndexRange] = {}
-        """Range of the unit that a rank is solving, by rank."""
-        self._units_to_solve: list[int] | None = None
+        """Range of the item that a rank is solving, by rank."""
+        self._items_to_solve: list[int] | None = None
 
     @property
-    def ready_units(self) -> list[int]:
-        """Units that `work` has chosen and that no rank is solving, the most urgent unit first."""
-        if self._units_to_solve is None:
-            self._units_to_solve = self.work.units_to_solve(self.results)
+    def ready_items(self) -> list[int]:
+        """Items that `work` has chosen and that no rank is solving, the most urgent item first."""
+        if self._items_to_solve is None:
+            self._items_to_solve = self.work.items_to_solve(self.results)
         in_hand = {first for first, _ in self.in_progress.values()}
-        return [unit for unit in self._units_to_solve if unit not in in_hand]
+        return [item for item in self._items_to_solve if item not in in_hand]
 
     def add_report(self, rank: int, report: RankReport) -> None:
-        """Adds the results in a rank's report; a unit without a result can be chosen again."""
+        """Adds the results in a rank's report; an item without a result can be chosen again."""
         with self.change:
             self.points += report.points
             self.results |= report.results
-            self._units_to_solve = None
+            self._items_to_solve = None
             self.in_progress.pop(rank, None)
             self.change.notify_all()
 
     def next_chunk(self, rank: int) -> IndexRange | None:
-        """The next unit for a rank, as a range; NO_WORK_LEFT if no unit is left, None if the rank has to
+        """The next item for a rank, as a range; NO_WORK_LEFT if no item is left, None if the rank has to
         wait.
         """
         with self.change:
             if self.stopped:
                 return NO_WORK_LEFT
-            wanted = self.ready_units
-            if wanted:
-                self.in_progress[rank] = (wanted[0], wanted[0] + 1)
+            ready = self.ready_items
+            if ready:
+                self.in_progress[rank] = (ready[0], ready[0] + 1)
                 return self.in_progress[rank]
             return None if self.in_progress else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
-        """Always None, because the choice of a rank's next unit depends on the result of the present unit."""
+        """Always None, because the choice of a rank's next item depends on the result of the present item."""
         return None

@@ -85,8 +85,8 @@ class FirstRankRequests:
             with self.queue.change:
                 self.queue.change.wait(WAIT_SECONDS)
             self.between_points()
-            for place in list(self.positions.values())[:1]:
-                self.show(place.words, self._begun_points())
+            for position in list(self.positions.values())[:1]:
+                self.show(position.words, self._begun_points())
         return chunk
 
     def close(self) -> None:
@@ -95,14 +95,14 @@ class FirstRankRequests:
             self.thread.join()
             self._receive_positions()
 
-    def report_position(self, place: SolvePosition) -> None:
+    def report_position(self, position: SolvePosition) -> None:
         """Displays the progress of the first rank within a long point."""
-        self.positions[0] = place
-        self.show(place.words, self._begun_points())
+        self.positions[0] = position
+        self.show(position.words, self._begun_points())
 
     def _begun_points(self) -> float:
         """Sum of the fractions done of all unfinished points on all ranks."""
-        return sum(place.share or 0.0 for place in list(self.positions.values()))
+        return sum(position.share or 0.0 for position in list(self.positions.values()))
 
     def between_points(self) -> None:
         """Answers requests of other ranks; called on the first rank between two points.
@@ -152,7 +152,7 @@ class FirstRankRequests:
     def _handle_report(self, rank: int, report: RankReport) -> None:
         """Handles the report of a rank.
 
-        A request made in advance (`report.is_in_advance`) is answered immediately if enough units are left.
+        A request made in advance (`report.is_in_advance`) is answered immediately if enough items are left.
         Any other request is queued, unless the rank already has its next chunk from a request made in
         advance.
         """
@@ -205,9 +205,9 @@ class OtherRankRequests:
             self.comm.send(RankReport(is_in_advance=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
-    def report_position(self, place: SolvePosition) -> None:
+    def report_position(self, position: SolvePosition) -> None:
         """Reports the progress of this rank within a long point to the first rank."""
-        self.comm.send(place, dest=0, tag=PROGRESS_TAG)
+        self.comm.send(position, dest=0, tag=PROGRESS_TAG)
 
     def between_points(self) -> None:
         """Exchanges at most one stop request with the first rank: sends the request of this rank, or receives

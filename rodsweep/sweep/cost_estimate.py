@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..discretization.elements.resolution import RESOLUTION, expected_wave_number, resolution_for
+from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import expected_growing, most_amplified_wave
 from ..model.rod import Rod
@@ -113,7 +113,7 @@ class Estimate:
     unknowns: tuple[int, int] | None = None
     """Smallest and largest number of unknowns of the sampled points' meshes; None for a task without mesh."""
     too_large: int = 0
-    """Number of sampled points whose mesh would need more than RESOLUTION.max_unknowns unknowns."""
+    """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
 
 
 def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
@@ -198,13 +198,13 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     if not sizes:  # no rod covers any point of the sample
         return Estimate(0.0)
     varied = sum(not rod.standard for rod in rods) / len(rods)
-    n = np.minimum(np.array(sizes, dtype=float), RESOLUTION.max_unknowns)
+    n = np.minimum(np.array(sizes, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
     growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
     each += varied * ARM_SPECTRUM_MS + GROWING_MS * growing**2
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
-    too_large = int((np.array(sizes) > RESOLUTION.max_unknowns).sum())
+    too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
 
 

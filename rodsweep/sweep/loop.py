@@ -1,4 +1,4 @@
-"""The loop of every rank: claim a chunk, solve its units, store the points, return unsolved units."""
+"""The loop of every rank: get a chunk, solve its items, store the points, return unsolved items."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -22,13 +22,13 @@ Indices = int | NDArray[np.int64]
 
 
 class UnitSolver(Protocol):
-    """Function that solves a unit, that is, a point, a chain or a stretch of points.
+    """Function that solves an item, that is, a point, a chain or a stretch of points.
 
     Yields (flat index, result) of each point of a chain, or once (flat indices, results) of all points of a
     stretch.
     """
 
-    def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
+    def __call__(self, item: int, /) -> Iterable[tuple[Indices, Any]]: ...
 
 
 class ProgressSink(Protocol):
@@ -37,7 +37,7 @@ class ProgressSink(Protocol):
     def __call__(self, done: int) -> None:
         """Shows `done`, the number of points that all ranks have finished."""
 
-    def place(self, words: str, begun: float) -> None:
+    def show_position(self, words: str, begun: float) -> None:
         """Shows the text `words` on the progress of a long point.
 
         begun: sum of the fractions done of all unfinished points.
@@ -63,32 +63,34 @@ class Loop:
     """Functions that every rank calls during a sweep."""
 
     solve: UnitSolver
-    """Solves the points of a unit."""
+    """Solves the points of an item."""
     store: Callable[[Indices, Any], None]
     """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
     prepare: Callable[[], object] = lambda: None
-    """Called once, before the first unit."""
+    """Called once, before the first item."""
     new_results: Callable[[], dict[int, Any]] = dict
-    """Returns the results of the units stored since the last call, by number of the unit; empty if no unit
-    depends on the results of other units."""
-    unit_label: Callable[[int], str] = lambda unit: ""
-    """Returns a description of a unit for the progress display."""
+    """Returns the results of the items stored since the last call, by number of the item; empty if no item
+    depends on the results of other items."""
+    item_label: Callable[[int], str] = lambda item: ""
+    """Returns a description of an item for the progress display."""
 
 
 def sweep(team: Team, queue: ChunkQueue, loop: Loop, progress: ProgressSink, stop: StopRequest) -> RankWork:
-    """Solves every unit in `queue`, which is used on the first rank only; returns when all ranks have
+    """Solves every item in `queue`, which is used on the first rank only; returns when all ranks have
     finished.
 
     An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
-    claims = (
-        FirstRankRequests(team, queue, stop, progress.place) if team.first else OtherRankRequests(team, stop)
+    requests = (
+        FirstRankRequests(team, queue, stop, progress.show_position)
+        if team.first
+        else OtherRankRequests(team, stop)
     )
-    with suppress(SolveStopped), reporting_to(RankListener(claims, stop)):
+    with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
         loop.prepare()
     progress(0)
-    return _RankLoop(team, claims, loop, progress, stop).solve_chunks()
+    return _RankLoop(team, requests, loop, progress, stop).solve_chunks()
 
 
 class _RankLoop:
@@ -136,29 +138,29 @@ class _RankLoop:
         return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solve_chunk(self, chunk: IndexRange) -> int:
-        """Solves the units of a chunk in order; returns the number of the first unsolved unit.
+        """Solves the items of a chunk in order; returns the number of the first unsolved item.
 
-        Later units stay unsolved after a stop request, or if the chunk takes too long.
+        Later items stay unsolved after a stop request, or if the chunk takes too long.
         """
         patience = time.monotonic() + GIVE_BACK_AFTER * chunk_seconds(self.team.size)
         at = chunk[0]
         before = self.points
         while at < chunk[1] and not self.stop:
             try:
-                with reporting_to(RankListener(self.requests, self.stop, partial(self.loop.unit_label, at))):
+                with reporting_to(RankListener(self.requests, self.stop, partial(self.loop.item_label, at))):
                     self._solve(at, before)
             except SolveStopped:
                 self.ended = True
-            if self.stop:  # the unit may be unfinished, so it does not count as solved
+            if self.stop:  # the item may be unfinished, so it does not count as solved
                 break
             at += 1
             if time.monotonic() > patience:
                 break
         return at
 
-    def _solve(self, unit: int, before: int) -> None:
-        """Solves a unit and stores its points. before: number of points stored before the current chunk."""
-        for index, result in self.loop.solve(unit):
+    def _solve(self, item: int, before: int) -> None:
+        """Solves an item and stores its points. before: number of points stored before the current chunk."""
+        for index, result in self.loop.solve(item):
             self.loop.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
             self.requests.between_points()

@@ -41,7 +41,7 @@ class SilentProgress:
 
     def __call__(self, done: int) -> None: ...
 
-    def place(self, words: str, begun: float = 0.0) -> None: ...
+    def show_position(self, words: str, begun: float = 0.0) -> None: ...
 
     def close(self) -> None: ...
 
@@ -76,7 +76,7 @@ class ProgressReporter:
         self.where = ""
         self._show()
 
-    def place(self, words: str, begun: float = 0.0) -> None:
+    def show_position(self, words: str, begun: float = 0.0) -> None:
         """Shows the text `words` on the progress of a long point, if an update is due.
 
         begun: sum of the fractions done of all unfinished points.

@@ -83,7 +83,7 @@ class RankCommunication(Protocol):
 
     def between_points(self) -> None: ...
 
-    def report_position(self, place: SolvePosition) -> None: ...
+    def report_position(self, position: SolvePosition) -> None: ...
 
 
 class SingleRankCommunication:
@@ -94,36 +94,36 @@ class SingleRankCommunication:
 
     def between_points(self) -> None: ...
 
-    def report_position(self, place: SolvePosition) -> None:
+    def report_position(self, position: SolvePosition) -> None:
         """Passes the progress within a long point to `shown`, if given."""
         if self.shown:
-            self.shown(place)
+            self.shown(position)
 
 
 class RankListener:
     """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
     request.
 
-    A new listener is created for every unit.
+    A new listener is created for every item.
     """
 
     def __init__(
-        self, communication: RankCommunication, stop: StopRequest, unit_label: Callable[[], str] = str
+        self, communication: RankCommunication, stop: StopRequest, item_label: Callable[[], str] = str
     ):
-        """unit_label: function that returns a description of the unit."""
+        """item_label: function that returns a description of the item."""
         self.communication = communication
         self.stop = stop
-        self.unit_label = unit_label
+        self.item_label = item_label
         self.next_poll = 0.0
         self.next_report = time.monotonic() + POSITION_SECONDS
 
-    def __call__(self, place: MakePosition) -> None:
-        """Handles a solver's report, at the position `place()`; raises Stopped if the solve must end."""
+    def __call__(self, make_position: MakePosition) -> None:
+        """Handles a solver's report at `make_position()`; raises Stopped if the solve must end."""
         now = time.monotonic()
-        if now >= self.next_report and (here := place()).words:
+        if now >= self.next_report and (here := make_position()).words:
             self.next_report = now + POSITION_SECONDS
             self.communication.report_position(
-                SolvePosition(": ".join(filter(None, (self.unit_label(), here.words))), here.share)
+                SolvePosition(": ".join(filter(None, (self.item_label(), here.words))), here.share)
             )
         if now >= self.next_poll:
             self.next_poll = now + POLL_SECONDS

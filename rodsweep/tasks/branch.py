@@ -87,9 +87,9 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
     others = branches_at_breakings(result.curves)
     specials = [
         _special(one, starts[number - 1], after.get(one.at))
-        | {"special_branch": number, "special_meets": others.get((number, place), -1)}
+        | {"special_branch": number, "special_meets": others.get((number, index), -1)}
         for number, curve in enumerate(result.curves, 1)
-        for place, one in enumerate(curve.special)
+        for index, one in enumerate(curve.special)
     ]
     known = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
@@ -108,9 +108,9 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        for breaking, place in ((curve.start_breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
+        for breaking, index in ((curve.start_breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
             if breaking is not None:
-                numbers[number, place] = breaking.branch
+                numbers[number, index] = breaking.branch
                 numbers[breaking.branch, breaking.index] = number
     return numbers
 

@@ -13,7 +13,7 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..model.material.profile import Profile
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Rod
-from ..solve.changes.anchors import ANCHORS
+from ..solve.changes.anchors import ANCHOR_SETTINGS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.points import Points
 from ..wording import counted
@@ -57,10 +57,10 @@ class CertifiedTask(Task):
         By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
         imaginary axis.
         """
-        accuracy = mesh_accuracy(ANCHORS.place_accuracy, vectors=False)
+        accuracy = mesh_accuracy(ANCHOR_SETTINGS.place_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
-            return spectrum_mesh(rod, ANCHORS.min_known_modes, accuracy)
+            return spectrum_mesh(rod, ANCHOR_SETTINGS.min_known_modes, accuracy)
 
         return largest_first_mesh(self.points, mesh_of, self.searched_limits())
 

@@ -16,7 +16,7 @@ from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
 
 NamedArrays = dict[str, np.ndarray]
-"""Arrays by name: the result of a unit, that is, of a work item for variables that depend on all points."""
+"""Arrays by name: the result of a work item for variables that depend on all points."""
 OrderedMap = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """Function (items, function) -> results in the order of the items; the work may be shared among ranks."""
 SolveWrapper = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
@@ -26,45 +26,45 @@ CheckRow = tuple[str, bool, str]
 """Row of the table printed by `check`: (effect or result, whether it is modelled, reason)."""
 
 
-class Units(Protocol):
-    """Work items (units), numbered from 0, for variables that depend on all points. The object is sent to all
+class WorkItems(Protocol):
+    """Work items, numbered from 0, for variables that depend on all points. The object is sent to all
     ranks.
     """
 
-    def units_to_solve(self, results: Mapping[int, NamedArrays]) -> list[int]:
-        """Numbers of the units still to be solved, most urgent first; empty if no unit is left.
+    def items_to_solve(self, results: Mapping[int, NamedArrays]) -> list[int]:
+        """Numbers of the items still to be solved, most urgent first; empty if no item is left.
 
-        results: results of the finished units, by number.
+        results: results of the finished items, by number.
         """
 
-    def unit_label(self, unit: int) -> str:
-        """Text describing a unit, for the progress display and the log."""
+    def item_label(self, item: int) -> str:
+        """Text describing an item, for the progress display and the log."""
 
 
 class JointVariables(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
-    def units(self, view: View) -> Any:
-        """The units to be divided among the ranks; None if there are no units. view: the file with all
+    def items(self, view: View) -> Any:
+        """The items to be divided among the ranks; None if there are no items. view: the file with all
         points.
         """
 
-    def initial_data(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
-        """Initial data that this rank has cached for the units `wanted`, to be sent to all ranks."""
+    def initial_data(self, items: Any, chosen: Sequence[int]) -> dict[int, Any]:
+        """Initial data that this rank has cached for the items `chosen`, to be sent to all ranks."""
 
     def add_initial_data(self, starts: Mapping[int, Any]) -> None:
         """Caches initial data received from a different rank."""
 
-    def solve(self, units: Any, unit: int) -> NamedArrays:
-        """Solves a unit and returns its result."""
+    def solve(self, items: Any, item: int) -> NamedArrays:
+        """Solves an item and returns its result."""
 
     def empty_result(self) -> NamedArrays:
-        """Empty result, for a unit whose solver raised an unforeseen exception."""
+        """Empty result, for an item whose solver raised an unforeseen exception."""
 
-    def variables(self, view: View, units: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
+    def variables(self, view: View, items: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
         """The variables that depend on all points, for the result file; called on the first rank only.
 
-        view: the file with all points. results: results of all units, by number.
+        view: the file with all points. results: results of all items, by number.
         """
 
 

@@ -138,8 +138,8 @@ def cycle_forces(ranges: Sequence[Range]) -> list[float]:
     lengths = np.array([high - low for low, high in ranges])
     before = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
-    for place in CYCLE_FRACTIONS:
-        along = place * before[-1]
+    for fraction in CYCLE_FRACTIONS:
+        along = fraction * before[-1]
         number = min(int(np.searchsorted(before, along, side="right")) - 1, len(ranges) - 1)
         low, high = ranges[number]
         force = float(low + along - before[number])

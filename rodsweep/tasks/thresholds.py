@@ -68,8 +68,8 @@ def threshold_values(result: "Thresholds", most: int) -> dict[str, Any]:
     """Variables of the file for the thresholds of a rod; most: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
     for kind, number in FIRST_CROSSINGS.items():
-        place = CROSSING_KINDS.index(kind)
-        first = next((crossing for crossing in result.crossings if crossing.kind == place), None)
+        kind_index = CROSSING_KINDS.index(kind)
+        first = next((crossing for crossing in result.crossings if crossing.kind == kind_index), None)
         for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):
             values[name] = getattr(first, field, np.nan)
     return values | crossing_values(result, most, "F", "crossing_F")

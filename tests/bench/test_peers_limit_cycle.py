@@ -104,13 +104,13 @@ def test_order_of_the_errors(name):
 
 def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
     monkeypatch.setattr(cycle_peers, "optional_module", lambda _: None)
-    found = peers(quick=True, place=tmp_path)
+    found = peers(quick=True, folder=tmp_path)
     assert CVODE not in [contender.method for contender in found.of(FOLLOWING)]
     assert found.skipped[0] == CVODE_SKIPPED
 
 
 def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
-    found = peers(quick=True, place=tmp_path)
+    found = peers(quick=True, folder=tmp_path)
     assert {c.method for c in found.of(FOLLOWING)} == {family.name for family in installed_families()}
     assert {c.method for c in found.of(WAITING)} == {f.name for f in installed_families() if f.waiting}
     assert (AUTO_SKIPPED in found.skipped) == (not found.sections)
@@ -189,14 +189,14 @@ def test_auto_that_loses_its_branch_is_a_failure(auto):
 
 def test_auto_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
     monkeypatch.setattr(auto_peer, "AUTO_LIBRARY", tmp_path / "nowhere")
-    found = peers(quick=True, place=tmp_path)
+    found = peers(quick=True, folder=tmp_path)
     assert found.skipped[-1] == "AUTO-07p is skipped: it needs the program (Debian: auto-07p) and gfortran."
     assert found.sections == ()
 
 
 @survey_only
 def test_the_section_of_auto_has_its_tables(tmp_path):
-    found = peers(quick=True, place=tmp_path)
+    found = peers(quick=True, folder=tmp_path)
     if not found.sections:
         pytest.skip("AUTO-07p or gfortran is not installed")
     (section,) = found.sections

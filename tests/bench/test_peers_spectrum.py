@@ -48,7 +48,7 @@ def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_the
 
 
 def test_every_peer_takes_part_at_all_of_its_sizes(tmp_path):
-    found = peers(quick=True, place=tmp_path).of(SPECTRUM_RACE)
+    found = peers(quick=True, folder=tmp_path).of(SPECTRUM_RACE)
     for peer in PEERS:
         assert [int(c.setting) for c in found if c.method == peer.name] == list(peer.sizes)
-    assert {c.method for c in peers(quick=True, place=tmp_path).of(ARM_RACE)} < {peer.name for peer in PEERS}
+    assert {c.method for c in peers(quick=True, folder=tmp_path).of(ARM_RACE)} < {peer.name for peer in PEERS}

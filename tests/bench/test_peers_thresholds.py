@@ -147,14 +147,14 @@ def test_a_continuation_code_that_fails_is_shown_as_failed():
 def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_path):
     monkeypatch.setattr(continuation, "optional_module", lambda _: None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    found = peers(quick=True, place=tmp_path)
+    found = peers(quick=True, folder=tmp_path)
     assert [line.split(" is skipped")[0] for line in found.skipped] == ["AUTO-07p", "PyCont-Lite"]
     assert {contender.group for contender in found.of(HOPF)} == {"grid and interpolation"}
     assert not any("PyCont" in note for note in found.notes)
 
 
 def test_peers_that_are_installed_take_part_and_are_explained(tmp_path):
-    found = peers(quick=True, place=tmp_path)
+    found = peers(quick=True, folder=tmp_path)
     codes = {c.method for c in found.of(HOPF) if c.group == CONTINUATION_GROUP}
     assert (PYCONT in codes) == (optional_module(PYCONT_MODULE) is not None)
     assert len(codes) + len(found.skipped) == 2

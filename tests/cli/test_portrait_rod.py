@@ -75,7 +75,7 @@ def test_progress_counts_the_solves_and_says_where_a_long_one_is():
         def __call__(self, done):
             self.counts.append(done)
 
-        def place(self, words, begun):
+        def show_position(self, words, begun):
             self.places.append((words, begun))
 
         def close(self):

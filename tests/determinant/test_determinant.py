@@ -8,7 +8,7 @@ from reference import determinant as reference
 from rods import rod_of
 
 from rodsweep.determinant.parameter_path import determinant_along
-from rodsweep.determinant.value import DETERMINANT, newton_correction, scaled_determinant
+from rodsweep.determinant.value import DETERMINANT_SETTINGS, newton_correction, scaled_determinant
 from rodsweep.model.rod import Rod
 
 
@@ -87,7 +87,7 @@ def test_the_noise_bounds_what_rounding_does_where_terms_cancel():
 
 def test_the_typical_noise_is_typical():
     errors = [rounding(*case.values) for case in cases()]
-    assert DETERMINANT.typical_noise / 10 < np.median(errors) < DETERMINANT.typical_noise
+    assert DETERMINANT_SETTINGS.typical_noise / 10 < np.median(errors) < DETERMINANT_SETTINGS.typical_noise
 
 
 PULLS_AND_PUSHES = [

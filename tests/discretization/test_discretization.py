@@ -7,7 +7,7 @@ from rodsweep.discretization.elements.basis import differentiation, interpolatio
 from rodsweep.discretization.elements.mesh import mesh, shape_from_strains
 from rodsweep.discretization.elements.quadrature import gauss, gauss_lobatto
 from rodsweep.discretization.elements.resolution import (
-    RESOLUTION,
+    RESOLUTION_SETTINGS,
     finer_resolution,
     required_order,
     resolution_for,
@@ -85,7 +85,7 @@ def test_resolution_grows_with_waves_and_digits():
     last = 0
     for wave in (5, 20, 60, 200, 1000):
         resolution = resolution_for(wave, 1e-10)
-        assert resolution.order <= RESOLUTION.max_order + 1
+        assert resolution.order <= RESOLUTION_SETTINGS.max_order + 1
         assert resolution.unknowns > last
         assert finer_resolution(resolution).unknowns >= 1.2 * resolution.unknowns
         last = resolution.unknowns

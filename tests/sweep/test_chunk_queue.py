@@ -28,7 +28,7 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
     rng = np.random.default_rng(seed)
     ends = np.cumsum(np.array(sizes) + 1)  # a unit between two ranges is not to do
     todo = [(int(end) - size, int(end)) for size, end in zip(sizes, ends, strict=True)]
-    units = [unit for start, stop in todo for unit in range(start, stop)]
+    items = [item for start, stop in todo for item in range(start, stop)]
     handout, done = ChunkQueue(todo, ranks), []
     held = {rank: [] for rank in range(ranks)}
     while held:
@@ -44,7 +44,7 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
             handout.add_report(rank, RankReport(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
         chunk = None if chunks else handout.next_chunk(rank)
         if chunk == NO_WORK_LEFT:
-            assert sorted(done) == units
+            assert sorted(done) == items
             del held[rank]
         elif chunk:
             chunks.append(chunk)

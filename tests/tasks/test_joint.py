@@ -12,11 +12,11 @@ from ranks import PATIENCE, pause_until, wait_for_end
 from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
-from rodsweep.results.run.checkpoints import UnitResults
+from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import RowSpecialPoint, SpecialBoundaries
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentUnitQueue, RankReport
+from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
 task: phase_diagram
@@ -29,11 +29,11 @@ phase_diagram: {cycles: true}
 """
 HALT = """
 import pathlib, time
-from rodsweep.results.run.checkpoints import UnitResults
+from rodsweep.results.run.checkpoints import ItemResults
 import rodsweep.watch as watch
 from rodsweep.sweep.stop import RankListener
 
-write, hear = UnitResults.write, RankListener.__call__
+write, hear = ItemResults.write, RankListener.__call__
 state = []
 
 def write_and_note(self, unit, arrays):
@@ -41,13 +41,13 @@ def write_and_note(self, unit, arrays):
     state.append(unit)
 
 def hear_and_wait(self, text):
-    while len(state) >= {units} and "curve of" in self.unit_label():
+    while len(state) >= {items} and "curve of" in self.item_label():
         pathlib.Path("inside").touch()
         time.sleep(0.01)
         hear(self, text)
     hear(self, text)
 
-UnitResults.write, RankListener.__call__ = write_and_note, hear_and_wait
+ItemResults.write, RankListener.__call__ = write_and_note, hear_and_wait
 """
 """What every rank executes first: in the half of a curve after so many it waits for a stop."""
 
@@ -65,11 +65,11 @@ def whole(tmp_path_factory, loaded):
     command.clear()
 
 
-def run_halted(command, name, units, ranks, how):
+def run_halted(command, name, items, ranks, how):
     """A run that ends by a signal, or is killed, in the middle of the half of a curve after so many."""
     inside = command.directory / "inside"
     inside.unlink(missing_ok=True)
-    process = command.started("run", "c.yaml", "-o", name, ranks=ranks, patch=HALT.format(units=units))
+    process = command.started("run", "c.yaml", "-o", name, ranks=ranks, patch=HALT.format(items=items))
     pause_until(lambda: inside.exists() or process.poll() is not None, "no curve is followed")
     if how == signal.SIGKILL and ranks:
         command.clear()
@@ -82,7 +82,7 @@ def run_halted(command, name, units, ranks, how):
 
 
 @pytest.mark.parametrize(
-    ("units", "ranks", "how"),
+    ("items", "ranks", "how"),
     [
         pytest.param(1, 0, signal.SIGINT, marks=survey_only),
         pytest.param(1, 0, signal.SIGKILL, marks=survey_only),
@@ -90,13 +90,13 @@ def run_halted(command, name, units, ranks, how):
     ],
     ids=["Ctrl-C in the second", "killed", "two ranks in the first"],
 )
-def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, how):
-    name = f"{units}-{ranks}-{how.name}.h5"
-    status, out = run_halted(whole, name, units, ranks, how)
+def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, how):
+    name = f"{items}-{ranks}-{how.name}.h5"
+    status, out = run_halted(whole, name, items, ranks, how)
     if how != signal.SIGKILL:
         assert status == 75
         assert (
-            f"stopped by {how.name}; 2 points kept, the curves are missing, {units} of their halves kept"
+            f"stopped by {how.name}; 2 points kept, the curves are missing, {items} of their halves kept"
             in out
         )
     shown = " ".join(whole("show", name).stdout.split())
@@ -106,13 +106,13 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, 
     with h5py.File(whole.directory / name) as file:
         assert "cycle_curve_number" not in file
         assert "finished" not in file.attrs
-    kept = UnitResults(whole.directory / f"{name}.journal", "")
-    assert len([p for p in kept.directory.glob("unit-*") if p.name[5:].isdecimal()]) == units
+    kept = ItemResults(whole.directory / f"{name}.journal", "")
+    assert len([p for p in kept.directory.glob("unit-*") if p.name[5:].isdecimal()]) == items
     again = whole("run", "c.yaml", "-o", name)
     assert again.returncode == 0, again.stderr
     assert "0 of 2 points to do, 2 kept, then curves through all" in again.stdout
     assert "nothing to do" not in again.stdout
-    halves = "1 half of a curve" if units == 1 else "2 halves of curves"
+    halves = "1 half of a curve" if items == 1 else "2 halves of curves"
     assert f"{halves} of cycles followed" in again.stdout
     assert same(content(whole.directory / name), content(whole.directory / "whole.h5"))
     assert not kept.directory.exists()
@@ -127,12 +127,12 @@ from rodsweep.tasks.diagram.curves import DiagramCurves
 
 solve, rank = DiagramCurves.solve, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
 
-def solve_beside_another(self, units, unit):
-    pathlib.Path(f"follows-{{rank}}-{{unit}}").touch()
+def solve_beside_another(self, items, item):
+    pathlib.Path(f"follows-{{rank}}-{{item}}").touch()
     end = time.monotonic() + {PATIENCE / 2}
     while len(list(pathlib.Path().glob("follows-*"))) < 2 and time.monotonic() < end:
         time.sleep(0.01)
-    return solve(self, units, unit)
+    return solve(self, items, item)
 
 DiagramCurves.solve = solve_beside_another
 """
@@ -140,7 +140,7 @@ DiagramCurves.solve = solve_beside_another
     assert run.returncode == 0, run.stderr
     names = sorted(path.name.split("-") for path in whole.directory.glob("follows-*"))
     assert [rank for _, rank, _ in names] == ["0", "1"]
-    assert len({unit for *_, unit in names}) == 2
+    assert len({item for *_, item in names}) == 2
     assert same(content(whole.directory / "shared.h5"), content(whole.directory / "whole.h5"))
 
 
@@ -148,7 +148,7 @@ def test_curve_whose_solver_raises_is_none_and_the_diagram_is_finished(whole):
     patch = """
 from rodsweep.tasks.diagram.curves import DiagramCurves
 
-def broken(self, units, unit):
+def broken(self, items, item):
     raise IndexError("a bug")
 
 DiagramCurves.solve = broken
@@ -175,18 +175,18 @@ def boundaries():
     return SpecialBoundaries(LINE, ROWS, special)
 
 
-def half(units, unit):
+def half(items, item):
     """The half of a straight curve, as if followed."""
-    place, behind = divmod(unit, 2)
-    one = units.special[place]
+    place, behind = divmod(item, 2)
+    one = items.special[place]
     last = 1.0 if behind else 5.0
     points = tuple(
-        CurvePoint(at=one.at, row=row, place=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
+        CurvePoint(at=one.at, row=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
         for row in (one.row, last)
     )
-    near = {i: 0.0 for i, other in enumerate(units.special) if other.at == one.at}
+    near = {i: 0.0 for i, other in enumerate(items.special) if other.at == one.at}
     low, high = sorted((one.row, last))
-    near = {i: d for i, d in near.items() if low <= units.special[i].row <= high}
+    near = {i: d for i, d in near.items() if low <= items.special[i].row <= high}
     return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 
@@ -195,12 +195,12 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
     """Every rank in turn asks for a unit and hands in the one it had, in all rotations."""
     found = []
     for rotation in range(ranks):
-        units = boundaries()
-        pool = DependentUnitQueue(units, {}, ranks)
+        items = boundaries()
+        pool = DependentItemQueue(items, {}, ranks)
         held, turn = {}, itertools.cycle([(rank + rotation) % ranks for rank in range(ranks)])
         while True:
             rank = next(turn)
-            results = {held[rank]: half(units, held[rank])} if rank in held else {}
+            results = {held[rank]: half(items, held[rank])} if rank in held else {}
             pool.add_report(rank, RankReport(results=results))
             held.pop(rank, None)
             chunk = pool.next_chunk(rank)
@@ -208,22 +208,22 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
                 break
             if chunk is not None:
                 held[rank] = chunk[0]
-        found.append(units.curves(pool.results))
+        found.append(items.curves(pool.results))
     assert all(curves == found[0] for curves in found)
     assert [curve.points[0].at for curve in found[0].curves] == [0.6, 0.2]
     assert found[0].untraced == 0
 
 
 def test_one_rank_follows_no_half_in_vain():
-    units, results = boundaries(), {}
-    while wanted := units.units_to_solve(results):
-        results[wanted[0]] = half(units, wanted[0])
+    items, results = boundaries(), {}
+    while wanted := items.items_to_solve(results):
+        results[wanted[0]] = half(items, wanted[0])
     assert len(results) == 4  # two of each curve
 
 
 def test_unit_that_a_stop_ended_is_wanted_again():
-    units = boundaries()
-    pool = DependentUnitQueue(units, {}, 2)
+    items = boundaries()
+    pool = DependentItemQueue(items, {}, 2)
     first = pool.next_chunk(0)
     assert pool.next_chunk(1) != first
     pool.add_report(0, RankReport(returned=first))
@@ -233,13 +233,13 @@ def test_unit_that_a_stop_ended_is_wanted_again():
 
 
 def test_results_of_units_are_read_whole_or_not_at_all(tmp_path):
-    kept, arrays = UnitResults(tmp_path, "a"), half(boundaries(), 3)
+    kept, arrays = ItemResults(tmp_path, "a"), half(boundaries(), 3)
     kept.write(3, arrays)
     (found,) = kept.read().values()
     assert {name: values.tolist() for name, values in found.items()} == {
         name: values.tolist() for name, values in arrays.items()
     }
-    assert UnitResults(tmp_path, "b").read() == {}
+    assert ItemResults(tmp_path, "b").read() == {}
     path = tmp_path / "unit-000000003"
     data = bytearray(path.read_bytes())
     for damaged in (data[:-1], data[:20], b"", data[:60] + bytes([data[60] ^ 1]) + data[61:]):

@@ -188,9 +188,9 @@ def plot(
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
     file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
     ending = ".gif" if what == "animation" else ".png"
-    with TemporaryDirectory(prefix="rodsweep-") as place:
+    with TemporaryDirectory(prefix="rodsweep-") as folder:
         # A file in the format of the display is the display: the figure is drawn once.
-        path = file if file is not None and file.suffix == ending else Path(place, f"figure{ending}")
+        path = file if file is not None and file.suffix == ending else Path(folder, f"figure{ending}")
         shown = draw(views, path, **choices).removeprefix(f"wrote {path}: ")
         picture = Picture(views, choices, as_python_arguments(shown), path.read_bytes())
     if file is not None and file != path:

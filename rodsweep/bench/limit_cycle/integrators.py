@@ -63,13 +63,13 @@ class IntegratorFamily:
         return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
-def petsc_run(family: str, variant: str, tolerance: float, leg: IntegrationTask) -> Trajectory:
-    """Trajectory of the task `leg`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
+def petsc_run(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
+    """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
     ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
     "arkimex" and "5"."""
     newton = TimeScheme().newton if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
-    run = integrator(leg.beam.mesh, scheme).run(leg.beam, leg.z, leg.duration)
+    run = integrator(task.beam.mesh, scheme).run(task.beam, task.z, task.duration)
     if run.ending != RunEnding.reached:
         raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
     return run

@@ -112,14 +112,14 @@ def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender])
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLED_WITHIN. settings: contenders of one integrator, from the loosest tolerance.
     """
-    leg = IntegrationTask(
+    task = IntegrationTask(
         at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
     )
     way = WAITING_PREFIX + settings[0].method
     failed: tuple[str, ...] = ()
     for contender in settings:
         try:
-            found = tip_returns(at.beam, contender.run(leg))
+            found = tip_returns(at.beam, contender.run(task))
         except ArithmeticError:
             failed += (contender.setting,)
             continue
@@ -129,7 +129,7 @@ def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender])
         for k in settled[:1]:
             left = _error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
             if left <= SETTLED_WITHIN:
-                again = partial(contender.run, leg._replace(duration=float(found.times[k + 1])))
+                again = partial(contender.run, task._replace(duration=float(found.times[k + 1])))
                 return SettlingMethod(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
     return SettlingMethod(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
 
@@ -138,14 +138,14 @@ def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
     periodic is estimated from the largest Floquet multiplier. settled: contender of each integrator."""
     cycle = cycle_at(NEAR_HOPF_F)
-    leg = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
+    task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     waits = [
         SettlingMethod(NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF_F))
     ]
     for contender in settled:
-        run = partial(contender.run, leg)
+        run = partial(contender.run, task)
         times = count / FOLLOWED_PERIODS
         way = WAITING_PREFIX + contender.method
         waits.append(SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLED_WITHIN, run, times))

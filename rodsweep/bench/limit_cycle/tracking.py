@@ -116,10 +116,10 @@ def solve_reference() -> ReferenceCycle:
 def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `at` in time; times are divided by
     the number of periods."""
-    leg = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
+    task = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
-        for m in measure_case(f"F = {CYCLE_FORCE:g}", leg, list(contenders), rounds, partial(run_errors, at))
+        for m in measure_case(f"F = {CYCLE_FORCE:g}", task, list(contenders), rounds, partial(run_errors, at))
     ]
 
 

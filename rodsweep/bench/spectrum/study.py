@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Complex
-from ...discretization.elements.resolution import RESOLUTION, Resolution
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, Resolution
 from ...model.rod import Rod
 from ...solve.spectrum.krylov_schur import uniform_solver
 from ...solve.spectrum.problem import transverse_problem
@@ -188,7 +188,7 @@ def hard_cell(measurements: Sequence[Measurement]) -> str:
 def pencil_mesh(order: int) -> Resolution:
     """Mesh of one element of the order `order`, or of several equal elements with this total order if the
     order exceeds its maximum."""
-    elements = ceil(order / RESOLUTION.max_order)
+    elements = ceil(order / RESOLUTION_SETTINGS.max_order)
     return Resolution(elements, ceil(order / elements))
 
 

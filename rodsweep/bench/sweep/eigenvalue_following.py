@@ -60,17 +60,17 @@ QUICK_GRIDS = (
 """Pairs of grids that are timed in a quick run."""
 
 
-def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
+def followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
     """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED, then
     ALONE.
 
-    place: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
+    folder: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
     small grids.
     """
     found = []
     for axis in QUICK_GRIDS if quick else GRIDS:
         for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
-            directory = place / f"{method} {axis.name}".replace(" ", "_")
+            directory = folder / f"{method} {axis.name}".replace(" ", "_")
             directory.mkdir()
             text = FOLLOWED_CONFIG.format(
                 *shape, str(method == FOLLOWED).lower(), F_max=axis.F_max, taper=axis.taper

@@ -72,10 +72,10 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     """
     run = partial(run_case, command)
     ranks = (1, 2) if launcher_words(2) else (1,)
-    with TemporaryDirectory(prefix="rodsweep-bench-") as place:
-        solved = solved_sweeps(Path(place), run, quick, ranks)
-        followed = followed_sweeps(Path(place), run, quick)
-        instant = instant_sweeps(Path(place), run, quick, ranks)
+    with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
+        solved = solved_sweeps(Path(folder), run, quick, ranks)
+        followed = followed_sweeps(Path(folder), run, quick)
+        instant = instant_sweeps(Path(folder), run, quick, ranks)
     blocks = [INTRODUCTION.strip(), solved_table(solved), followed_table(followed)]
     blocks += [instant_table(instant), growth_table(instant)]
     if len(ranks) == 1:
@@ -83,41 +83,41 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     return Study("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
 
 
-def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
+def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
     """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn.
 
-    place: directory of the sweeps. ranks: numbers of ranks.
+    folder: directory of the sweeps. ranks: numbers of ranks.
     """
     rounds, cycle_rounds = (
         (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
     )
     count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
-    spectra = spectrum_case(place / "spectra", "spectra", count, SOLVED)
-    cycles = cycle_case(place / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
+    spectra = spectrum_case(folder / "spectra", "spectra", count, SOLVED)
+    cycles = cycle_case(folder / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
     # Not timed: the first runs may compile the formulas.
-    run(spectrum_case(place / "first", "first", 8, SOLVED), 1)
-    run(cycle_case(place / "first_cycle", 1, SOLVED), 1)
+    run(spectrum_case(folder / "first", "first", 8, SOLVED), 1)
+    run(cycle_case(folder / "first_cycle", 1, SOLVED), 1)
     entries = [(spectra, n, rounds) for n in ranks]
     if len(ranks) > 1:
-        halves = [spectrum_case(place / f"half{i}", TWO_COMMANDS, count // 2, SOLVED) for i in (0, 1)]
+        halves = [spectrum_case(folder / f"half{i}", TWO_COMMANDS, count // 2, SOLVED) for i in (0, 1)]
         apart = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
         entries.append((apart, 1, rounds))
     return measure_in_turn(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
 
 
-def instant_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
+def instant_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
     """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed.
 
-    place: directory of the sweeps. ranks: numbers of ranks of complete sweeps; other sweeps have one rank.
+    folder: directory of the sweeps. ranks: numbers of ranks of complete sweeps; other sweeps have one rank.
     """
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:
-        case = spectrum_case(place / f"instant{size}", "no solver", size, INSTANT)
+        case = spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
         entries += [(case, n, 1 if size >= SINGLE_RUN_FROM else rounds) for n in ranks]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
-        killed = spectrum_case(place / f"killed{size}", KILLED, size, KILLED)
+        killed = spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
         resumed = replace(killed, name="resumed", kind=INSTANT)
         measurements.append(sweep_measurement(killed, 1, [run(killed, 1)]))
         measurements.append(sweep_measurement(resumed, 1, [run(resumed, 1, fresh=False)]))

@@ -8,10 +8,10 @@ from typing import Any
 
 from ...results.file.view import read_view
 from ...results.layouts.variables import Filled
-from ...results.run.checkpoints import UnitResults
+from ...results.run.checkpoints import ItemResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
-from ...sweep.chunk_queue import ChunkQueue, DependentUnitQueue
+from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
 from ...sweep.loop import Indices, Loop, RankWork, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
@@ -26,12 +26,12 @@ UNIT_NOUN = "halves of curves"
 
 @dataclass(frozen=True, slots=True)
 class PendingJointWork:
-    """Variables that depend on all points. due: whether the file lacks these variables. units: the half
+    """Variables that depend on all points. due: whether the file lacks these variables. items: the half
     curves to be followed; None if nothing is divided among the ranks.
     """
 
     due: bool
-    units: Any = None
+    items: Any = None
 
 
 class JointWork:
@@ -56,19 +56,19 @@ class JointWork:
         self.output = output
         self.note = note
         self.stop = stop
-        self.kept = UnitResults(journal_directory(output), fingerprint)
+        self.kept = ItemResults(journal_directory(output), fingerprint)
         self.results: dict[int, NamedArrays] = {}
         """Results of all finished half curves, by number, on the first rank only."""
 
-    def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
+    def solve(self, items: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
         """Follows all half curves that are still missing, on all ranks. prepare: function called before the
         first solve. title: text of the progress display; None for no display.
         """
         found: dict[int, NamedArrays] = {}
 
-        def keep(unit: Indices, result: NamedArrays) -> None:
-            self.kept.write(int(unit), result)
-            found[int(unit)] = result
+        def keep(item: Indices, result: NamedArrays) -> None:
+            self.kept.write(int(item), result)
+            found[int(item)] = result
 
         def take_results() -> dict[int, NamedArrays]:
             new = found.copy()
@@ -78,49 +78,49 @@ class JointWork:
         todo = ChunkQueue([], self.team.size)
         if self.team.first:
             self.results = self.kept.read()
-            todo = DependentUnitQueue(units, self.results, self.team.size)
-        self._exchange_starts(units)
+            todo = DependentItemQueue(items, self.results, self.team.size)
+        self._exchange_starts(items)
         shown = (
             ProgressReporter(None, f"{title}, curves", UNIT_NOUN)
             if self.team.first and title
             else SilentProgress()
         )
         loop = Loop(
-            solve=lambda unit: self._solved(units, unit),
+            solve=lambda item: self._solved(items, item),
             store=keep,
             prepare=prepare,
             new_results=take_results,
-            unit_label=units.unit_label,
+            item_label=items.item_label,
         )
         try:
             return sweep(self.team, todo, loop, shown, self.stop)
         finally:
             shown.close()
 
-    def _exchange_starts(self, units: Any) -> None:
+    def _exchange_starts(self, items: Any) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again.
         """
-        wanted = self.team.on_first(lambda: units.units_to_solve(self.results))
-        for starts in self.team.exchange(self.together.initial_data(units, wanted)):
+        chosen = self.team.on_first(lambda: items.items_to_solve(self.results))
+        for starts in self.team.exchange(self.together.initial_data(items, chosen)):
             self.together.add_initial_data(starts)
 
-    def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, NamedArrays]]:
+    def _solved(self, items: Any, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
-            yield unit, self.together.solve(units, unit)
+            yield item, self.together.solve(items, item)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             destroy_pooled_solvers()
-            self.note(units.unit_label(unit), error)
-            yield unit, self.together.empty_result()
+            self.note(items.item_label(item), error)
+            yield item, self.together.empty_result()
 
-    def variables(self, units: Any) -> Sequence[Filled] | None:
+    def variables(self, items: Any) -> Sequence[Filled] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
         before all half curves were followed.
         """
-        if units is not None and units.units_to_solve(self.results):
+        if items is not None and items.items_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
-            return self.together.variables(read_view(self.output), units, self.results)
+            return self.together.variables(read_view(self.output), items, self.results)
         return None

@@ -46,7 +46,7 @@ class PointWork:
     where: Callable[[int], str]
     """Function from the flat index of a point to a text with the point's parameters."""
 
-    def units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
+    def items(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """Returns (ranges of the numbers of this shard's work items with missing points, number of missing
         points in these work items).
 
@@ -54,23 +54,23 @@ class PointWork:
         """
         if self.solver.stretched is not None:
             stretches = self.solver.stretched[0]
-            units = self.shard.ranges_of_shard(stretches.todo(missing), stretches.count)
-            return units, stretches.missing_in(units, missing)
+            items = self.shard.ranges_of_shard(stretches.todo(missing), stretches.count)
+            return items, stretches.missing_in(items, missing)
         if self.solver.chained is None:
-            units = self.shard.ranges_of_shard(missing, self.job.points.count)
-            return units, index_count(units)
+            items = self.shard.ranges_of_shard(missing, self.job.points.count)
+            return items, index_count(items)
         lacks = IndexSet(missing)
         chains = self.solver.chained.chains
-        units = self.shard.ranges_of_shard(chains.todo(lacks), chains.count)
-        each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
-        return units, int(sum(each))
+        items = self.shard.ranges_of_shard(chains.todo(lacks), chains.count)
+        each = (lacks[chains.indices(chain)].sum() for item in items for chain in range(*item))
+        return items, int(sum(each))
 
     def solve(
-        self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
+        self, items: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
     ) -> RunContribution:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        units, count: returned by `units`. missing: ranges of the flat indices of all missing points. prepare:
+        items, count: returned by `items`. missing: ranges of the flat indices of all missing points. prepare:
         function called before the first solve.
         """
         reasons = FailureReasons(self.where)
@@ -90,9 +90,9 @@ class PointWork:
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
-                solve = self._solve_unit(IndexSet(missing), directory)
-                loop = Loop(solve=solve, store=keep, prepare=prepare, unit_label=self._unit_name)
-                share = sweep(self.team, ChunkQueue(units, self.team.size), loop, shown, self.stop)
+                solve = self._solve_item(IndexSet(missing), directory)
+                loop = Loop(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
+                share = sweep(self.team, ChunkQueue(items, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write beside {self.output}: {error.strerror or error}"
@@ -104,7 +104,7 @@ class PointWork:
             host=socket.gethostname(), failures=list(reasons.examples.values()), share=share
         )
 
-    def _solve_unit(
+    def _solve_item(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
         """Function from the number of a work item (a point, a chain or a stretch) to its results. missing:
@@ -118,8 +118,8 @@ class PointWork:
             return ChainSolver(solver.chained, missing, kept, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 
-    def _unit_name(self, unit: int) -> str:
+    def _item_name(self, item: int) -> str:
         """Name of a work item, a point or a chain, for the progress display."""
         if self.solver.chained:
-            return f"chain {unit + 1} of {self.solver.chained.chains.count}"
-        return f"point {unit + 1} of {self.job.points.count}"
+            return f"chain {item + 1} of {self.solver.chained.chains.count}"
+        return f"point {item + 1} of {self.job.points.count}"

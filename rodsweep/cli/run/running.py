@@ -101,7 +101,7 @@ class _RankRun:
                 return STOPPED_STATUS
             self.plan = plan
         missing = self.team.on_first(self._open)
-        units, count = self.work.units(missing)
+        items, count = self.work.items(missing)
         if self.team.first:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
@@ -112,12 +112,12 @@ class _RankRun:
         contributions: list[RunContribution] = []
         if count:
             self.team.on_first(self._record_blas_kernels)
-            contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
+            contributions = self.team.gather(self.work.solve(items, missing, count, self.prepare)) or []
         joint = self.team.on_first(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
-        if self.joint and joint.units is not None:
+        if self.joint and joint.items is not None:
             title = None if self.options.quiet else self.job.name
-            shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
+            shares = self.team.gather(self.joint.solve(joint.items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
@@ -145,7 +145,7 @@ class _RankRun:
             return PendingJointWork(True)
         if not count:
             self._record_blas_kernels()
-        return PendingJointWork(True, self.joint.together.units(read_view(self.output)))
+        return PendingJointWork(True, self.joint.together.items(read_view(self.output)))
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
@@ -182,7 +182,7 @@ class _RankRun:
         """Writes the variables of all points into the file; returns whether these are still missing."""
         if not joint.due:
             return False
-        variables = self.joint.variables(joint.units) if self.joint else ()
+        variables = self.joint.variables(joint.items) if self.joint else ()
         if variables is None:
             self.store.add_journals({"stopped": self.stop.name})
             return True
@@ -221,7 +221,7 @@ class _RankRun:
         self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
-        left = self.work.units(missing)[1]
+        left = self.work.items(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,

@@ -105,12 +105,12 @@ def as_drags(value: Any) -> Axis:
             f"{short_repr(value)} is not a drag; write {RANGE_OF_DRAG}, one of the names {', '.join(DRAGS)}, "
             "or a list of these names"
         )
-    return Axis(values=tuple(float(place) for place in sorted({DRAGS.index(name) for name in names})))
+    return Axis(values=tuple(float(index) for index in sorted({DRAGS.index(name) for name in names})))
 
 
 def drags_written(values: list[float]) -> list[str]:
     """Names of drag estimates from their indices in DRAGS."""
-    return [DRAGS[int(place)] for place in values]
+    return [DRAGS[int(index)] for index in values]
 
 
 def typed_unit(name: str, axis: Axis) -> str:

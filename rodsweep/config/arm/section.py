@@ -207,9 +207,9 @@ class ArmSection(StrictSection):
         units = {name: np.array([getattr(first, name)]) for name in ARM_UNITS}
         if len(values.get("drag", ())) > 1:
             first_values = self.first_values
-            arms = {place: self.arm_of(first_values | {"drag": place}) for place in values["drag"].tolist()}
-            values["drag"] = np.array(sorted(arms, key=lambda place: arms[place].gamma3))
-            units["tau2"] = np.array([arms[place].tau2 for place in values["drag"].tolist()])
+            arms = {drag: self.arm_of(first_values | {"drag": drag}) for drag in values["drag"].tolist()}
+            values["drag"] = np.array(sorted(arms, key=lambda drag: arms[drag].gamma3))
+            units["tau2"] = np.array([arms[drag].tau2 for drag in values["drag"].tolist()])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
     @property

@@ -69,10 +69,10 @@ def parse(text: str, where: str) -> Any:
         raise InputError(f"{where}: {error}") from None
     except YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        location = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
         message = printable_name(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
-        raise InputError(f"{where}{place}: not valid YAML: {message}") from None
+        raise InputError(f"{where}{location}: not valid YAML: {message}") from None
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{where}: not valid YAML: {printable_name(error)}") from None
 

@@ -11,11 +11,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..exponents import EXPONENTS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import Path
 from ..roots.newton import FAILED, ROOT_NEWTON, LocatedZero
-from ..roots.settings import ROOTS
-from ..value import DETERMINANT, DeterminantValue
+from ..roots.settings import ROOT_SETTINGS
+from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY, ArmFamily, determinant_in_family, eigenvalue_in_family
 from .newton import refine_eigenvalue_and_error
@@ -68,7 +68,7 @@ class ArmAlongPath:
         if family is not None and abs(guess) < family.W / 2:
             w, slope, error = eigenvalue_in_family(family, guess, p)
             # Near a double eigenvalue the interpolation errors of the family are magnified.
-            if error <= ROOTS.double_root_correction * abs(w):
+            if error <= ROOT_SETTINGS.double_root_correction * abs(w):
                 return w, slope, error
         here = self.determinant(p)
         w, error = refine_eigenvalue_and_error(guess, here)
@@ -98,7 +98,7 @@ class ArmAlongPath:
             D_w = value.D_w.real
             S = value.S
             noise = value.noise
-            h = DETERMINANT.second_difference_step * abs(x)
+            h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
             D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
             stencil, k = self._stencil(p, ROOT_NEWTON.jacobian_step * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
@@ -114,7 +114,7 @@ class ArmAlongPath:
                 blur * abs(D_wp)
                 + ARM_DOUBLE_EIGENVALUES.rounding_over_noise
                 * noise
-                / max(abs(x), EXPONENTS.least_divisor)
+                / max(abs(x), EXPONENT_SETTINGS.least_divisor)
                 * abs(D_p)
             ) / abs(cross)
             x += in_x

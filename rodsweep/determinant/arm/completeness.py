@@ -24,7 +24,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import Hull
 from .value import determinant_along_chain
@@ -169,7 +169,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     for j in range(k):
         points[j] = x * (1 + COMPLETENESS.point_spread * j / max(k - 1, 1))
     while not _turn_of_hull(points, a, c) < math.pi / 2:
-        if not points[0] < 1 / EXPONENTS.least_divisor:
+        if not points[0] < 1 / EXPONENT_SETTINGS.least_divisor:
             return points[:0]
         points *= COMPLETENESS.widening_factor
     return points

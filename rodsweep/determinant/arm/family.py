@@ -16,7 +16,7 @@ from numpy.polynomial import chebyshev
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import Path
 from ..roots.newton import ROOT_NEWTON
 from ..value import DeterminantValue
@@ -242,7 +242,7 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
         last = abs(step)
         w -= step
     D, D_w, D_p, _, noise = chain_along(w, family.W, polynomials, changes)
-    size = max(abs(D_w), EXPONENTS.least_divisor)
+    size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)

@@ -14,7 +14,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.material.build import LocalCoefficients
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 
 
 class ArmSamples(NamedTuple):
@@ -43,7 +43,7 @@ def arm_samples(F: float | Array, local: LocalCoefficients, weights: Array) -> A
 def root_of_upper_half(real: float, imag: float) -> tuple[float, float]:
     """(real part, imaginary part) of the square root of real + i imag, imag >= 0."""
     larger = math.sqrt((math.sqrt(real * real + imag * imag) + abs(real)) / 2)
-    smaller = imag / (2 * max(larger, EXPONENTS.least_divisor))
+    smaller = imag / (2 * max(larger, EXPONENT_SETTINGS.least_divisor))
     return (larger, smaller) if real >= 0 else (smaller, larger)
 
 
@@ -69,14 +69,14 @@ def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
         first = math.sqrt(size_of(drag * a - load + 2 * x, drag * b + 2 * y))
         second = math.sqrt(size_of(drag * a - load - 2 * x, drag * b - 2 * y))
         # Where both squares are close D depends on P^2, which has no branch point, and not on P.
-        share = 1 / (max(P, EXPONENTS.least_divisor) * max(P, 1.0, first, second))
+        share = 1 / (max(P, EXPONENT_SETTINGS.least_divisor) * max(P, 1.0, first, second))
         slope = rate + 2 * bend * a
         turn = share * (slope * x + 2 * bend * b * y)
         side = share * (2 * bend * b * x - slope * y)
         rates = size_of(drag + turn, side) / max(1.0, first), size_of(drag - turn, side) / max(1.0, second)
         number += samples.weights[i] * (first + second) / 2
         fast += samples.weights[i] * max(rates[0], rates[1]) / 2
-    return number, 1 / max(fast, EXPONENTS.least_divisor)
+    return number, 1 / max(fast, EXPONENT_SETTINGS.least_divisor)
 
 
 @compiled

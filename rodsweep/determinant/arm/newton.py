@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..exponents import EXPONENTS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..roots.newton import ROOT_NEWTON
 from ..roots.roots import roots_of_parabola
-from ..roots.settings import ROOTS
-from ..value import DETERMINANT, DeterminantValue, second_difference
+from ..roots.settings import ROOT_SETTINGS
+from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, BoundedPropagators
 from .value import ARM_VALUE, determinant_along_chain
 
@@ -37,7 +37,7 @@ ARM_ROOTS = ArmRootSettings()
 @compiled
 def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
-    h = DETERMINANT.second_difference_step * abs(w)
+    h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
     after = determinant_along_chain(w + h, level[0], level[1])
     before = determinant_along_chain(w - h, level[0], level[1])
     second = second_difference(after, before, S, h)
@@ -49,11 +49,11 @@ def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> fl
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
     e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
     size = abs(value.D_w)
-    error = e / max(size, EXPONENTS.least_divisor)
-    if error > ROOTS.double_root_correction * abs(w):
+    error = e / max(size, EXPONENT_SETTINGS.least_divisor)
+    if error > ROOT_SETTINGS.double_root_correction * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         second = abs(_second_derivative(w, value.S, level))
-        if size**2 < ROOTS.min_squared_slope * e * second:
+        if size**2 < ROOT_SETTINGS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), size / second + spread)
     return error + ARM_ROOTS.rounding * ROUND_OFF * abs(w)
@@ -85,7 +85,7 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
         w -= step
         if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
-        if not (1 + DETERMINANT.second_difference_step) * abs(w) <= level[0]:
+        if not (1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error(w, level), last
 
@@ -102,7 +102,7 @@ def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, com
 
 def _level(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
     """(W, propagators) that are valid for D and D'' at w."""
-    return determinant.level((1 + DETERMINANT.second_difference_step) * abs(w))
+    return determinant.level((1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:

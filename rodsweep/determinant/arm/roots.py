@@ -13,10 +13,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 from ..roots.newton import ROOT_NEWTON
 from ..roots.roots import Roots
-from ..roots.settings import ROOTS
+from ..roots.settings import ROOT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import Hull
 from .newton import ARM_ROOTS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
@@ -41,14 +41,14 @@ def refine_mesh_eigenvalues(
     start = [first[i] for i in resolved]
     _make_elements(determinant, max(map(abs, start), default=0.0), largest)
     errors = dict(zip(resolved, _values_at_roots(start, lambda w: root_error(w, determinant)), strict=True))
-    chosen = [i for i in resolved if errors[i] <= ROOTS.largest_of_pair * scale[i]]
+    chosen = [i for i in resolved if errors[i] <= ROOT_SETTINGS.largest_of_pair * scale[i]]
     close = [errors[i] for i in chosen]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     moved, reach = _separate_close_roots([first[i] for i in chosen], close, determinant)
     stands = [
         k
         for k, i in enumerate(chosen)
-        if reach[k] < math.inf or close[k] <= ROOTS.largest_correction * scale[i]
+        if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.largest_correction * scale[i]
     ]
     found = _refined_all([(moved[k], reach[k]) for k in stands], determinant)
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))
@@ -58,7 +58,9 @@ def refine_mesh_eigenvalues(
     error = _with_equal_roots(found, determinant)
     length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
-    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.axis_tolerance * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(
+        ROOT_SETTINGS.axis_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
+    )
     leader = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
@@ -101,15 +103,17 @@ def _separate_close_roots(
     w = w.copy()
     reach = [math.inf] * len(w)
     each = zip(w, error, strict=True)
-    if not any(abs(a - b) <= ROOTS.pair_distance * (e + f) for (a, e), (b, f) in combinations(each, 2)):
+    if not any(
+        abs(a - b) <= ROOT_SETTINGS.pair_distance * (e + f) for (a, e), (b, f) in combinations(each, 2)
+    ):
         return w, reach
     for i in range(len(w)):
         others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
         if reach[i] < math.inf or not others:
             continue
         partner = min(others, key=lambda j: abs(w[j] - w[i]))
-        if abs(w[partner] - w[i]) <= ROOTS.pair_distance * (error[i] + error[partner]):
-            for _ in range(ROOTS.parabolas_per_pair):
+        if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance * (error[i] + error[partner]):
+            for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
@@ -146,11 +150,11 @@ def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) ->
     for i, one in enumerate(found):
         for j in range(i + 1, len(found)):
             apart = abs(one.w - found[j].w)
-            if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
+            if apart <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
                 value = determinant.value(one.w)
                 second = abs(second_derivative(one.w, value.S, determinant))
-                next_root = 2 * abs(value.D_w) / max(second, EXPONENTS.least_divisor)
-                if apart < ROOTS.same_root_fraction * next_root:
+                next_root = 2 * abs(value.D_w) / max(second, EXPONENT_SETTINGS.least_divisor)
+                if apart < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
     return np.array(error, float)

@@ -39,7 +39,7 @@ class BoxSettings(CompiledSettings):
     """Relative excess of every bound, for the rounding errors of the bound itself."""
 
 
-BOX = BoxSettings()
+BOX_SETTINGS = BoxSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +50,7 @@ class ZeroFreeDiscSettings:
     """Bound of |D - 1| in the disc about w = 0. Any bound below 1 excludes zeros of D."""
 
 
-ZERO_FREE_DISC = ZeroFreeDiscSettings()
+ZERO_FREE_DISC_SETTINGS = ZeroFreeDiscSettings()
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
@@ -67,8 +67,8 @@ def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
     """
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
-    pad = BOX.padding * depth + BOX.least_padding
-    return (1 + BOX.margin) * a * a / 4 + pad, (1 + BOX.margin) * a * n + pad
+    pad = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
+    return (1 + BOX_SETTINGS.margin) * a * a / 4 + pad, (1 + BOX_SETTINGS.margin) * a * n + pad
 
 
 @lru_cache(maxsize=1)
@@ -154,7 +154,7 @@ def _zero_free_radius(r: float, T: float, X: float, G: float, pull: float) -> fl
 
     T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. pull: bound of -F g, at least 0.
     """
-    while _distance_from_one_bound(r, T, X, G, pull) >= ZERO_FREE_DISC.max_departure:
+    while _distance_from_one_bound(r, T, X, G, pull) >= ZERO_FREE_DISC_SETTINGS.max_departure:
         r /= 2
     return r
 

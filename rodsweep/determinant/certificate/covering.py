@@ -27,10 +27,10 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along
 from ..roots.newton import FAILED, LocatedZero, crossing_newton
-from .discs import DISCS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
+from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,13 +146,13 @@ def examine_box(
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
     mean = mean_growth_rates(centre)
-    rounding = DISCS.rounding_over_noise * noise
+    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * noise
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            room = DISCS.clearance * distance_from_zero_bound(D, a, b) - rounding
+            room = DISC_BOUND_SETTINGS.clearance * distance_from_zero_bound(D, a, b) - rounding
             if room > 0 and is_remainder_below(centre, rates, half, room, 1):
                 return EMPTY, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
@@ -162,7 +162,7 @@ def examine_box(
         # The smallest singular value of the linear map is at least |det| over the sum of its columns: at most
         # one zero.
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
-        room = (DISCS.clearance * least - rounding) / 3
+        room = (DISC_BOUND_SETTINGS.clearance * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
         if room > 0 and is_remainder_below(centre, mean, double, room, 2):
             return REGULAR, 0.0, 0.0
@@ -184,7 +184,9 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # The bounds on the bidisc also need a small change of the radicand of P.
     factor = abs(centre.derivatives.G1) + abs(centre.derivatives.X1) * size
-    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, EXPONENTS.least_divisor))
+    return max(in_w, half[0] / size), max(
+        in_p, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.least_divisor)
+    )
 
 
 @compiled

@@ -12,13 +12,13 @@ from typing import ClassVar, NamedTuple
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import CoefficientDerivatives, exponent_slopes
 from ..value import exponent_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DiscSettings(CompiledSettings):
+class DiscBoundSettings(CompiledSettings):
     """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
     rounding_over_noise: float = 4.0
@@ -38,7 +38,7 @@ class DiscSettings(CompiledSettings):
     }
 
 
-DISCS = DiscSettings()
+DISC_BOUND_SETTINGS = DiscBoundSettings()
 
 
 DerivativePair = tuple[complex, complex]
@@ -105,7 +105,7 @@ def bounds_of_E_on_bidisc(
     crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
     grow = crude
     decay = crude
-    if change < DISCS.max_expansion_change * abs(z):
+    if change < DISC_BOUND_SETTINGS.max_expansion_change * abs(z):
         in_w = slopes[0] / (2 * root)
         in_p = slopes[1] / (2 * root)
         curve = nonlinear_root_bound(root, bend, change / abs(z))
@@ -113,7 +113,7 @@ def bounds_of_E_on_bidisc(
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
         grow = min(grow, root.real + with_rates + curve)
         decay = min(decay, -root.real + against + curve)
-    largest = EXPONENTS.largest_exponent
+    largest = EXPONENT_SETTINGS.max_exponent
     exponentials = math.exp(min(grow - S, largest)) + math.exp(min(decay - S, largest))
     # The -1 of E = (cosh - 1)/z and its derivative.
     exponentials += 2 * math.exp(min(drift - S, largest))
@@ -146,7 +146,7 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
     E, E1 = bounds_of_E_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
-    still = math.exp(min(drift - S, EXPONENTS.largest_exponent))
+    still = math.exp(min(drift - S, EXPONENT_SETTINGS.max_exponent))
     return still + far * ((T + abs(T1) * sigma) * E + 2 * steep * E1)
 
 
@@ -183,7 +183,9 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     e1 = rho / abs(w)
     moved = dG + X * rho + dX * (abs(w) + rho)
     e2 = moved / base if base > moved else 1.0
-    if e1 > DISCS.max_factor_change or (moved > 0 and e2 > DISCS.max_factor_change):
+    if e1 > DISC_BOUND_SETTINGS.max_factor_change or (
+        moved > 0 and e2 > DISC_BOUND_SETTINGS.max_factor_change
+    ):
         return math.inf
     if moved == 0:
         e2 = 0.0
@@ -200,4 +202,4 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     terms = bounds_of_E_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
     terms += bounds_of_E_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
-    return math.exp(min(drift - S, EXPONENTS.largest_exponent)) + (abs(w) + rho) / 2 * steepest * terms
+    return math.exp(min(drift - S, EXPONENT_SETTINGS.max_exponent)) + (abs(w) + rho) / 2 * steepest * terms

@@ -20,7 +20,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..value import exponent_derivatives, scaled_determinant
-from .discs import DISCS, bounds_of_E_on_bidisc, nonlinear_root_bound
+from .discs import DISC_BOUND_SETTINGS, bounds_of_E_on_bidisc, nonlinear_root_bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +44,7 @@ class DominanceSettings(CompiledSettings):
     ranges: ClassVar = {"first_radius": (0.0, 1.0), "largest_factor_change": (0.0, 1.0)}
 
 
-DOMINANCE = DominanceSettings()
+DOMINANCE_SETTINGS = DominanceSettings()
 
 
 class Exponent(NamedTuple):
@@ -81,7 +81,7 @@ def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficient
     e2 = 0.0
     if X > 0:
         e2 = X * rho / abs(gn + X * w)
-    if e1 > DOMINANCE.largest_factor_change or e2 > DOMINANCE.largest_factor_change:
+    if e1 > DOMINANCE_SETTINGS.largest_factor_change or e2 > DOMINANCE_SETTINGS.largest_factor_change:
         return math.inf, math.inf
     least = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
@@ -100,7 +100,9 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     bend, turn = _bend_and_turn(w, rho, P, coefficients)
     change = abs(slope) * rho + bend
     x = change / abs(z)
-    if x > DOMINANCE.largest_factor_change or turn > DOMINANCE.largest_factor_change * abs(slope):
+    if x > DOMINANCE_SETTINGS.largest_factor_change or turn > DOMINANCE_SETTINGS.largest_factor_change * abs(
+        slope
+    ):
         return False
     L = slope / (2 * root)
     drift = abs(L) * rho
@@ -109,7 +111,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
-    if change_other < DOMINANCE.largest_factor_change * abs(z_other):
+    if change_other < DOMINANCE_SETTINGS.largest_factor_change * abs(z_other):
         curve_other = nonlinear_root_bound(root_other, bend, change_other / abs(z_other))
         together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
         if not root.real - curve > root_other.real + together:
@@ -126,7 +128,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     )
     E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
     rest += far / 2 * (abs(slope_other) + turn) * E
-    return rest < DISCS.clearance * A
+    return rest < DISC_BOUND_SETTINGS.clearance * A
 
 
 @compiled
@@ -165,16 +167,16 @@ def phase_over_dominated_segment(
     here = (0j, 0j)
     first = (0j, 0j)
     while t < length:
-        rho = DOMINANCE.first_radius * abs(w)
+        rho = DOMINANCE_SETTINGS.first_radius * abs(w)
         if X > 0:
-            rho = min(rho, DOMINANCE.first_radius * abs(gn + X * w) / X)
+            rho = min(rho, DOMINANCE_SETTINGS.first_radius * abs(gn + X * w) / X)
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
         found = False
-        for _ in range(DOMINANCE.max_halvings + 1):
+        for _ in range(DOMINANCE_SETTINGS.max_halvings + 1):
             discs += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if is_dominated(w + direction * rho, (1 + DOMINANCE.overlap) * rho, coefficients):
+            if is_dominated(w + direction * rho, (1 + DOMINANCE_SETTINGS.overlap) * rho, coefficients):
                 found = True
                 break
             rho /= 2
@@ -183,7 +185,7 @@ def phase_over_dominated_segment(
         if t == 0.0:
             here = dominant_factors(w, coefficients)
             first = here
-        t = length if t + 2 * rho >= length * (1 - DOMINANCE.end_rounding) else t + 2 * rho
+        t = length if t + 2 * rho >= length * (1 - DOMINANCE_SETTINGS.end_rounding) else t + 2 * rho
         w = start + direction * t
         after = dominant_factors(w, coefficients)
         # The change of arg A over the step, in closed form; it may exceed 2 pi.

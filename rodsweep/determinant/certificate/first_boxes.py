@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import Path, coefficients_at
-from .box import BOX, squared_amplification_over, zero_free_radius
+from .box import BOX_SETTINGS, squared_amplification_over, zero_free_radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +34,7 @@ class CoveringSettings:
     """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 
 
-COVERING = CoveringSettings()
+COVERING_SETTINGS = CoveringSettings()
 
 
 def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
@@ -42,18 +42,18 @@ def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, f
     doubles.
     """
     edges = [start]
-    width = (stop - start) / COVERING.min_intervals
+    width = (stop - start) / COVERING_SETTINGS.min_intervals
     while edges[-1] < stop:
         p = edges[-1]
         step = width
         nu = coefficients_at(p, path.origin, path.direction).nu
         slope = path.direction.nu
         if slope < 0:  # the rod is crushed at nu = 0
-            step = min(step, COVERING.max_nu_decrease * nu / -slope)
+            step = min(step, COVERING_SETTINGS.max_nu_decrease * nu / -slope)
         if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, COVERING.min_interval * width))
+            step = min(step, max(p, COVERING_SETTINGS.min_interval * width))
         end = p + step
-        edges.append(stop if stop - end < COVERING.min_last_interval * step else end)
+        edges.append(stop if stop - end < COVERING_SETTINGS.min_last_interval * step else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
@@ -64,13 +64,13 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):
-        top = (1 + BOX.margin) * squared_amplification_over(path, a, b) + COVERING.padding
+        top = (1 + BOX_SETTINGS.margin) * squared_amplification_over(path, a, b) + COVERING_SETTINGS.padding
         if not math.isfinite(top):
             return None
         low = zero_free_radius(path, a, b, top)
         if low == 0.0:
             return None
-        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING.max_eta_ratio)))
+        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING_SETTINGS.max_eta_ratio)))
         edges = np.geomspace(low, top, count + 1)
         boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

@@ -27,7 +27,7 @@ from .zero_free_disc import zero_free_disc_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CountSettings(CompiledSettings):
+class WindingSettings(CompiledSettings):
     """Settings for the contour around which the winding number of D is computed."""
 
     width_factor: float = 4.0
@@ -54,7 +54,7 @@ class CountSettings(CompiledSettings):
     ranges: ClassVar = {"safe_step": (0.0, 1.0)}
 
 
-COUNT = CountSettings()
+WINDING_SETTINGS = WindingSettings()
 
 PHASE_LOST = "an eigenvalue lies too close to the contour, or the contour is too long"
 """Reason of a failed count: the change of arg D along the contour could not be proved."""
@@ -86,14 +86,14 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     nodes = 0
-    patience = COUNT.walk_length
+    patience = WINDING_SETTINGS.walk_length
     while t < length:
         w = start + direction * t
         ahead, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
         total += change
         nodes += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
-        patience = COUNT.walk_length if ahead > 0 else 2 * patience
+        patience = WINDING_SETTINGS.walk_length if ahead > 0 else 2 * patience
         t = length if ahead == length - t else t + ahead
         if t < length:
             w = start + direction * t
@@ -101,7 +101,7 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
             to = end if goal == length else start + direction * goal
             change, used = phase_change_by_nodes(w, to, coefficients)
             nodes += abs(used)
-            if used < 0 or nodes > COUNT.max_edge_nodes:
+            if used < 0 or nodes > WINDING_SETTINGS.max_edge_nodes:
                 return 0.0, -nodes
             total += change
             t = goal
@@ -122,10 +122,13 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     nodes = 1
     here = zero_free_disc_at(start, coefficients)
     while t < length:
-        if not here.reach > COUNT.min_reach * abs(here.w) or nodes > COUNT.max_edge_nodes:
+        if (
+            not here.reach > WINDING_SETTINGS.min_reach * abs(here.w)
+            or nodes > WINDING_SETTINGS.max_edge_nodes
+        ):
             return 0.0, -nodes
         # The next node may lie beyond the reach of this node if its own reach covers the step.
-        ahead = min(COUNT.max_step * here.reach, length - t)
+        ahead = min(WINDING_SETTINGS.max_step * here.reach, length - t)
         while True:
             inside = ahead < here.reach
             there = zero_free_disc_at(
@@ -134,7 +137,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
             nodes += 1
             if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
-            ahead = COUNT.safe_step * here.reach
+            ahead = WINDING_SETTINGS.safe_step * here.reach
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
         turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
         total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
@@ -187,14 +190,14 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
             )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real = COUNT.width_factor * real + COUNT.width_added
-    imag = max(imag, COUNT.min_height * abs(line))
+    real = WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.width_added
+    imag = max(imag, WINDING_SETTINGS.min_height * abs(line))
     change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
         return EigenvalueCount(None, -nodes, PHASE_LOST)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > COUNT.integer_tolerance:
+    if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
         return EigenvalueCount(None, nodes, NO_INTEGER)
     return EigenvalueCount(number, nodes)

@@ -18,10 +18,10 @@ from typing import ClassVar, NamedTuple
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..exponents import EXPONENTS
+from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import CoefficientDerivatives
 from ..value import exponent_derivatives, scaled_determinant
-from .discs import DISCS, bidisc_centre, bound_on_bidisc
+from .discs import DISC_BOUND_SETTINGS, bidisc_centre, bound_on_bidisc
 
 ZERO_CHANGES = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Derivatives of the coefficients along a path, all 0: bounds then apply to a single rod."""
@@ -40,7 +40,7 @@ class NodeDiscSettings(CompiledSettings):
     ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
 
 
-NODE_DISC = NodeDiscSettings()
+NODE_DISC_SETTINGS = NodeDiscSettings()
 
 
 class ZeroFreeDiscNode(NamedTuple):
@@ -62,19 +62,24 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = exponent_derivatives(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
-    rho = abs(w) / NODE_DISC.branch_distance
+    rho = abs(w) / NODE_DISC_SETTINGS.branch_distance
     if c2 * gamma3 > 0:
-        rho = min(rho, stiffness / (NODE_DISC.branch_distance * c2 * gamma3))
-    rho = min(rho, (S + 1) / max(abs(L), EXPONENTS.least_divisor))
+        rho = min(rho, stiffness / (NODE_DISC_SETTINGS.branch_distance * c2 * gamma3))
+    rho = min(rho, (S + 1) / max(abs(L), EXPONENT_SETTINGS.least_divisor))
     # A recessive exponential contributes little to D (large slack), so it may change more over the disc.
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)
         slack = S - root.real + 1
-        rho = min(rho, NODE_DISC.factor_change * max(abs(z), 2.0) / max(abs(slope), EXPONENTS.least_divisor))
-        if abs(z) > NODE_DISC.min_root_modulus:
+        rho = min(
+            rho,
+            NODE_DISC_SETTINGS.factor_change
+            * max(abs(z), 2.0)
+            / max(abs(slope), EXPONENT_SETTINGS.least_divisor),
+        )
+        if abs(z) > NODE_DISC_SETTINGS.min_root_modulus:
             rate = slope / (2 * root)
-            rho = min(rho, slack / max(abs(rate - L), EXPONENTS.least_divisor))
+            rho = min(rho, slack / max(abs(rate - L), EXPONENT_SETTINGS.least_divisor))
             rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
     return rho
 
@@ -85,7 +90,7 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     less than pi/2.
     """
     D, D_w, S, noise = scaled_determinant(w, coefficients)
-    room = DISCS.clearance * abs(D) - DISCS.rounding_over_noise * noise
+    room = DISC_BOUND_SETTINGS.clearance * abs(D) - DISC_BOUND_SETTINGS.rounding_over_noise * noise
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
         return ZeroFreeDiscNode(w, D, 0j, 0.0)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
-from ..exponents import EXPONENTS, ROUND_OFF
+from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import coefficients_at, determinant_along
 from ..value import scaled_determinant
 
@@ -131,7 +131,9 @@ def double_newton(
         in_p = (D_ww * D - D_w * D_w) / cross
         blur = noise + ROUND_OFF * abs(p * D_p)
         e_p = blur * abs(D_ww) / abs(cross)
-        e_x = (blur * abs(D_wp) + noise / max(abs(x), EXPONENTS.least_divisor) * abs(D_p)) / abs(cross)
+        e_x = (blur * abs(D_wp) + noise / max(abs(x), EXPONENT_SETTINGS.least_divisor) * abs(D_p)) / abs(
+            cross
+        )
         x += in_x
         p += in_p
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.

@@ -19,14 +19,14 @@ from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from ..certificate.box import box_from_amplification
 from ..value import (
-    DETERMINANT,
+    DETERMINANT_SETTINGS,
     distance_to_next_root,
     newton_correction,
     scaled_determinant,
     second_derivative,
 )
 from .newton import ROOT_NEWTON, refine_eigenvalue
-from .settings import ROOTS
+from .settings import ROOT_SETTINGS
 
 
 class Roots(NamedTuple):
@@ -58,12 +58,12 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
     sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction(w, coefficients)
-    if error > ROOTS.double_root_correction * abs(w):
+    if error > ROOT_SETTINGS.double_root_correction * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
-        e = max(abs(D), DETERMINANT.typical_noise * noise)
+        e = max(abs(D), DETERMINANT_SETTINGS.typical_noise * noise)
         second = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
-        if abs(D1) ** 2 < ROOTS.min_squared_slope * e * second:
+        if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
     return error, length, wave
@@ -110,8 +110,8 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
             if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
                 partner = j
                 least = abs(w[j] - w[i])
-        if partner >= 0 and least <= ROOTS.pair_distance * (error[i] + error[partner]):
-            for _ in range(ROOTS.parabolas_per_pair):
+        if partner >= 0 and least <= ROOT_SETTINGS.pair_distance * (error[i] + error[partner]):
+            for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
@@ -172,13 +172,17 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
         # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.
         real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
-        near[i] = inside[i] and wave[i] <= most_waves and error[i] <= ROOTS.largest_of_pair * length[i]
+        near[i] = (
+            inside[i] and wave[i] <= most_waves and error[i] <= ROOT_SETTINGS.largest_of_pair * length[i]
+        )
     chosen = np.flatnonzero(near)
     first = first[chosen]
     error = error[chosen]
     length = length[chosen]
     wave = wave[chosen]
-    w, stands = _refined_all(first, error, wave, error <= ROOTS.largest_correction * length, coefficients)
+    w, stands = _refined_all(
+        first, error, wave, error <= ROOT_SETTINGS.largest_correction * length, coefficients
+    )
     order = np.flatnonzero(stands)
     order = order[_descending(w[order])]
     displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
@@ -187,7 +191,9 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     error = error[order]
     wave = wave[order]
     _raise_errors_of_equal_roots(w, error, coefficients)
-    axis = np.abs(w.real) <= np.maximum(ROOTS.axis_errors * error, ROOTS.axis_tolerance * np.abs(w))
+    axis = np.abs(w.real) <= np.maximum(
+        ROOT_SETTINGS.axis_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
+    )
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen, w, error, displacement, wave, axis, ahead)
 
@@ -231,8 +237,8 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coeffic
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
-            if apart <= ROOTS.same_root_distance * (error[i] + error[j]):
+            if apart <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
                 next_root = distance_to_next_root(w[i], coefficients)
-                if apart < ROOTS.same_root_fraction * next_root:
+                if apart < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

@@ -38,4 +38,4 @@ class RootSettings(CompiledSettings):
     distance 2 |D'/D''| of the next root."""
 
 
-ROOTS = RootSettings()
+ROOT_SETTINGS = RootSettings()

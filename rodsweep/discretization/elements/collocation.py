@@ -25,7 +25,7 @@ class RadauSettings:
     errors of 1e-15. The first step already reaches rounding error."""
 
 
-RADAU = RadauSettings()
+RADAU_SETTINGS = RadauSettings()
 
 
 class Collocation(NamedTuple):
@@ -56,7 +56,7 @@ def radau_method(stages: int) -> Collocation:
     series = np.zeros(stages + 1)
     series[-2:] = 1.0, -1.0
     x = np.sort(legendre.legroots(series).real)
-    for _ in range(RADAU.newton_steps):
+    for _ in range(RADAU_SETTINGS.newton_steps):
         x = x - legendre.legval(x, series) / legendre.legval(x, legendre.legder(series))
     x[-1] = 1.0
     moments = np.zeros(stages)

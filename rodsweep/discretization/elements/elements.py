@@ -28,7 +28,7 @@ class ElementSettings:
     """Maximum number of cached interpolation matrices between two meshes, and of cached lists of edges."""
 
 
-ELEMENTS = ElementSettings()
+ELEMENT_SETTINGS = ElementSettings()
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,9 @@ class Elements:
         """
         edges: Array = np.array(self.edges)[:, None]
         points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto(self.order)[0] + 1) / 2
-        return np.clip(points, edges[:-1] + ELEMENTS.end_distance, edges[1:] - ELEMENTS.end_distance)
+        return np.clip(
+            points, edges[:-1] + ELEMENT_SETTINGS.end_distance, edges[1:] - ELEMENT_SETTINGS.end_distance
+        )
 
     def evaluation(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
@@ -116,7 +118,7 @@ class Elements:
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
-@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
 def equal_edges(elements: int) -> tuple[float, ...]:
     """Edges of `elements` elements of equal length on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))

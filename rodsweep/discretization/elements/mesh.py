@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from .basis import differentiation, interpolation
-from .elements import ELEMENTS, Elements, equal_edges
+from .elements import ELEMENT_SETTINGS, Elements, equal_edges
 from .quadrature import gauss, gauss_lobatto
 
 
@@ -25,7 +25,7 @@ class ReconstructionSettings:
     Ten suffice if theta changes by up to two radians within an element."""
 
 
-RECONSTRUCTION = ReconstructionSettings()
+RECONSTRUCTION_SETTINGS = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
@@ -65,7 +65,7 @@ def mesh(elements: int, order: int) -> Mesh:
     return mesh_on(equal_edges(elements), order)
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     """The mesh whose elements lie between neighbouring `edges` and have the order `order`; cached."""
     x, w = gauss_lobatto(order)
@@ -86,7 +86,7 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
-@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
 def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
     """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`.
 
@@ -136,11 +136,11 @@ class Reconstruction(NamedTuple):
     ends: Array
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def reconstruction(order: int) -> Reconstruction:
     """The `Reconstruction` matrices of elements of order `order`, cached."""
     x = gauss_lobatto(order)[0]
-    g = gauss(order + RECONSTRUCTION.extra_points)[0]
+    g = gauss(order + RECONSTRUCTION_SETTINGS.extra_points)[0]
     return Reconstruction(
         interpolation(x, g).T,
         integration_matrix(x, g).T,

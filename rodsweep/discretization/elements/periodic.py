@@ -17,7 +17,7 @@ from ...model.compiled.settings import CompiledSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MaximumSettings(CompiledSettings):
+class TrigonometricMaximumSettings(CompiledSettings):
     """Settings for maxima and zeros of trigonometric polynomials."""
 
     max_steps: int = 8
@@ -28,7 +28,7 @@ class MaximumSettings(CompiledSettings):
     """Number of bisections of the interval between two samples around a zero, down to rounding error."""
 
 
-MAXIMA = MaximumSettings()
+TRIGONOMETRIC_MAXIMUM_SETTINGS = TrigonometricMaximumSettings()
 
 
 def fourier_coefficients(samples: Array) -> Complex:
@@ -187,7 +187,7 @@ def maxima(c: Complex, samples: Array) -> Array:
     highest = np.empty(m)
     for column in range(m):
         t = float(np.argmax(samples[:, column])) / n
-        for _ in range(MAXIMA.max_steps):
+        for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_steps):
             _, slope, curvature = _expansion(c[:, column], t)
             # Newton's method would converge to a minimum.
             if curvature >= 0:
@@ -195,7 +195,7 @@ def maxima(c: Complex, samples: Array) -> Array:
             # The distance of the maximum from the largest sample is at most the distance between samples.
             step = min(max(slope / curvature, -1 / n), 1 / n)
             t -= step
-            if abs(step) < MAXIMA.converged_step:
+            if abs(step) < TRIGONOMETRIC_MAXIMUM_SETTINGS.converged_step:
                 break
         highest[column] = _expansion(c[:, column], t)[0]
     return highest
@@ -241,7 +241,7 @@ def time_of_rise_through_mean(samples: Array) -> float:
 @compiled_for_vectors
 def _bisect_rising_zero(c: Complex, low: float, high: float) -> float:
     """The zero of Re sum_k c_k exp(2 pi i k t) between low and high by bisection; c: (harmonics,)."""
-    for _ in range(MAXIMA.max_bisections):
+    for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_bisections):
         middle = (low + high) / 2
         if _expansion(c, middle)[0] < 0:
             low = middle

@@ -19,7 +19,7 @@ class LobattoSettings:
     """Newton's method stops when the largest |step| of all nodes is smaller than this."""
 
 
-LOBATTO = LobattoSettings()
+LOBATTO_SETTINGS = LobattoSettings()
 
 
 @cache
@@ -39,12 +39,12 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
     The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points. P_p: Legendre polynomial.
     """
     x = -np.cos(np.pi * np.arange(p + 1) / p)
-    for _ in range(LOBATTO.max_steps):
+    for _ in range(LOBATTO_SETTINGS.max_steps):
         # (1 - x^2) P_p' = p (P_{p-1} - x P_p) and its derivative -p (p + 1) P_p.
         P, Q = _legendre_pair(p, x)
         step = (x * P - Q) / ((p + 1) * P)
         x = x - step
-        if np.abs(step).max() < LOBATTO.tolerance:
+        if np.abs(step).max() < LOBATTO_SETTINGS.tolerance:
             break
     # Nodes are exactly symmetric, so that mirror symmetry is preserved.
     x = (x - x[::-1]) / 2

@@ -42,7 +42,7 @@ class ResolutionSettings:
     """Number of unknowns of the next finer mesh, divided by the number of unknowns of the present mesh."""
 
 
-RESOLUTION = ResolutionSettings()
+RESOLUTION_SETTINGS = ResolutionSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,9 @@ def expected_wave_number(modes: int, most_amplified: float) -> float:
     has |q| near (n - 1/2) pi; under load the leading modes approach the most amplified wave. For the random
     rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
     """
-    return hypot(RESOLUTION.wave_factor * most_amplified, (modes - RESOLUTION.mode_offset) * pi)
+    return hypot(
+        RESOLUTION_SETTINGS.wave_factor * most_amplified, (modes - RESOLUTION_SETTINGS.mode_offset) * pi
+    )
 
 
 def mesh_accuracy(accuracy: float, vectors: bool) -> float:
@@ -74,14 +76,14 @@ def mesh_accuracy(accuracy: float, vectors: bool) -> float:
     error of its eigenvalue. Without eigenvectors a coarse mesh suffices, because the eigenvalues are refined
     to roots of D.
     """
-    return accuracy**2 if vectors else RESOLUTION.start_accuracy
+    return accuracy**2 if vectors else RESOLUTION_SETTINGS.start_accuracy
 
 
 def required_order(wave_number: float, accuracy: float) -> float:
     """Order, not rounded up, of a single element that resolves exp(+-q u), |q| = wave_number, to the relative
     accuracy `accuracy`.
     """
-    fit = RESOLUTION
+    fit = RESOLUTION_SETTINGS
     further_digits = max(-log10(accuracy), fit.base_digits) - fit.base_digits
     per_digit = fit.digit_intercept + fit.digit_slope * min(wave_number, fit.digit_slope_max_wave_number)
     return fit.order_intercept + fit.order_slope * wave_number + further_digits * per_digit
@@ -90,16 +92,16 @@ def required_order(wave_number: float, accuracy: float) -> float:
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
     """The smallest number of elements, and then the lowest order, that resolve a wave to a relative accuracy.
 
-    wave_number: in 1/L. largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
+    wave_number: in 1/L. largest_order: maximum order of an element; default `RESOLUTION_SETTINGS.max_order`.
     """
-    largest_order = largest_order or RESOLUTION.max_order
-    max_elements = RESOLUTION.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway
+    largest_order = largest_order or RESOLUTION_SETTINGS.max_order
+    max_elements = RESOLUTION_SETTINGS.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway
     elements = 1
     while elements < max_elements and required_order(wave_number / elements, accuracy) > largest_order:
         elements += 1
     if elements == max_elements:
         return Resolution(elements, largest_order)
-    order = max(RESOLUTION.min_order, ceil(required_order(wave_number / elements, accuracy)))
+    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(wave_number / elements, accuracy)))
     return Resolution(elements, order + (1 if elements > 1 else 0))
 
 
@@ -107,9 +109,9 @@ def finer_resolution(resolution: Resolution) -> Resolution:
     """The next finer resolution, with a third more unknowns: a higher order up to the maximum order, then
     more elements.
     """
-    order = ceil(resolution.order * RESOLUTION.refinement_ratio)
-    if order <= RESOLUTION.max_order:
+    order = ceil(resolution.order * RESOLUTION_SETTINGS.refinement_ratio)
+    if order <= RESOLUTION_SETTINGS.max_order:
         return Resolution(resolution.elements, order)
-    elements = ceil(resolution.elements * RESOLUTION.refinement_ratio)
-    nodes = RESOLUTION.refinement_ratio * resolution.elements * resolution.order
+    elements = ceil(resolution.elements * RESOLUTION_SETTINGS.refinement_ratio)
+    nodes = RESOLUTION_SETTINGS.refinement_ratio * resolution.elements * resolution.order
     return Resolution(elements, ceil(nodes / elements))

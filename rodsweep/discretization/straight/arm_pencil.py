@@ -18,7 +18,7 @@ from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
 from ..elements.quadrature import gauss, gauss_lobatto
 from .arm_resolution import ArmMesh
-from .pencil import PENCIL_NORM, PencilMatrices
+from .pencil import PENCIL_NORM_SETTINGS, PencilMatrices
 
 
 class _Pieces(NamedTuple):
@@ -145,7 +145,7 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Ar
             mass = pieces.lumped[e, i]
             push[e * order + i] += mass * local[3, e, order + i]
             turn[e * order + i] += mass * local[4, e, order + i]
-            least[e * order + i] += mass * PENCIL_NORM.min_angle_weight**2
+            least[e * order + i] += mass * PENCIL_NORM_SETTINGS.min_angle_weight**2
     scale = np.empty(3 * nodes)
     B = np.zeros(3 * nodes)
     for k in range(nodes):
@@ -154,7 +154,7 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Ar
         scale[k] = 1 / math.sqrt(push[k + 1])
         scale[nodes + k] = 1 / math.sqrt(angle)
         weight = pieces.weight[k // order, k % order]
-        scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM.shear_weight**2)
+        scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM_SETTINGS.shear_weight**2)
         B[k] = 1.0
         B[nodes + k] = turn[k + 1] / angle
     # The last element of A collects the entries of the clamp, which are not used.

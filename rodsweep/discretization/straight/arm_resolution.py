@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...model.dispersion import local_growth, sampled
 from ...model.rod import Rod
 from ..elements.elements import Elements
-from ..elements.resolution import RESOLUTION, required_order
+from ..elements.resolution import RESOLUTION_SETTINGS, required_order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +41,9 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """
     weights = sampled(rod).weights
     _, amplified = local_growth(rod)
-    at_rest = (modes - RESOLUTION.mode_offset) * pi * _relative_wave_number(rod)
-    waves = np.hypot(RESOLUTION.wave_factor * amplified, at_rest)
-    elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION.max_order)
+    at_rest = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
+    waves = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified, at_rest)
+    elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
 
 
@@ -51,11 +51,11 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: i
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
     relative accuracy.
 
-    largest_order: maximum order of an element, `RESOLUTION.max_order` by default.
+    largest_order: maximum order of an element, `RESOLUTION_SETTINGS.max_order` by default.
     """
     waves = wave_number * _relative_wave_number(rod)
     return _elements_for_wave(
-        rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION.max_order
+        rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION_SETTINGS.max_order
     )
 
 
@@ -84,7 +84,7 @@ def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: i
         count = max(1, ceil(ratio / log(ARM_RESOLUTION.max_radius_ratio)), needed)
         edges += _edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
-    order = max(RESOLUTION.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
+    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
     return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.profile_order_increase))
 
 
@@ -92,13 +92,13 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The next finer mesh of an arm: elements of 4/3 of the order or, if this exceeds the maximum order,
     twice as many elements of 2/3 of the order.
     """
-    order = ceil(mesh.order * RESOLUTION.refinement_ratio)
-    if order <= RESOLUTION.max_order:
+    order = ceil(mesh.order * RESOLUTION_SETTINGS.refinement_ratio)
+    if order <= RESOLUTION_SETTINGS.max_order:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
         edges += _edges(rod, start, stop, 2)
-    return ArmMesh(tuple(edges), ceil(RESOLUTION.refinement_ratio / 2 * mesh.order))
+    return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * mesh.order))
 
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:

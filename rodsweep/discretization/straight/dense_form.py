@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ..elements.elements import ELEMENTS, Elements
+from ..elements.elements import ELEMENT_SETTINGS, Elements
 from .arm_pencil import ArmPencil
 from .pencil import Pencil, derivatives_at, fields_of_vectors, shear_force
 
@@ -76,8 +76,10 @@ def _inside(mesh: Elements, points: Array) -> Array:
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.by_element(points):
         e = first // mesh.order
-        place = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
+        position = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
         moved[inside] = np.clip(
-            place, mesh.edges[e] + ELEMENTS.end_distance, mesh.edges[e + 1] - ELEMENTS.end_distance
+            position,
+            mesh.edges[e] + ELEMENT_SETTINGS.end_distance,
+            mesh.edges[e + 1] - ELEMENT_SETTINGS.end_distance,
         )
     return moved

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..elements.elements import ELEMENTS
+from ..elements.elements import ELEMENT_SETTINGS
 from ..state_layout import PLANE_COMPONENTS
 
 Indices = NDArray[np.int_]
@@ -31,7 +31,7 @@ class ElementNumbering:
     is_unknown: NDArray[np.bool_]
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
     """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
     stresses and velocities that are unknowns.

@@ -22,7 +22,7 @@ from scipy.linalg.lapack import zgetrf, zgetrs
 from ...arrays import Array, Complex
 from ...model.balance import Values, ad, coad
 from ..elements.basis import differentiation
-from ..elements.elements import ELEMENTS
+from ..elements.elements import ELEMENT_SETTINGS
 from ..elements.quadrature import gauss_lobatto
 from ..state_layout import PLANE_COMPONENTS
 from .element_numbering import ElementNumbering, element_numbering
@@ -231,7 +231,7 @@ def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Compl
     return x
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _weighted_derivative(order: int) -> tuple[Array, Array]:
     """Returns (W D, W) on the element [-1, 1]. W: quadrature weights, (order + 1,). W D: diag(W) times the
     differentiation matrix, (order + 1, order + 1), which is the same for elements of every length.

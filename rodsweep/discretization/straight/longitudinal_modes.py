@@ -29,7 +29,7 @@ from .arm_resolution import arm_elements
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LongitudinalSettings:
+class LongitudinalModeSettings:
     """Settings for the mesh of longitudinal modes, and for error estimates from two orders."""
 
     mesh_accuracy: float = 1e-12
@@ -49,7 +49,7 @@ class LongitudinalSettings:
     """Number of quadrature points per element for displacements, minus the number for strains."""
 
 
-LONGITUDINAL_MODES = LongitudinalSettings()
+LONGITUDINAL_MODE_SETTINGS = LongitudinalModeSettings()
 
 
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
@@ -59,17 +59,20 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     """
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODES.mesh_accuracy)
+    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.elements))
     found = _rates(rod, mesh, order, modes)
     while True:
-        order += LONGITUDINAL_MODES.order_increase
+        order += LONGITUDINAL_MODE_SETTINGS.order_increase
         # No a-priori bound of the error holds for every profile, so the error is estimated from a second
         # order.
         finer = _rates(rod, mesh, order, modes)
         error = np.abs(finer / found - 1)
-        if error.max() <= LONGITUDINAL_MODES.converged_difference or order >= LONGITUDINAL_MODES.max_order:
-            return finer, error + LONGITUDINAL_MODES.rounding
+        if (
+            error.max() <= LONGITUDINAL_MODE_SETTINGS.converged_difference
+            or order >= LONGITUDINAL_MODE_SETTINGS.max_order
+        ):
+            return finer, error + LONGITUDINAL_MODE_SETTINGS.rounding
         found = finer
 
 
@@ -86,7 +89,7 @@ def _displacements(rod: Rod, edges: Array, order: int) -> Array:
     edges: edges of the elements, (elements + 1,). order: number of strains per element.
     """
     strains, of_strains = gauss(order)
-    points, weights = gauss(order + LONGITUDINAL_MODES.extra_points)
+    points, weights = gauss(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
     halves = np.diff(edges)[:, None] / 2
     middles = (edges[1:] + edges[:-1])[:, None] / 2
     here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))

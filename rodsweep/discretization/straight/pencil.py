@@ -29,7 +29,7 @@ from ...arrays import Array, Complex
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Rod
 from ..elements.basis import differentiation, interpolation
-from ..elements.elements import ELEMENTS, Elements, equal_edges
+from ..elements.elements import ELEMENT_SETTINGS, Elements, equal_edges
 from ..elements.quadrature import gauss, gauss_lobatto
 
 
@@ -47,7 +47,7 @@ class PencilNormSettings(CompiledSettings):
     nodes."""
 
 
-PENCIL_NORM = PencilNormSettings()
+PENCIL_NORM_SETTINGS = PencilNormSettings()
 
 
 class PencilMatrices(NamedTuple):
@@ -139,9 +139,9 @@ def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]
 
 def angle_weight(gamma3: float) -> float:
     """Weight of theta in the norm of the pencil: sqrt(gamma3), but at least
-    `PENCIL_NORM.min_angle_weight`.
+    `PENCIL_NORM_SETTINGS.min_angle_weight`.
     """
-    return max(sqrt(gamma3), PENCIL_NORM.min_angle_weight)
+    return max(sqrt(gamma3), PENCIL_NORM_SETTINGS.min_angle_weight)
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
@@ -150,7 +150,7 @@ def tip_scale(y: Complex, theta: Complex) -> Complex:
     y, theta: the modes at all nodes, (nodes + 1, k).
     """
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > PENCIL_NORM.min_tip_displacement * size, 1 / y[-1], np.nan + 0j)
+    return np.where(np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
@@ -158,7 +158,7 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     nodes: (points, k).
     """
     nodes, weights = gauss(mesh.order)
-    mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM.shear_weight**2
+    mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
     for first, inside, local in mesh.by_element(points):
@@ -179,7 +179,7 @@ def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
     return result
 
 
-@lru_cache(maxsize=ELEMENTS.max_pencils)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
 def assemble_pencil(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order
@@ -211,7 +211,9 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
         ]
     # The follower force at the tip, -F a(1) theta(1).
     entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
-    masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM.shear_weight**2])
+    masses = np.concatenate(
+        [mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM_SETTINGS.shear_weight**2]
+    )
     return _gather(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
 
 

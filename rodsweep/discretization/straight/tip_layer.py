@@ -33,11 +33,11 @@ class TipLayerSettings:
     estimated."""
 
 
-TIP_LAYER = TipLayerSettings()
+TIP_LAYER_SETTINGS = TipLayerSettings()
 TIP_LAYER_ORDER = 16
 """Order of the elements of the tip layer. This order resolves exp(kappa u) over a length of
-`TIP_LAYER.max_length`/kappa to rounding, because T is returned without an error estimate. Order 8 would cause
-an error of 4e-11 in a numerical abscissa."""
+`TIP_LAYER_SETTINGS.max_length`/kappa to rounding, because T is returned without an error estimate. Order 8
+would cause an error of 4e-11 in a numerical abscissa."""
 
 
 def tip_layer_ratio(rod: Rod) -> float:
@@ -85,11 +85,13 @@ def _edges(rod: Rod) -> Array:
     """
     breaks = rod.build.breaks
     pieces = zip(breaks, breaks[1:], strict=False)
-    middles = np.concatenate([np.linspace(a, b, TIP_LAYER.samples_per_piece + 2)[1:-1] for a, b in pieces])
+    middles = np.concatenate(
+        [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in pieces]
+    )
     local = rod.local(middles)
     waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
-    count = min(max(1, ceil(waves / TIP_LAYER.max_length)), TIP_LAYER.max_equal_elements)
+    count = min(max(1, ceil(waves / TIP_LAYER_SETTINGS.max_length)), TIP_LAYER_SETTINGS.max_equal_elements)
     equal = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER.max_length / count, 1.0))))
+    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER_SETTINGS.max_length / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
     return np.unique(np.concatenate([breaks, equal, towards_tip]))

@@ -7,7 +7,7 @@ the jumps of the material.
 from functools import lru_cache
 
 from ...model.rod import Rod
-from ..elements.elements import ELEMENTS
+from ..elements.elements import ELEMENT_SETTINGS
 from ..elements.resolution import Resolution, finer_resolution, resolution_for
 from .arm_pencil import ArmPencil
 from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh
@@ -38,6 +38,6 @@ def pencil_on(mesh: AnyMesh) -> AnyPencil:
     return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 
-@lru_cache(maxsize=ELEMENTS.max_pencils)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
 def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
     return ArmPencil(mesh)

@@ -159,8 +159,8 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
     for k in range(len(c.unknown_velocities)):
         a = c.unknown_velocities[k]
         for i in range(size):
-            place = velocity_index(k, i, g.dimension, size - 1)
-            out[place] = m.weights[i] * (force[a, i] - c.drag[a, i] * x[place])
+            index = velocity_index(k, i, g.dimension, size - 1)
+            out[index] = m.weights[i] * (force[a, i] - c.drag[a, i] * x[index])
 
 
 @compiled

@@ -27,7 +27,7 @@ class StressFormSettings:
     """
 
 
-STRESS_FORM = StressFormSettings()
+STRESS_FORM_SETTINGS = StressFormSettings()
 
 OMEGA_COMPONENT = (2,)
 """Index of the angular velocity Omega among the components of V, as a tuple."""
@@ -45,7 +45,7 @@ class StressForm(RodOnMesh):
     @property
     def omega_unknown(self) -> bool:
         """Whether the angular velocity Omega is an unknown."""
-        return self.rod.least_rotational_drag < STRESS_FORM.min_eliminated_drag
+        return self.rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_drag
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:

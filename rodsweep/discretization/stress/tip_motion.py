@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
-from ..elements.elements import ELEMENTS, Elements
+from ..elements.elements import ELEMENT_SETTINGS, Elements
 from ..elements.mesh import reconstruction
 
 
@@ -30,7 +30,7 @@ class TipMatrices(NamedTuple):
     lengths: Array
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
     m = reconstruction(grid.order)

@@ -130,10 +130,10 @@ class BeatingPicture:
         self.motion.data = source_of(x, y)
         self.path.data = columns(x=x[:, -1], y=y[:, -1])
         self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
-        place = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
+        position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = END_WORDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
-        self.card.entitle(f"Let go at ({place}) {self.length.label}: {end}{part}")
+        self.card.entitle(f"Let go at ({position}) {self.length.label}: {end}{part}")
 
     def remove_dragged_shape(self) -> None:
         """Removes the shape of a dragged arm and its motion after the release from the picture."""

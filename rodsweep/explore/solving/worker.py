@@ -65,10 +65,10 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
     cancellation: handler of SIGINT. send: called with replies of the outcome "progress" during a long solve.
     """
 
-    def send_progress(place: SolvePosition) -> None:
+    def send_progress(position: SolvePosition) -> None:
         cancellation.is_sending = True
         try:
-            send(Reply("progress", place._asdict(), time.perf_counter() - started))
+            send(Reply("progress", position._asdict(), time.perf_counter() - started))
         finally:
             cancellation.is_sending = False
 

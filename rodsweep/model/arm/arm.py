@@ -212,8 +212,8 @@ class SlenderArm:
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
         """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
-        place = self.drags.index(drag)
-        return tuple(self.shape.drags(each, self.si.viscosity)[place] for each in self.shape.stations)
+        index = self.drags.index(drag)
+        return tuple(self.shape.drags(each, self.si.viscosity)[index] for each in self.shape.stations)
 
     @property
     def own_drag(self) -> Drag:

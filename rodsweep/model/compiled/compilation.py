@@ -25,11 +25,11 @@ PACKAGE = Path(__file__).parents[2]
 def cache_directories() -> list[Path]:
     """Directories for compiled code, in order of preference: a directory under NUMBA_CACHE_DIR if this is
     set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
-    if place := os.environ.get("NUMBA_CACHE_DIR"):
-        return [Path(place) / "rodsweep"]
+    if folder := os.environ.get("NUMBA_CACHE_DIR"):
+        return [Path(folder) / "rodsweep"]
     caches = [PACKAGE / "__pycache__"]
-    if place := os.environ.get("XDG_CACHE_HOME"):
-        caches.append(Path(place) / "rodsweep")
+    if folder := os.environ.get("XDG_CACHE_HOME"):
+        caches.append(Path(folder) / "rodsweep")
     else:
         with suppress(RuntimeError):  # the user has no home directory
             caches.append(Path.home() / ".cache" / "rodsweep")

@@ -137,8 +137,8 @@ class _Writer(ast.NodeVisitor):
         self.shared.lists.add(target.id)
         loop = value.generators[0]
         written = []
-        for place, item in enumerate(self._value(loop.iter)):
-            name = ast.copy_location(ast.Name(f"{target.id}_{place}", ast.Store()), target)
+        for index, item in enumerate(self._value(loop.iter)):
+            name = ast.copy_location(ast.Name(f"{target.id}_{index}", ast.Store()), target)
             one = ast.copy_location(ast.Assign([name], value.elt), node)
             made = self._with(loop.target, item).visit(one)
             written += made if isinstance(made, list) else [made]

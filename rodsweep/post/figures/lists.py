@@ -31,7 +31,7 @@ def as_grid(view: View) -> View:
     count = len(view.variables["point"])
     values = {name: np.unique(column, return_inverse=True) for name, column in columns.items()}
     sizes = tuple(len(unique) for unique, _ in values.values())
-    places = np.ravel_multi_index([place.ravel() for _, place in values.values()], sizes)
+    places = np.ravel_multi_index([index.ravel() for _, index in values.values()], sizes)
     is_complete = np.prod(sizes) == count and len(np.unique(places)) == count
     if not is_complete or sum(size > 1 for size in sizes) > 2:
         return view

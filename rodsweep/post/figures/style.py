@@ -193,10 +193,10 @@ def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
     """Labels the axes of a panel in a grid of panels that share axes. Only panels at the left and at the
     bottom have labels.
     """
-    place = axes.get_subplotspec()
-    if place is None or place.is_last_row():
+    grid_cell = axes.get_subplotspec()
+    if grid_cell is None or grid_cell.is_last_row():
         axes.set_xlabel(xlabel)
-    if place is None or place.is_first_col():
+    if grid_cell is None or grid_cell.is_first_col():
         axes.set_ylabel(ylabel)
 
 

@@ -13,7 +13,7 @@ LIGHTENING_STEP_COUNT = 20
 
 def dark_page_colour(colour: str) -> str:
     """Colour that replaces `colour` on the dark page. Colours are texts of six hexadecimal digits."""
-    parts = [int(colour[place : place + 2], 16) for place in (0, 2, 4)]
+    parts = [int(colour[start : start + 2], 16) for start in (0, 2, 4)]
     if len(set(parts)) == 1:
         parts = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * part / 255) for part in parts]
     else:

@@ -50,13 +50,13 @@ def pictures_of(views: Sequence[View], shapes: Shapes | None, numbers: "count[in
     refusal = ""
     for kind in (None, *kinds):
         kept: list[Figure] = []
-        wanted = shapes if kind is None else None
+        drawn_shapes = shapes if kind is None else None
 
         def keep(figure: Figure, kept: list[Figure] = kept) -> None:
             kept.append(figure)
 
         try:
-            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=wanted, keep=keep)
+            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, keep=keep)
         except InputError as error:
             refusal = refusal or str(error)
             continue

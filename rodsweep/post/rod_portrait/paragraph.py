@@ -54,15 +54,17 @@ def _rod(results: RodResults) -> Iterator[str]:
     end = float(results.views["thresholds"].of_point(0)["F_end"])
     units = results.units
     reached = units.force_at(end)
-    wanted = units.force_at(results.F_max)
+    requested_force = units.force_at(results.F_max)
     kind = results.rod.kind
     searched = f"was searched up to {reached}"
     if not isfinite(end):
         searched = "could not be searched"
-    elif reached != wanted:
+    elif reached != requested_force:
         early = results.views["thresholds"].with_status("ended_early").all()
         ends = "the search ended early: the list was full, or modes could not be counted"
-        searched += f", not to {wanted}: {ends if early else f'just above {reached} the {kind} is crushed'}"
+        searched += (
+            f", not to {requested_force}: {ends if early else f'just above {reached} the {kind} is crushed'}"
+        )
     yield f"The {kind} with {results.rod.words} {searched}."
     if results.rod.arm:
         yield from _arm(results)

@@ -83,8 +83,8 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
     if not isfinite(error):
         return f"{value:.{RANGE_DIGITS}g}", ""
     if error >= abs(value):  # not even the first digit is known
-        place = floor(log10(error))
-        text = f"{round(value, -place) + 0.0:.{max(-place, 0)}f}"
+        digit = floor(log10(error))
+        text = f"{round(value, -digit) + 0.0:.{max(-digit, 0)}f}"
         return text, error_text(error + abs(float(text) - value))
     text, stated = stated_error(value, error)
     return text, error_text(stated)

@@ -140,9 +140,9 @@ def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...
     """Raises InputError for the first name in `columns` that is not in `known` or occurs twice. table: name
     of the table, for the message; empty for all tables.
     """
-    for place, name in enumerate(columns):
+    for index, name in enumerate(columns):
         if name not in known:
             what = f"the table {table} has" if table else "its tables have"
             raise InputError(f"{path}: {what} no column {name!r}; {hint_of(name, known, THERE_ARE)}")
-        if name in columns[:place]:
+        if name in columns[:index]:
             raise InputError(f"{path}: the column {name} is named twice")

@@ -119,10 +119,10 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
             raise ValueError(f"{shown} is not a variable")
         if data.is_virtual or data.external:
             raise ValueError(f"{shown} lies in another file")
-        place = h5py.h5o.get_info(data.id).addr
-        if place in places:
+        address = h5py.h5o.get_info(data.id).addr
+        if address in places:
             raise ValueError(f"{shown} is another name of a variable")
-        places.add(place)
+        places.add(address)
         if not is_user_added(name):
             yield name, data
 

@@ -78,15 +78,15 @@ def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) 
     """Yields records, (n,), of selected points; blocks: (flat index of the first point, mask of points)."""
     offsets = _offsets(path, layout)
     with path.open("rb") as stream:
-        for first, wanted in blocks:
-            if wanted.any():
-                records = np.empty(wanted.sum(), layout.record)
-                records["index"] = first + np.flatnonzero(wanted)
+        for first, selected in blocks:
+            if selected.any():
+                records = np.empty(selected.sum(), layout.record)
+                records["index"] = first + np.flatnonzero(selected)
                 for name, offset in offsets.items():
                     kind = layout.record[name]
                     stream.seek(offset + first * kind.itemsize)
-                    values = np.fromfile(stream, kind.base, len(wanted) * prod(kind.shape))
-                    records[name] = values.reshape(len(wanted), *kind.shape)[wanted]
+                    values = np.fromfile(stream, kind.base, len(selected) * prod(kind.shape))
+                    records[name] = values.reshape(len(selected), *kind.shape)[selected]
                 yield records
 
 

@@ -110,7 +110,7 @@ def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *ext
 
     The fill value is -1 if a word has the number -1, which means a missing value; otherwise 0.
     """
-    flags = tuple(each if isinstance(each, tuple) else (place, each) for place, each in enumerate(words))
+    flags = tuple(each if isinstance(each, tuple) else (index, each) for index, each in enumerate(words))
     fill = -1 if any(value == -1 for value, _ in flags) else 0
     return Variable(name, "|i1", fill, "1", long_name, extra, flags)
 

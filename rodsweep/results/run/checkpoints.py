@@ -1,8 +1,8 @@
-"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of units
+"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of items
 (work items for variables that depend on all points).
 
 Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A damaged
-file, or a file of another run, is ignored: the chain starts again, the unit is solved again.
+file, or a file of another run, is ignored: the chain starts again, the item is solved again.
 """
 
 import io
@@ -18,13 +18,13 @@ from .journal import drop_files
 
 CHECKPOINTS = "chain-*"
 """Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
-UNIT_RESULTS = "unit-*"
-"""Pattern of the file names of results of units, including files that a kill left unfinished."""
+ITEM_RESULTS = "unit-*"
+"""Pattern of the file names of results of items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 6\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 1\n"
-"""First line of the file of a unit's result; the number grows when units or results change in meaning."""
+"""First line of the file of an item's result; the number grows when items or results change in meaning."""
 CHECKSUM_BYTES = 4
 """Length of the checksum at the end of a checkpoint file, in bytes."""
 Arrays = dict[str, np.ndarray]
@@ -107,27 +107,27 @@ class Checkpoints(KeptArrays):
         self._path(chain).unlink(missing_ok=True)
 
 
-class UnitResults(KeptArrays):
-    """Store of the results of finished units, until the variables that depend on all units are computed."""
+class ItemResults(KeptArrays):
+    """Store of the results of finished items, until the variables that depend on all items are computed."""
 
-    pattern = UNIT_RESULTS
+    pattern = ITEM_RESULTS
 
     def __init__(self, directory: Path, fingerprint: str):
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
-    def write(self, unit: int, arrays: Arrays) -> None:
-        """Stores the result of the unit number `unit`, as arrays by name."""
-        self.put(unit, arrays)
+    def write(self, item: int, arrays: Arrays) -> None:
+        """Stores the result of the item number `item`, as arrays by name."""
+        self.put(item, arrays)
 
     def read(self) -> dict[int, Arrays]:
-        """Results of all units with an intact file, by number of the unit."""
-        names = (path.name.removeprefix("unit-") for path in self.directory.glob(UNIT_RESULTS))
+        """Results of all items with an intact file, by number of the item."""
+        names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULTS))
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
-        return {unit: arrays for unit, arrays in found.items() if arrays is not None}
+        return {item: arrays for item, arrays in found.items() if arrays is not None}
 
     def drop(self) -> None:
-        """Deletes the results of all units."""
-        drop_files(self.directory, UNIT_RESULTS)
+        """Deletes the results of all items."""
+        drop_files(self.directory, ITEM_RESULTS)
 
 
 def _checksum(content: bytes) -> bytes:

@@ -30,7 +30,7 @@ class SmallEigenvalueSettings(CompiledSettings):
     ranges: ClassVar = {"work": (2, math.inf)}
 
 
-SMALL_EIGENVALUES = SmallEigenvalueSettings()
+SMALL_EIGENVALUE_SETTINGS = SmallEigenvalueSettings()
 
 
 @compiled
@@ -40,7 +40,7 @@ def eigenvalues(A: Array) -> Complex:
     n = len(A)
     a = A.copy()
     parts = np.empty((2, n))
-    work = np.empty(SMALL_EIGENVALUES.work * n)
+    work = np.empty(SMALL_EIGENVALUE_SETTINGS.work * n)
     extents = np.array([n, len(work), 0], np.int32)
     none = np.full(1, 78, np.uint8)  # "N"
     no = none.ctypes.data

@@ -109,8 +109,8 @@ class HopfBranchStart:
     def period_error(self) -> float:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
-        place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
-        return abs(self.slope) * place / self.crossing.frequency + BRANCH_START.frequency_rounding
+        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
+        return abs(self.slope) * parameter_error / self.crossing.frequency + BRANCH_START.frequency_rounding
 
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,

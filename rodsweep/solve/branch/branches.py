@@ -25,7 +25,7 @@ from .symmetry import SymmetryBreaking, symmetry_breakings_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BranchesSettings:
+class BranchSettings:
     """Settings for all branches of a rod."""
 
     crushing_margin: float = 1e-4
@@ -37,7 +37,7 @@ class BranchesSettings:
     """Maximum number of cycles on all branches of one row of a phase diagram."""
 
 
-BRANCHES = BranchesSettings()
+BRANCH_SETTINGS = BranchSettings()
 
 
 class BranchStatus(PointStatus):
@@ -156,15 +156,14 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 
 
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """(smallest value, largest value of the parameter without crushing, index of the end at which the rod is
-    crushed, -1 if the rod is crushed at neither end)."""
+    """(smallest, largest parameter without crushing, index of the end that is crushed or -1 for no end)."""
     low = request.start
     high = request.stop
     share = rod.build.relative_crushing_force(rod.taper)
-    if request.along == "F" and high > (1 - BRANCHES.crushing_margin) * share * rod.k1:
-        return low, (1 - BRANCHES.crushing_margin) * share * rod.k1, 1
-    if request.along == "k1" and low < rod.F / share * (1 + BRANCHES.crushing_margin):
-        return rod.F / share * (1 + BRANCHES.crushing_margin), high, 0
+    if request.along == "F" and high > (1 - BRANCH_SETTINGS.crushing_margin) * share * rod.k1:
+        return low, (1 - BRANCH_SETTINGS.crushing_margin) * share * rod.k1, 1
+    if request.along == "k1" and low < rod.F / share * (1 + BRANCH_SETTINGS.crushing_margin):
+        return rod.F / share * (1 + BRANCH_SETTINGS.crushing_margin), high, 0
     if request.along == "taper":
         thinnest = _smallest_uncrushed_taper(rod, low, high)
         return thinnest, high, 0 if thinnest > low else -1
@@ -172,15 +171,16 @@ def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
 
 
 def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
-    """Smallest taper between `low` and `high` at which the force does not crush the tip; `high` if the force
-    crushes every tip."""
+    """Smallest taper in [low, high] whose tip the force does not crush; `high` if every tip is crushed."""
 
     def holds(taper: float) -> bool:
-        return (1 - BRANCHES.crushing_margin) * rod.build.relative_crushing_force(taper) * rod.k1 > rod.F
+        return (1 - BRANCH_SETTINGS.crushing_margin) * rod.build.relative_crushing_force(
+            taper
+        ) * rod.k1 > rod.F
 
     if holds(low) or not holds(high):
         return low if holds(low) else high
-    while high - low > BRANCHES.taper_accuracy * high:
+    while high - low > BRANCH_SETTINGS.taper_accuracy * high:
         middle = (low + high) / 2
         low, high = (low, middle) if holds(middle) else (middle, high)
     return high

@@ -19,7 +19,7 @@ from ..changes.thresholds import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..status import PointStatus
 from .branch_curve import BranchCurve
-from .branches import BRANCHES, BranchesOfRod, BranchRequest, BranchStatus, solve_branches
+from .branches import BRANCH_SETTINGS, BranchesOfRod, BranchRequest, BranchStatus, solve_branches
 from .special.point import EndReason, SpecialPoint
 
 
@@ -119,7 +119,7 @@ def row_branches(
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,
-        cycles=BRANCHES.max_row_cycles,
+        cycles=BRANCH_SETTINGS.max_row_cycles,
         special=special,
     )
     return solve_branches(rod, asked, workspace)

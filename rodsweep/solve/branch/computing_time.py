@@ -21,7 +21,7 @@ class ComputingTimeSettings:
     """Exponent of the length D of a branch in the computing time of this branch."""
 
 
-COMPUTING_TIME = ComputingTimeSettings()
+COMPUTING_TIME_SETTINGS = ComputingTimeSettings()
 
 
 ParameterRange = tuple[float, float]
@@ -33,13 +33,13 @@ def fraction_done(start: float, present: float, expected_end: float) -> float:
     `present`. start, expected_end: parameter coordinates at the start of the branch and at its expected
     end."""
     way = (present - start) / (expected_end - start) if expected_end != start else 1.0
-    return min(max(way, 0.0), 1.0) ** COMPUTING_TIME.distance_exponent
+    return min(max(way, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.distance_exponent
 
 
 def fractions_before_branches(starts: Sequence[float], ends: ParameterRange) -> list[float]:
     """Estimated fractions of the total computing time of all branches that have passed before each branch,
     and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
     branches start. ends: range of the parameter coordinate."""
-    works = [max(abs(end - at) for end in ends) ** COMPUTING_TIME.length_exponent for at in starts]
+    works = [max(abs(end - at) for end in ends) ** COMPUTING_TIME_SETTINGS.length_exponent for at in starts]
     done = [sum(works[:number]) for number in range(len(works) + 1)]
     return [work / done[-1] if done[-1] else 1.0 for work in done]

@@ -15,11 +15,11 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.exponents import EXPONENTS
+from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
 from ..cycle.accuracy.calibration_settings import CALIBRATION
-from ..cycle.accuracy.cycle_errors import CYCLE_ERRORS, CycleErrors
-from ..cycle.accuracy.finer_meshes import COMPARISON, finer_meshes
+from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
+from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.along_parameter import carried_change
 from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
@@ -54,7 +54,7 @@ class BranchErrorSettings:
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 
 
-BRANCH_ERRORS = BranchErrorSettings()
+BRANCH_ERROR_SETTINGS = BranchErrorSettings()
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ class BranchDerivatives:
         way = np.copysign(1.0, off * self.parameter_slope)
         # At a fold `off` is quadratic in the length s: rate s + curvature s^2/2 = off. This is an upper bound
         # of the root.
-        return float(way * 2 * (abs(off) / max(abs(self.curvature), EXPONENTS.least_divisor)) ** 0.5)
+        return float(way * 2 * (abs(off) / max(abs(self.curvature), EXPONENT_SETTINGS.least_divisor)) ** 0.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +113,13 @@ class BranchCalibration:
         the relative accuracy."""
         return max(
             CALIBRATION.safety_factor * float(self.parameter_errors.sum()),
-            CYCLE_ERRORS.min_error_share * accuracy,
-            CYCLE_ERRORS.rounding_error,
+            CYCLE_ERROR_SETTINGS.min_error_share * accuracy,
+            CYCLE_ERROR_SETTINGS.rounding_error,
         )
 
     def largest(self, accuracy: float) -> float:
         """The error that must not exceed the relative accuracy: the larger of the parameter error and the
-        largest error at equal parameter, divided by max(1, sensitivity/`BRANCH_ERRORS.max_sensitivity`)."""
+        largest error at equal parameter, divided by max(1, sensitivity/max_sensitivity of the settings)."""
         return self._limiting.errors(accuracy).largest
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
@@ -135,7 +135,7 @@ class BranchCalibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in `largest`, and the
         parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
-        steep = max(1.0, self.sensitivity / BRANCH_ERRORS.max_sensitivity)
+        steep = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
         parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
@@ -174,9 +174,9 @@ def _interpolated(one: Array, other: Array, share: float) -> Array:
     `share` of the distance from `one`; times `interpolation_factor`, but at most the larger of the two
     errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([one, other], BRANCH_ERRORS.min_error))
+    logarithms = np.log(np.maximum([one, other], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(BRANCH_ERRORS.interpolation_factor * means, np.maximum(one, other))
+    bounded: Array = np.minimum(BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(one, other))
     return bounded
 
 
@@ -195,7 +195,10 @@ def measured_errors(
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
         fine = condition.on_mesh(
-            target, found, BRANCH_ERRORS.newton_tolerance_share * accuracy, COMPARISON.matrix_distance
+            target,
+            found,
+            BRANCH_ERROR_SETTINGS.newton_tolerance_share * accuracy,
+            FINER_MESH_SETTINGS.matrix_distance,
         )
         part[:] = _difference(rough, multipliers, fine, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
@@ -226,7 +229,7 @@ def _difference(
     by_parameter = abs(derivatives.parameter_slope)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
     apart = abs(off * derivatives.ahead[0] - deflection * derivatives.parameter_slope)
-    own = apart / max(by_deflection, BRANCH_ERRORS.min_deflection_share * by_parameter)
+    own = apart / max(by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
@@ -235,10 +238,12 @@ def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
     ahead = CyclePath(
-        moved_orbit(orbit, derivatives.scale.name, BRANCH_ERRORS.sensitivity_step * derivatives.tangent)
+        moved_orbit(
+            orbit, derivatives.scale.name, BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
+        )
     )
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
-    return abs((other - y) / (BRANCH_ERRORS.sensitivity_step * y)) / max(
-        abs(derivatives.parameter_slope), EXPONENTS.least_divisor
+    return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
+        abs(derivatives.parameter_slope), EXPONENT_SETTINGS.least_divisor
     )

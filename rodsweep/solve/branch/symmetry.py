@@ -103,9 +103,9 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
     """The symmetry breakings whose cycle is known, among the special points of all branches. branches:
     special points of each branch."""
     return [
-        SymmetryBreaking(number, place, point)
+        SymmetryBreaking(number, index, point)
         for number, special in enumerate(branches, 1)
-        for place, point in enumerate(special)
+        for index, point in enumerate(special)
         if point.kind == SpecialKind.symmetry_breaking and point.orbit is not None
     ]
 
@@ -240,11 +240,11 @@ def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
-        place = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.coordinate - place)
-        tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(place)
+        symmetric_at = symmetric.form.rod.coordinate(start.scale.name)
+        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
+        tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(symmetric_at)
         period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period
-        if abs(at - place) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
+        if abs(at - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which
     return -1

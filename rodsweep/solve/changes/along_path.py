@@ -23,17 +23,17 @@ from .unstable_modes import ChangeKind, Crossing, ModeCounter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TransitionSettings:
+class ThresholdSettings:
     """Settings of the search for all thresholds along a path."""
 
-    anchor_distance: float = 1e-4
+    anchor_shift: float = 1e-4
     """If a pair that crosses the imaginary axis must lead, but another eigenvalue leads in the list, anchors
     are added at this distance on both sides of the crossing, as a fraction of the path's length."""
     merge_distance: float = 1e-5
     """Undecided boxes of the covering are merged if the relative gap between them is at most this."""
 
 
-TRANSITIONS = TransitionSettings()
+THRESHOLD_SETTINGS = ThresholdSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,7 +127,7 @@ def transitions(
         missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
         if not missed:
             break
-        near = [(p + side * TRANSITIONS.anchor_distance * (high - low)) for p in missed for side in (-1, 1)]
+        near = [p + side * THRESHOLD_SETTINGS.anchor_shift * (high - low) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
         counts.doubts.append("the leading eigenvalue is not the pair that crosses the imaginary axis")
@@ -243,7 +243,7 @@ def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter covered by the undecided boxes `left`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in left):
-        if gaps and a <= gaps[-1][1] * (1 + TRANSITIONS.merge_distance):
+        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.merge_distance):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:
             gaps.append((a, b))

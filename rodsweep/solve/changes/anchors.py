@@ -24,7 +24,7 @@ class AnchorSettings:
     fraction, with the difference that the slopes give by the trapezoidal rule."""
 
 
-ANCHORS = AnchorSettings()
+ANCHOR_SETTINGS = AnchorSettings()
 
 
 @dataclass(frozen=True)
@@ -124,8 +124,8 @@ def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
         lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < ANCHORS.explained * smallest:
+        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.explained * smallest:
             return share, True
-        if missed > ANCHORS.explained * max(smallest, abs(b[0] - a[0])):
+        if missed > ANCHOR_SETTINGS.explained * max(smallest, abs(b[0] - a[0])):
             return 0.5, False
     return 0.0, False

@@ -30,7 +30,7 @@ equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LeaderSettings:
+class LeadingEigenvalueSettings:
     """Settings of the search for exchanges of the leading eigenvalue: anchors, and Newton's method between
     anchors."""
 
@@ -61,7 +61,7 @@ class LeaderSettings:
     estimate."""
 
 
-LEADER = LeaderSettings()
+LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
 
 
 class LeaderExchange(NamedTuple):
@@ -96,7 +96,7 @@ class Tracer:
         return self.anchors[p]
 
     def _solve(self, p: float) -> Anchor:
-        request = SpectrumRequest(ANCHOR_MODES, LEADER.accuracy, self.certify)
+        request = SpectrumRequest(ANCHOR_MODES, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
@@ -108,7 +108,8 @@ class Tracer:
             # stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
             if abs(polished - guess) <= max(
-                LEADER.same_errors * found.error_estimate[i], LEADER.same * abs(guess)
+                LEADING_EIGENVALUE_SETTINGS.same_errors * found.error_estimate[i],
+                LEADING_EIGENVALUE_SETTINGS.same * abs(guess),
             ):
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
@@ -138,7 +139,11 @@ class Tracer:
         share = 0.5
         if left.oscillates == right.oscillates:
             share, hides = next_anchor(left, right)
-            smallest = LEADER.smallest_hiding_interval if hides else LEADER.smallest_interval
+            smallest = (
+                LEADING_EIGENVALUE_SETTINGS.smallest_hiding_interval
+                if hides
+                else LEADING_EIGENVALUE_SETTINGS.smallest_interval
+            )
             if share == 0.0:
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
@@ -149,7 +154,7 @@ class Tracer:
             change = self._between(left, right)
             if change is not None:
                 return [change]
-            if b - a <= LEADER.smallest_step * max(abs(a), abs(b)):
+            if b - a <= LEADING_EIGENVALUE_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
@@ -211,7 +216,7 @@ class Tracer:
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
         w_real = self._carried(complex(real.w[0]), real.p, p)
         w_pair = self._carried(complex(pair.w[0]), pair.p, p)
-        for _ in range(LEADER.max_overtaking_steps):
+        for _ in range(LEADING_EIGENVALUE_SETTINGS.max_overtaking_steps):
             w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
             w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
             slope = s_real.real - s_pair.real
@@ -219,11 +224,11 @@ class Tracer:
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
             step = -(w_real.real - w_pair.real) / slope
-            error = (e_real + e_pair) / abs(slope) + LEADER.rounding * abs(p)
+            error = (e_real + e_pair) / abs(slope) + LEADING_EIGENVALUE_SETTINGS.rounding * abs(p)
             p += step
             if not ends[0] <= p <= ends[1]:
                 return None
-            if abs(step) <= LEADER.converged * error:
+            if abs(step) <= LEADING_EIGENVALUE_SETTINGS.converged * error:
                 return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
             w_real = w_real + step * s_real
             w_pair = w_pair + step * s_pair
@@ -235,9 +240,9 @@ class Tracer:
         """The eigenvalue at p = `stop` that continues the eigenvalue w at p = `start`, followed in small
         steps by Newton's method on D."""
         p = start
-        for i in range(1, LEADER.carrying_steps + 1):
+        for i in range(1, LEADING_EIGENVALUE_SETTINGS.carrying_steps + 1):
             w, slope, _ = self.problem.eigenvalue(w, p)
-            following = start + (stop - start) * i / LEADER.carrying_steps
+            following = start + (stop - start) * i / LEADING_EIGENVALUE_SETTINGS.carrying_steps
             ahead = w + slope * (following - p)
             w = complex(ahead.real, 0.0) if w.imag == 0 else ahead
             p = following

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChangeCountSettings:
+class UnstableModeCountSettings:
     """Settings for the end of a search below the crushing force, and for counts of unstable modes between
     thresholds."""
 
@@ -34,13 +34,13 @@ class ChangeCountSettings:
     too close to the imaginary axis."""
 
 
-CHANGE_COUNTS = ChangeCountSettings()
+UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()
 
 
 def end_below_crushing(rod: Rod, F: float) -> float:
     """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
     force of `rod`."""
-    return min(F, rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin))
+    return min(F, rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin))
 
 
 class ChangeKind(IntEnum):
@@ -116,7 +116,7 @@ class ModeCounter:
         known = self.problem.counted_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
         if known is not None:
             return known
-        for share in CHANGE_COUNTS.places:
+        for share in UNSTABLE_MODE_COUNT_SETTINGS.places:
             number = self.count_at(a + share * (b - a))
             if number >= 0:
                 return number
@@ -139,18 +139,18 @@ class ModeCounter:
         """
         self.doubts = []
         out: list[Crossing] = []
-        place = ends[0]
+        start = ends[0]
         for crossing in ordered:
             kind = crossing.kind
             if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
-                unstable = self._between(place, crossing.at, unstable)
-                place = crossing.at
+                unstable = self._between(start, crossing.at, unstable)
+                start = crossing.at
                 if unstable >= 0:
                     unstable += 2 if kind == ChangeKind.hopf else -2
                 if kind == ChangeKind.hopf_reverse and unstable == 0:
                     kind = ChangeKind.restabilization
             out.append(replace(crossing, kind=kind, unstable_after=unstable))
-        return tuple(out), self._between(place, ends[1], unstable)
+        return tuple(out), self._between(start, ends[1], unstable)
 
     def _between(self, a: float, b: float, unstable: int) -> int:
         """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count
@@ -162,7 +162,7 @@ class ModeCounter:
             a = max(gap[1] for gap in inside)
         elif not self.certify:
             return unstable
-        if b - a <= CHANGE_COUNTS.too_close * abs(b):
+        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.too_close * abs(b):
             return -1 if inside else unstable
         counted = self.count_between(a, b)
         if inside or unstable < 0:

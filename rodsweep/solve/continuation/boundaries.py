@@ -2,7 +2,7 @@
 once.
 
 The search does not depend on the kind of the curves or on the process that traces a curve. If the result of a
-unit of work (a part of a curve) is missing, the search stops and names this unit. The caller then repeats the
+work item (a part of a curve) is missing, the search stops and names this item. The caller then repeats the
 search with more results.
 """
 
@@ -21,8 +21,8 @@ class BoundaryProblem(Protocol[Curve]):
     def next_seed(self, left: Sequence[int]) -> int:
         """Index of the seed point from which the next curve is traced, one of the indices `left`."""
 
-    def missing_units(self, seed: int) -> list[int]:
-        """Numbers of the units of work (parts of a curve) whose results are missing for the curve through the
+    def missing_items(self, seed: int) -> list[int]:
+        """Numbers of the work items (parts of a curve) whose results are missing for the curve through the
         seed point `seed`."""
 
     def curve(self, seed: int) -> Curve | None:
@@ -51,7 +51,7 @@ class BoundarySearch(Generic[Curve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
-    each seed point from the nearest curve so far, by index. missing_units: numbers of the units of work whose
+    each seed point from the nearest curve so far, by index. missing_items: numbers of the work items whose
     missing results stopped the search. open_seeds: seed points that lie on no curve so far, except the point
     where the search stopped.
     """
@@ -59,12 +59,12 @@ class BoundarySearch(Generic[Curve]):
     tolerance: float
     distances: dict[int, float]
     curves: list[Curve] = field(default_factory=list)
-    missing_units: list[int] = field(default_factory=list)
+    missing_items: list[int] = field(default_factory=list)
     open_seeds: list[int] = field(default_factory=list)
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """All curves; valid if `missing_units` is empty."""
+        """All curves; valid if `missing_items` is empty."""
         found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
@@ -72,14 +72,14 @@ class BoundarySearch(Generic[Curve]):
 def trace_boundaries(
     problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
 ) -> BoundarySearch[Curve]:
-    """Traces curves until every seed point lies on a curve or was tried, or until the result of a unit of
+    """Traces curves until every seed point lies on a curve or was tried, or until the result of an item of
     work is missing. seeds: indices of the seed points. agree: `BoundarySearch.tolerance`."""
     search: BoundarySearch[Curve] = BoundarySearch(agree, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:
         seed = problem.next_seed(left)
-        search.missing_units = problem.missing_units(seed)
-        if search.missing_units:
+        search.missing_items = problem.missing_items(seed)
+        if search.missing_items:
             # Idle processes may trace curves from these seeds meanwhile. Some seeds may lie on the missing
             # curve.
             search.open_seeds = [i for i in left if i != seed]

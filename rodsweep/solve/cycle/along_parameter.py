@@ -30,7 +30,7 @@ from ..point import Unsolvable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PredictionSettings:
+class CyclePredictionSettings:
     """Settings for the polynomial prediction of cycles along one parameter."""
 
     max_prediction_distance: float = 0.3
@@ -46,7 +46,7 @@ class PredictionSettings:
     this; otherwise the tangent would make the prediction less accurate."""
 
 
-PREDICTION = PredictionSettings()
+CYCLE_PREDICTION_SETTINGS = CyclePredictionSettings()
 
 
 PARAMETER_STEPS = StepControl(
@@ -129,9 +129,9 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     previous orbit, or None. name: the varied parameter. Raises ValueError if the orbit has no tangent.
 
     A tangent is as inaccurate as the prediction of its orbit; the values of an orbit are far more accurate.
-    With PREDICTION.orbits_without_second_tangent or more earlier orbits, a second tangent makes the
-    prediction worse. Between two meshes, the values of an orbit differ more than the tangent, so only
-    tangents are used after a change of mesh.
+    With CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent or more earlier orbits, a second tangent
+    makes the prediction worse. Between two meshes, the values of an orbit differ more than the tangent, so
+    only tangents are used after a change of mesh.
     """
     orbit = found.orbit
     if found.matrix.tangent is None:
@@ -144,12 +144,12 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
-    older = np.flatnonzero(before.orders == 0)[: PREDICTION.max_earlier_orbits - 1]
+    older = np.flatnonzero(before.orders == 0)[: CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1]
     places = [0.0, -step, *(before.offsets[older] - step)]
     # All offsets shift by the step, because the newest orbit has the offset 0.
     data = [tangent, before.values, *before.data[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < PREDICTION.orbits_without_second_tangent:
+    if 1 + len(older) < CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent:
         places.append(-step)
         data.append(before.tangent)
         orders.append(1.0)
@@ -168,9 +168,9 @@ def orbit_near_prediction(
 ) -> ConvergedOrbit:
     """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to a
     relative tolerance; raises Unsolvable if the orbit is farther from `predicted` than
-    PREDICTION.max_prediction_distance."""
+    CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
-    if _distance(predicted, found) > PREDICTION.max_prediction_distance:
+    if _distance(predicted, found) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its prediction")
     return found
 
@@ -212,7 +212,7 @@ def orbit_in_steps(
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(
-            at_orbit(ahead.solution, PREDICTION.max_tangent_distance, name), predictor, name
+            at_orbit(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_tangent_distance, name), predictor, name
         )
         length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
     raise Unsolvable(

@@ -37,7 +37,7 @@ from .straight_rod import straight_rod
 from .transient.from_motion import form_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
-    RETURNS,
+    RETURN_SETTINGS,
     early_end,
     repetition,
     section_crossings,
@@ -126,7 +126,7 @@ class _MarchedMotion:
 
     def _settled(self, z: Array) -> _SettledMotion:
         """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
-        past: deque[Array] = deque(maxlen=RETURNS.max_returns_per_period + 1)
+        past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.mode.period / MARCHING.first_steps_per_period
         last = nan
@@ -146,7 +146,7 @@ class _MarchedMotion:
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
-            if self.mode.w.real < 0 and np.linalg.norm(z) < RETURNS.straight_size:
+            if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING.returns_per_test:
                 continue

@@ -24,7 +24,7 @@ from ..orbit.newton import at_orbit, newton
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
-from ..spectrum.candidates import CANDIDATES
+from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
 from .along_parameter import orbit_in_steps, predictor_from
 from .straight_rod import straight_rod
@@ -202,7 +202,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START.max_direct_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
-    if transverse_problem(form.rod).count(-CANDIDATES.last_line_distance * abs(w)).number != 2:
+    if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second pair of modes may be unstable, so the normal form is not valid")
     return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
 

@@ -51,9 +51,9 @@ class MultiplierListSettings:
     period."""
 
 
-MULTIPLIER_LIST = MultiplierListSettings()
+MULTIPLIER_LIST_SETTINGS = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Entry of the list for a missing multiplier, or a modulus below `MULTIPLIER_LIST.min_modulus`."""
+"""Entry of the list for a missing multiplier, or a modulus below `MULTIPLIER_LIST_SETTINGS.min_modulus`."""
 
 
 def solve_cycle(
@@ -231,8 +231,8 @@ def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> C
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome `cycle` with the stored multipliers of the solved cycle `found`, and the error of the
     multipliers."""
-    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST.length, NO_MULTIPLIER)
-    mu[np.abs(mu) < MULTIPLIER_LIST.min_modulus] = NO_MULTIPLIER
+    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
+    mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,
         multiplier=found.largest_multiplier,

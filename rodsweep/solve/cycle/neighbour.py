@@ -38,7 +38,7 @@ from .along_parameter import (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NeighbourSettings:
+class NextMeshSettings:
     """Settings for the choice of the next mesh in a chain of cycles."""
 
     max_error_of_same_mesh: float = 0.9
@@ -51,7 +51,7 @@ class NeighbourSettings:
     errors of a new mesh costs as much as three cycles."""
 
 
-NEIGHBOUR = NeighbourSettings()
+NEXT_MESH_SETTINGS = NextMeshSettings()
 
 
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
@@ -128,7 +128,7 @@ def _next_mesh(
     must be measured again at the next cycle. before: data of the previous rod."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest <= NEIGHBOUR.max_error_of_same_mesh * accuracy
+    fits = found.errors.largest <= NEXT_MESH_SETTINGS.max_error_of_same_mesh * accuracy
     if known.reach and not fits:
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
         return present, known.rates_only
@@ -144,12 +144,12 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
     remains in use."""
     if before is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
-        return NEIGHBOUR.max_new_mesh_cost
+        return NEXT_MESH_SETTINGS.max_new_mesh_cost
     if not found.calibration.reach:
-        return NEIGHBOUR.max_new_mesh_cost_when_calibrated
+        return NEXT_MESH_SETTINGS.max_new_mesh_cost_when_calibrated
     step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # If the errors must be measured again anyway, another mesh needs no additional measurement.
-    return 0.0 if found.calibration.is_valid_after(step) else NEIGHBOUR.max_new_mesh_cost
+    return 0.0 if found.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost
 
 
 def cycle_from_neighbour(

@@ -11,7 +11,7 @@ from math import isnan, nan
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.roots.settings import ROOTS
+from ...determinant.roots.settings import ROOT_SETTINGS
 from ...model.rod import Rod
 from ..spectrum.path.followed_leader import follow_leading_eigenvalue
 from ..spectrum.search import SpectrumRequest, solve_spectrum
@@ -57,7 +57,7 @@ class StraightRod:
         """Whether all small motions about the straight rod decay; None if the growth rate is unknown or 0
         within its error."""
         margin = max(
-            STRAIGHT_ROD.min_axis_distance_in_errors * self.error, ROOTS.axis_tolerance * abs(self.w)
+            STRAIGHT_ROD.min_axis_distance_in_errors * self.error, ROOT_SETTINGS.axis_tolerance * abs(self.w)
         )
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None

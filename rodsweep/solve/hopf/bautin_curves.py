@@ -20,7 +20,7 @@ from ...model.rod import Rod
 from ...watch import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
 from ..point import FAILURES, Unsolvable
-from .bautin_settings import BAUTIN, BAUTIN_STEPS
+from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEPS
 from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
 
 
@@ -144,9 +144,9 @@ class BautinSpace:
         guess[which] = beyond[which]
         return self.solved(guess, which), True
 
-    def margins(self, place: _CurvePoint) -> Array:
+    def margins(self, point: _CurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
-        return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - BAUTIN.on_edge
+        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.on_edge
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
@@ -160,16 +160,16 @@ class BautinSpace:
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))
         near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
-        return len(behind) > BAUTIN.min_loop_points and bool(near)
+        return len(behind) > BAUTIN_SETTINGS.min_loop_points and bool(near)
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
-        s = BAUTIN.first_secant
+        s = BAUTIN_SETTINGS.first_secant
         last = hopf.at(start, way, hopf.accuracy).relative_real_part
-        for _ in range(BAUTIN.max_secants):
+        for _ in range(BAUTIN_SETTINGS.max_secants):
             here = hopf.at(start + s * way, way, hopf.accuracy)
             if here.relative_real_part == last:
                 break
@@ -178,7 +178,7 @@ class BautinSpace:
             if not abs(s + step) < BAUTIN_STEPS.max_length:
                 break
             along = here.coefficients.landau_error / abs(slope)
-            if abs(step) <= max(BAUTIN.tolerance, along):
+            if abs(step) <= max(BAUTIN_SETTINGS.tolerance, along):
                 return hopf.as_point(here, 0, way * (along + abs(step)))
             last = here.relative_real_part
             before = s
@@ -191,10 +191,10 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     here = _CurvePoint(space.scaled(start.values, start.frequency), start)
     back, first = _followed(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
-        return BautinCurve(tuple(place.point for place in back), (first, first))
+        return BautinCurve(tuple(point.point for point in back), (first, first))
     on, last = _followed(space, here)
     # Both lists begin with the start, which is taken once.
-    return BautinCurve(tuple(place.point for place in [*back[:0:-1], *on]), (first, last))
+    return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
@@ -211,7 +211,7 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
     """Whether `point`, at a requested value of the third parameter, is equal to a point of `curve`."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
-    return any(float(np.abs(v - other).max()) < BAUTIN.same_point for other in others)
+    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point for other in others)
 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
@@ -243,7 +243,7 @@ def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) ->
     inner = [z for z in map(space.axes[2].coordinate, space.asked) if min(a, b) < z < max(a, b)]
     found = []
     for z in sorted(inner, reverse=bool(a > b)):
-        if min(abs(z - a), abs(z - b)) > BAUTIN.same_point:
+        if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point:
             guess = here.v + (z - a) / (b - a) * (there.v - here.v)
             guess[2] = z
             found.append(space.solved(guess, 2))

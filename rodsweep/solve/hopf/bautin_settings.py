@@ -39,4 +39,4 @@ class BautinSettings:
     than this."""
 
 
-BAUTIN = BautinSettings()
+BAUTIN_SETTINGS = BautinSettings()

@@ -17,11 +17,11 @@ from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
-from .normal_form import NORMAL_FORM, NormalForm, elements_for, finer_by_a_third, normal_form_on
+from .normal_form import NORMAL_FORM_SETTINGS, NormalForm, elements_for, finer_by_a_third, normal_form_on
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CoefficientSettings:
+class HopfCoefficientSettings:
     """Settings for the coefficients of a Hopf point and their errors, and for the cache of searches."""
 
     more_orders: int = 4
@@ -44,7 +44,7 @@ class CoefficientSettings:
     """Number of searches for Hopf points in the cache; rods that differ only in gamma1 share a search."""
 
 
-COEFFICIENT = CoefficientSettings()
+HOPF_COEFFICIENT_SETTINGS = HopfCoefficientSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,14 +98,18 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = elements_for(rod, w, min(accuracy / NORMAL_FORM.accuracy_share, COEFFICIENT.coarsest))
-    fine = normal_form_on(start, rod, w, COEFFICIENT.coarsest)
+    start = elements_for(
+        rod, w, min(accuracy / NORMAL_FORM_SETTINGS.accuracy_share, HOPF_COEFFICIENT_SETTINGS.coarsest)
+    )
+    fine = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest)
     change = math.inf
     rounding = 0.0
-    for number in range(COEFFICIENT.max_refinements):
+    for number in range(HOPF_COEFFICIENT_SETTINGS.max_refinements):
         here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
         more = (
-            finer_by_a_third(here) if number else Elements(here.edges, here.order + COEFFICIENT.more_orders)
+            finer_by_a_third(here)
+            if number
+            else Elements(here.edges, here.order + HOPF_COEFFICIENT_SETTINGS.more_orders)
         )
         coarse = fine
         fine = normal_form_on(more, rod, w, accuracy)
@@ -122,7 +126,7 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         off = abs(fine.slope - coarse.slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
     unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
-    moved = COEFFICIENT.sensitivity * hopf.error * unit
+    moved = HOPF_COEFFICIENT_SETTINGS.sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
     return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
@@ -158,7 +162,7 @@ def _with_errors(
 
 def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
-    step = COEFFICIENT.force_step * abs(rod.F)
+    step = HOPF_COEFFICIENT_SETTINGS.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
     _, before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
@@ -168,4 +172,4 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
 def _rounding(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
     sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
-    return COEFFICIENT.rounding * sizes / abs(normal.w)
+    return HOPF_COEFFICIENT_SETTINGS.rounding * sizes / abs(normal.w)

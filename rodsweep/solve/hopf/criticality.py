@@ -14,7 +14,7 @@ from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing, end_below_crushing
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
-from .coefficient_errors import COEFFICIENT, HopfCoefficients, hopf_coefficients
+from .coefficient_errors import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 
 
 class CriticalityStatus(PointStatus):
@@ -118,7 +118,7 @@ def warm_up() -> None:
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
-@lru_cache(maxsize=COEFFICIENT.searches_kept)
+@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.searches_kept)
 def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
     return pair_crossings(path, 0.0, end, certify, most)
 

@@ -24,7 +24,7 @@ from ...arrays import Array, Complex
 from ...determinant.wave_number import wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halve_elements
 from ...discretization.elements.mesh import mesh_on
-from ...discretization.elements.resolution import RESOLUTION, resolution_for
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...discretization.straight.mixed_form import MixedForm
@@ -56,11 +56,11 @@ class NormalFormSettings:
     """Maximum number of nodes for an arm, whose matrices are factorised without elimination by elements."""
 
 
-NORMAL_FORM = NormalFormSettings()
+NORMAL_FORM_SETTINGS = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM.found`, below rounding error; after one iteration the error of the mode would exceed the
-stated error of c."""
+of `NORMAL_FORM_SETTINGS.found`, below rounding error; after one iteration the error of the mode would exceed
+the stated error of c."""
 
 
 HARMONIC_WAVES = 2
@@ -156,11 +156,11 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
     mesh rule for eigenvalues."""
-    accuracy *= NORMAL_FORM.accuracy_share
+    accuracy *= NORMAL_FORM_SETTINGS.accuracy_share
     waves = HARMONIC_WAVES * wave_number(rod, w)
     if not rod.standard:
-        return arm_elements(rod, waves, accuracy, NORMAL_FORM.largest_order)
-    resolution = resolution_for(waves, accuracy, NORMAL_FORM.largest_order)
+        return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
+    resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
@@ -172,11 +172,13 @@ def of_odd_order(elements: Elements) -> Elements:
 
 def finer_by_a_third(elements: Elements) -> Elements:
     """Elements with about a third more unknowns than `elements`, of odd order."""
-    order = ceil(elements.order * RESOLUTION.refinement_ratio)
-    if order <= RESOLUTION.max_order:
+    order = ceil(elements.order * RESOLUTION_SETTINGS.refinement_ratio)
+    if order <= RESOLUTION_SETTINGS.max_order:
         return of_odd_order(Elements(elements.edges, order))
     return of_odd_order(
-        Elements(halve_elements(elements.edges), ceil(RESOLUTION.refinement_ratio / 2 * elements.order))
+        Elements(
+            halve_elements(elements.edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * elements.order)
+        )
     )
 
 
@@ -187,13 +189,13 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     the mesh has too many nodes.
     """
     nodes = elements.nodes
-    limit = NORMAL_FORM.max_nodes if rod.standard else NORMAL_FORM.max_arm_nodes
+    limit = NORMAL_FORM_SETTINGS.max_nodes if rod.standard else NORMAL_FORM_SETTINGS.max_arm_nodes
     if nodes > limit:
         raise Unsolvable(
             f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
         )
     normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
-    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM.found) * abs(w):
+    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.found) * abs(w):
         raise Unsolvable(
             f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest eigenvalue is "
             f"{normal.w:.12g}"
@@ -208,8 +210,8 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
     Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
     """
     w = complex(guess)
-    for _ in range(NORMAL_FORM.max_shifts):
-        shift = w * (1 + NORMAL_FORM.shift_offset)
+    for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
+        shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
         factors = elements.factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
         q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
@@ -220,7 +222,7 @@ def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
         w = complex(np.vdot(p, elements.apply_A(q)) / np.vdot(p, Mq))
-        if abs(w - shift) <= NORMAL_FORM.found * abs(w):
+        if abs(w - shift) <= NORMAL_FORM_SETTINGS.found * abs(w):
             break
     else:
         raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")

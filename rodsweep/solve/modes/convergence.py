@@ -13,7 +13,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.newton import second_derivative
-from ...determinant.exponents import EXPONENTS
+from ...determinant.exponents import EXPONENT_SETTINGS
 from ...determinant.value import distance_to_next_root
 from ...discretization.elements.resolution import mesh_accuracy
 from ...discretization.straight.transverse_mesh import finer_mesh, mesh_for, pencil_on
@@ -95,7 +95,7 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
         MODE_MESH.roundings
         * (1 - 1 / fine.condition**2)
         * fine.rounding
-        / np.maximum(gaps, EXPONENTS.least_divisor)
+        / np.maximum(gaps, EXPONENT_SETTINGS.least_divisor)
     )
     moved = np.abs(coarse.condition / fine.condition - 1)
     return replace(fine, mode_error=error, condition_error=moved + turned)

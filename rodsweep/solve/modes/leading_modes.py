@@ -40,7 +40,7 @@ class LeadingModeSettings:
     """A rod is treated as unstable if a growth rate exceeds this multiple of its error estimate."""
 
 
-LEADING_MODES = LeadingModeSettings()
+LEADING_MODE_SETTINGS = LeadingModeSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +134,10 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     errors = vectors.errors()
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
-        mesh = mesh_for(rod, max(wave, LEADING_MODES.growth_wave_number), request.accuracy)
-        grows = (spectrum.eigenvalues.real > LEADING_MODES.significant_errors * spectrum.error_estimate).any()
+        mesh = mesh_for(rod, max(wave, LEADING_MODE_SETTINGS.growth_wave_number), request.accuracy)
+        grows = (
+            spectrum.eigenvalues.real > LEADING_MODE_SETTINGS.significant_errors * spectrum.error_estimate
+        ).any()
         known = spectrum.status != SpectrumStatus.undecided
         stable = True if known else None
         if grows or spectrum.unstable_count > 0:

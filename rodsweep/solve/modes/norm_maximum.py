@@ -33,7 +33,7 @@ class NormMaximumSettings:
     improved further."""
     batch: int = 128
     """Number of times at which the propagator is evaluated in one call; limits the memory."""
-    largest_exponent: float = 300.0
+    max_exponent: float = 300.0
     """Larger arguments of exp are replaced by this value, at which exp does not overflow."""
     max_peak_steps: int = 40
     """Maximum number of regula falsi steps to a maximum of the norm."""
@@ -42,7 +42,7 @@ class NormMaximumSettings:
     bracket. The relative error of the time is about the square root of this tolerance."""
 
 
-NORM_MAXIMUM = NormMaximumSettings()
+NORM_MAXIMUM_SETTINGS = NormMaximumSettings()
 
 
 def largest_norm(
@@ -55,7 +55,7 @@ def largest_norm(
     bound, at least 0, of the numerical abscissa.
     """
     low, high = span
-    count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM.start_ratio))) + 1)
+    count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM_SETTINGS.start_ratio))) + 1)
     times = np.geomspace(low, high, count, dtype=np.float64)
     times[[0, -1]] = span
     squares, bends = _squares(propagator, times)
@@ -67,11 +67,14 @@ def largest_norm(
     right = squares[1:]
     bend = bends[:-1]
     ceiling = best[0]
-    for halving in range(NORM_MAXIMUM.max_halvings + 1):
+    for halving in range(NORM_MAXIMUM_SETTINGS.max_halvings + 1):
         bound = np.sqrt(_bound(h, left, right, bend, abscissa))
-        wanted = max(best[0], floor) * (1 + tolerance)
-        open_ = bound > wanted
-        given_up = halving == NORM_MAXIMUM.max_halvings or int(open_.sum()) > NORM_MAXIMUM.max_open_intervals
+        enough = max(best[0], floor) * (1 + tolerance)
+        open_ = bound > enough
+        given_up = (
+            halving == NORM_MAXIMUM_SETTINGS.max_halvings
+            or int(open_.sum()) > NORM_MAXIMUM_SETTINGS.max_open_intervals
+        )
         ceiling = max(ceiling, bound[~open_ | given_up].max(initial=0.0))
         if given_up or not open_.any():
             break
@@ -92,14 +95,17 @@ def largest_norm(
 def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
     """(|exp(L t)|^2, curvature bound c) at `times`, (times,) each, evaluated in batches to limit the
     memory."""
-    parts = [propagator.squares(part) for part in np.array_split(times, len(times) // NORM_MAXIMUM.batch + 1)]
+    parts = [
+        propagator.squares(part)
+        for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.batch + 1)
+    ]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
     """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at the `left` and `right` ends
     and the curvature bound c (`bend`) at the left ends; all (intervals,)."""
-    growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM.largest_exponent))
+    growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
@@ -112,11 +118,11 @@ def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)
-    for _ in range(NORM_MAXIMUM.max_peak_steps):
+    for _ in range(NORM_MAXIMUM_SETTINGS.max_peak_steps):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm(t)
         best = max(best, (value, t))
-        if abs(rate) * (high - low) <= NORM_MAXIMUM.rise_left:
+        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.rise_left:
             break
         if rate > 0:
             low = t

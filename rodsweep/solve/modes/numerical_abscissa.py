@@ -15,7 +15,7 @@ from .propagator import shifted_inverse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AbscissaSettings:
+class NumericalAbscissaSettings:
     """Settings of the shifts with which the numerical abscissa is computed from above."""
 
     max_shifts: int = 60
@@ -29,7 +29,7 @@ class AbscissaSettings:
     fraction of the modulus of the most negative eigenvalue."""
 
 
-ABSCISSA = AbscissaSettings()
+NUMERICAL_ABSCISSA_SETTINGS = NumericalAbscissaSettings()
 
 
 def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
@@ -46,16 +46,22 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
     # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
     shift = bound + 1 if bound < inf else rod.F**2 + 1
-    for _ in range(ABSCISSA.max_shifts):
+    for _ in range(NUMERICAL_ABSCISSA_SETTINGS.max_shifts):
         H = shifted_inverse(A, B, shift)
         values = np.linalg.eigvalsh((H + H.T) / 2)
-        if values[-1] > -ABSCISSA.positive * values[0]:  # an eigenvalue lies above the shift
+        if (
+            values[-1] > -NUMERICAL_ABSCISSA_SETTINGS.positive * values[0]
+        ):  # an eigenvalue lies above the shift
             shift = 2 * abs(shift) + 1
             continue
         # Eigenvalues of the inverse of (L + L+)/2 - shift, all negative above the abscissa; the most negative
         # is nearest.
         abscissa = shift + 1 / float(values[0])
-        close = abscissa + ABSCISSA.close_shift * abs(abscissa) + ABSCISSA.close_shift
+        close = (
+            abscissa
+            + NUMERICAL_ABSCISSA_SETTINGS.close_shift * abs(abscissa)
+            + NUMERICAL_ABSCISSA_SETTINGS.close_shift
+        )
         if shift - abscissa <= 2 * (close - abscissa):
             return abscissa
         # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the

@@ -31,7 +31,7 @@ class PropagatorSettings:
             raise ValueError(f"{self.taylor_terms} Taylor terms leave more than rounding error of exp")
 
 
-PROPAGATOR = PropagatorSettings()
+PROPAGATOR_SETTINGS = PropagatorSettings()
 
 
 def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
@@ -57,7 +57,7 @@ class Propagator:
     def __init__(self, G: Array):
         self.G = G
         values, right = np.linalg.eig(G)
-        finite = np.nonzero(np.abs(values) > PROPAGATOR.infinite * np.abs(values).max())[0]
+        finite = np.nonzero(np.abs(values) > PROPAGATOR_SETTINGS.infinite * np.abs(values).max())[0]
         # G is the inverse of L: its eigenvalues near 0 are the infinite ones of the pencil, which carry no
         # dynamics.
         w = 1 / values[finite]
@@ -123,8 +123,8 @@ def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
     """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w with eigenvectors
     `vectors`; the first columns span the subspaces of the first eigenvalues."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
-    place = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
-    return np.linalg.qr(columns[:, np.argsort(place)])[0]
+    column = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
+    return np.linalg.qr(columns[:, np.argsort(column)])[0]
 
 
 def exponential(matrices: Array) -> Array:
@@ -141,7 +141,7 @@ def exponential(matrices: Array) -> Array:
     powers += [powers[2] @ scaled, powers[2] @ powers[2]]
     # exp(x) - 1 is squared, not exp(x): small norms keep their digits, since (1 + r)^2 - 1 = 2 r + r^2.
     result = np.zeros_like(scaled)
-    for order in range(PROPAGATOR.taylor_terms - 4, -1, -4):  # four terms a product
+    for order in range(PROPAGATOR_SETTINGS.taylor_terms - 4, -1, -4):  # four terms a product
         terms = sum(powers[i] / float(factorial(order + i)) for i in range(4) if order + i > 0)
         result = terms + powers[4] @ result
     for _ in range(squarings):

@@ -18,7 +18,7 @@ import numpy as np
 from ...discretization.straight.dense_form import AnyPencil, dense_form
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
-from .norm_maximum import NORM_MAXIMUM, largest_norm
+from .norm_maximum import NORM_MAXIMUM_SETTINGS, largest_norm
 from .numerical_abscissa import numerical_abscissa
 from .propagator import Propagator, shifted_inverse
 
@@ -49,7 +49,7 @@ class GrowthSettings:
     second."""
 
 
-GROWTH = GrowthSettings()
+GROWTH_SETTINGS = GrowthSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,11 +98,15 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
     least = inf
     abscissa = numerical_abscissa(rod, pencil_on(mesh))
     coarse = None
-    for step in range(GROWTH.max_meshes):
-        order = mesh.order + GROWTH.first_more_orders if step == 0 else ceil(GROWTH.order_factor * mesh.order)
+    for step in range(GROWTH_SETTINGS.max_meshes):
+        order = (
+            mesh.order + GROWTH_SETTINGS.first_more_orders
+            if step == 0
+            else ceil(GROWTH_SETTINGS.order_factor * mesh.order)
+        )
         last = mesh
         mesh = replace(mesh, order=order)
-        if step and mesh.unknowns > GROWTH.max_unknowns:
+        if step and mesh.unknowns > GROWTH_SETTINGS.max_unknowns:
             break
         pencil = pencil_on(mesh)
         before = abscissa
@@ -139,12 +143,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNKNOWN_GROWTH
-    patience = log(1 / accuracy) + GROWTH.truncation_margin
-    tolerance = max(GROWTH.search_share * accuracy, GROWTH.min_search_tolerance)
+    patience = log(1 / accuracy) + GROWTH_SETTINGS.truncation_margin
+    tolerance = max(GROWTH_SETTINGS.search_share * accuracy, GROWTH_SETTINGS.min_search_tolerance)
     best = (1.0, 0.0)
     ceiling = 1.0
     tail = stop = 0.0
-    k = GROWTH.min_modes
+    k = GROWTH_SETTINGS.min_modes
     while True:
         k = fine.truncate(k)
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
@@ -157,15 +161,15 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
             ceiling = max(ceiling, bound)
         stop = first
         # |exp(L t)| <= exp(abscissa t) bounds the growth over the early times that the modes do not resolve.
-        before = exp(min(abscissa * first, NORM_MAXIMUM.largest_exponent))
+        before = exp(min(abscissa * first, NORM_MAXIMUM_SETTINGS.max_exponent))
         if before <= best[0] * (1 + tolerance) or k == len(fine.w):
             break
-        k = min(int((1 + GROWTH.more_modes) * k), len(fine.w))
+        k = min(int((1 + GROWTH_SETTINGS.more_modes) * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
-        coarse.truncate(int((1 + GROWTH.more_modes) * k))
+        coarse.truncate(int((1 + GROWTH_SETTINGS.more_modes) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)

@@ -102,8 +102,8 @@ class _Bending:
         """The state z, (unknowns,), for curvatures Pi at all nodes, (nodes + 1,)."""
         return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
-    def placed(self, Pi: Array, force: Array, place: Array) -> tuple[Array, Array] | None:
-        """(curvatures Pi, (nodes + 1,); force, (2,)) for which the tip is at `place`, (2,), by Newton's
+    def placed(self, Pi: Array, force: Array, target: Array) -> tuple[Array, Array] | None:
+        """(curvatures Pi, (nodes + 1,); force, (2,)) for which the tip is at `target`, (2,), by Newton's
         method from `Pi` and `force`; None if Newton's method fails."""
         size = len(Pi)
         weights = self.mesh.quadrature
@@ -114,7 +114,7 @@ class _Bending:
             matrix[:size, :size] = np.diag(weights) - second
             matrix[:size, size:] = -first.T
             matrix[size:, :size] = first
-            misplaced = place - self.tip(Pi)
+            misplaced = target - self.tip(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
             if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP.largest_turn:

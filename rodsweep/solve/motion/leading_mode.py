@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.exponents import EXPONENTS
+from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.beam import Beam
 
 
@@ -20,7 +20,11 @@ class LeadingMode:
     @property
     def period(self) -> float:
         """Period 2 pi/Im w in tau2, or the time constant 1/|w| of a mode that does not oscillate."""
-        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), EXPONENTS.least_divisor)
+        return (
+            2 * np.pi / self.w.imag
+            if self.w.imag
+            else 1 / max(abs(self.w.real), EXPONENT_SETTINGS.least_divisor)
+        )
 
 
 def leading_mode(beam: Beam) -> LeadingMode:

@@ -32,7 +32,7 @@ class StepRecordSettings(CompiledSettings):
     """Number of time steps for which memory is allocated first; the memory is doubled whenever it is full."""
 
 
-STEP_RECORD = StepRecordSettings()
+STEP_RECORD_SETTINGS = StepRecordSettings()
 
 OUT_OF_MEMORY = 55
 """PETSc's error code for failed memory allocation, PETSC_ERR_MEM."""
@@ -48,7 +48,7 @@ def store_step(c: Any, at: int, ts: int) -> int:
     outputs = integers(at, 3)
     if c.stored == c.capacity:
         # Doubling keeps the cost of copying proportional to the number of steps.
-        c.capacity = max(2 * c.capacity, STEP_RECORD.first_capacity)
+        c.capacity = max(2 * c.capacity, STEP_RECORD_SETTINGS.first_capacity)
         rows = resized_memory(c.rows, 8 * c.capacity * (n + 1))
         if rows == 0:
             return OUT_OF_MEMORY

@@ -24,14 +24,14 @@ has the values multiplied by these signs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExtremumSettings(CompiledSettings):
+class TipExtremumSettings(CompiledSettings):
     """Settings for the extrema of the tip's coordinates over a period."""
 
     oversampling: int = 4
     """Number of samples per time node from which the extrema are computed."""
 
 
-EXTREMA = ExtremumSettings()
+TIP_EXTREMUM_SETTINGS = TipExtremumSettings()
 
 
 class TipPath(NamedTuple):
@@ -41,7 +41,8 @@ class TipPath(NamedTuple):
     strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with respect to
     t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). coefficients: Fourier coefficients
     of (x, y, theta) of the tip, (count, 3). samples: (x, y, theta) at equidistant times of the period,
-    (`EXTREMA.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y, theta), (3,).
+    (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y, theta),
+    (3,).
     """
 
     strains: Array
@@ -80,7 +81,7 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
     tip_motion(strains[0], strains[1], m, tip, velocity)
     # For an orbit without symmetry the signs are 0, because its values cover the whole period.
     c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
-    samples = series_samples_of_columns(c, EXTREMA.oversampling * (len(c) - 1))
+    samples = series_samples_of_columns(c, TIP_EXTREMUM_SETTINGS.oversampling * (len(c) - 1))
     return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
 
 

@@ -12,7 +12,7 @@ from math import nan
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.elements.elements import ELEMENTS
+from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.periodic import (
     hermite_coefficients,
@@ -157,7 +157,7 @@ class CyclePath:
         return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _at_lobatto(grid: Mesh, nodes: int) -> Array:
     """Matrix, (nodes of `grid`, nodes): values at all nodes of the mesh `grid` times this matrix are the
     values at `nodes` Lobatto nodes of the rod."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.elements.elements import ELEMENTS
+from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import StateLayout
 from ...model.compiled.compilation import compiled_for_vectors
@@ -35,7 +35,7 @@ def reflected(orbit: Orbit) -> Reflected:
     return _reflected(orbit.form.layout, orbit.form.mesh)
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
     return Reflected(REFLECTION.reversed(layout), layout.vector({"m3": mesh.quadrature[:-1]}))
 

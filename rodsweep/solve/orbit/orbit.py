@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 
 from ...arrays import Array
 from ...discretization.elements.collocation import Collocation, radau_method
-from ...discretization.elements.elements import ELEMENTS
+from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
 from .semidiscrete import Semidiscrete
@@ -125,7 +125,7 @@ class Orbit:
         )
 
 
-@lru_cache(maxsize=ELEMENTS.max_pencils)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
     """Data of the equations of orbits with the given form, symmetry and time intervals; cached."""
     d = radau_method(stages).differentiation
@@ -135,7 +135,7 @@ def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: 
     return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
 
 
-@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
 def interval_lengths(intervals: int) -> Array:
     """Lengths of the time intervals as fractions of the solved duration, (intervals,): the last two intervals
     are half as long as the other intervals, which have equal lengths.
@@ -158,7 +158,7 @@ def node_times(intervals: int, stages: int) -> Array:
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)
 
 
-@lru_cache(maxsize=ELEMENTS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. source,
     target: (intervals K, stages s). Shape: (1 + K s of target, 1 + K s of source)."""

@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.elements.elements import halve_elements
 from ...discretization.elements.mesh import Mesh, mesh_on
-from ...discretization.elements.resolution import RESOLUTION
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
 from .tails import tails_of
@@ -125,7 +125,7 @@ class OrbitMesh:
     def finer_in_space(self) -> "OrbitMesh":
         """This mesh with an order increased by 2, or with twice as many elements of lower order if the order
         would exceed its maximum."""
-        if self.order + 2 <= RESOLUTION.max_order:
+        if self.order + 2 <= RESOLUTION_SETTINGS.max_order:
             return replace(self, order=self.order + 2)
         return replace(
             self, edges=halve_elements(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order)
@@ -171,7 +171,7 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         log(max(tails.space, ORBIT_MESH.smallest_tail) / aim_space) / tails.decay / present.elements
     )
     edges = present.edges
-    while order > RESOLUTION.max_order:
+    while order > RESOLUTION_SETTINGS.max_order:
         order = ceil(ORBIT_MESH.halved_order * order)
         edges = halve_elements(edges)
     # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present
@@ -185,12 +185,12 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     return OrbitMesh(edges, order, intervals, stages)
 
 
-def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
-    """A mesh that is at least as fine as `wanted` and finer than the present mesh `mesh`."""
-    order = max(wanted.order, mesh.order) if wanted.edges == mesh.edges else wanted.order
-    intervals = max(wanted.intervals, mesh.intervals)
-    stages = max(wanted.stages, mesh.stages)
-    finer = replace(wanted, order=order, intervals=intervals, stages=stages)
+def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
+    """A mesh that is at least as fine as `target` and finer than the present mesh `mesh`."""
+    order = max(target.order, mesh.order) if target.edges == mesh.edges else target.order
+    intervals = max(target.intervals, mesh.intervals)
+    stages = max(target.stages, mesh.stages)
+    finer = replace(target, order=order, intervals=intervals, stages=stages)
     if finer != mesh:
         return finer
     return replace(mesh.finer_in_space, intervals=ceil(ORBIT_MESH.more_intervals * mesh.intervals))

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.elements.elements import ELEMENTS
+from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.state_layout import StateLayout
 from ...model.balance import Values
 
@@ -49,7 +49,7 @@ class Symmetry:
         return (1 - self.of(np.ones(layout.unknowns), layout)) / 2
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     """`Symmetry.matrix`, (unknowns, unknowns)."""
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)

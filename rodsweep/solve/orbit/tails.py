@@ -12,10 +12,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ...arrays import Array
-from ...determinant.exponents import EXPONENTS
+from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.at_jumps import stresses_by_element
 from ...discretization.elements.collocation import radau_method
-from ...discretization.elements.elements import ELEMENTS
+from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import mesh
 from ...discretization.state_layout import PLANE_COMPONENTS, stress_index
 from ...model.compiled.compilation import compiled_for_vectors
@@ -24,7 +24,7 @@ from .orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TailSettings(CompiledSettings):
+class CoefficientTailSettings(CompiledSettings):
     """Settings for the tails of an orbit and for the decay of its coefficients."""
 
     min_decay: float = 0.2
@@ -39,7 +39,7 @@ class TailSettings(CompiledSettings):
     coefficients changes smoothly along a branch."""
 
 
-TAILS = TailSettings()
+COEFFICIENT_TAIL_SETTINGS = CoefficientTailSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,28 +57,30 @@ def tails_of(orbit: Orbit) -> Tails:
     """Tails of `orbit` in space and in time, and decay of its coefficients in space."""
     c = _space_coefficients(orbit)
     # Two coefficients, because the last coefficient may vanish by parity.
-    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENTS.least_divisor)
+    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENT_SETTINGS.least_divisor)
     return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
 
 
 @compiled_for_vectors
 def _decay(c: Array) -> float:
     """Decay of coefficients: minus the slope, per order, of the natural logarithm of their envelope, fitted
-    over the upper half of the orders and limited to `TAILS.min_decay` ... `TAILS.max_decay`. c: moduli of the
-    coefficients, (fields, p + 1)."""
+    over the upper half of the orders and limited to the range `min_decay` to `max_decay` of the settings. c:
+    moduli of the coefficients, (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
-    highest = TAILS.rounding
+    highest = COEFFICIENT_TAIL_SETTINGS.rounding
     along = 0.0
     squares = 0.0
     # From the last coefficient down: `highest` is an envelope, on which single zeros have no effect.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
-            highest = max(highest, c[a, k] / max(c[a].max(), EXPONENTS.least_divisor))
+            highest = max(highest, c[a, k] / max(c[a].max(), EXPONENT_SETTINGS.least_divisor))
         along += (k - middle) * np.log(highest)
         squares += (k - middle) ** 2
     # Slope of the least-squares line through the logarithms.
-    return min(max(-along / squares, TAILS.min_decay), TAILS.max_decay)
+    return min(
+        max(-along / squares, COEFFICIENT_TAIL_SETTINGS.min_decay), COEFFICIENT_TAIL_SETTINGS.max_decay
+    )
 
 
 def _space_coefficients(orbit: Orbit) -> Array:
@@ -93,7 +95,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
     return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _analysis_on_element(order: int) -> Array:
     """Matrix, (p + 1, p + 1): a row of values at the nodes of an element of order p times this matrix is the
     row of Legendre coefficients."""
@@ -125,13 +127,13 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 def smooth_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), divided by the largest values. These tails change smoothly along a
-    branch, because the tail in space is the norm of `TAILS.last_coefficients` coefficients: a single
-    coefficient may vanish."""
+    branch, because the tail in space is the norm of `COEFFICIENT_TAIL_SETTINGS.last_coefficients`
+    coefficients: a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
         fields = _by_elements(orbit, orbit.points)
         ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
-        largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENTS.least_divisor)
+        largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
         in_space = float((ends / largest).max())
     else:
         in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
@@ -144,10 +146,12 @@ def _by_elements(orbit: Orbit, states: Array) -> Array:
     return stresses_by_element(form.nodal, form.mesh, form.stresses(states))
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _lasting_on_element(order: int) -> Array:
-    """Last columns of `_analysis_on_element`, (p + 1, `TAILS.last_coefficients`)."""
-    return np.ascontiguousarray(_analysis_on_element(order)[:, -TAILS.last_coefficients :])
+    """Last columns of `_analysis_on_element`, (p + 1, `COEFFICIENT_TAIL_SETTINGS.last_coefficients`)."""
+    return np.ascontiguousarray(
+        _analysis_on_element(order)[:, -COEFFICIENT_TAIL_SETTINGS.last_coefficients :]
+    )
 
 
 @compiled_for_vectors
@@ -176,7 +180,7 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
                     for i in range(count):
                         c[i] += stress * analysis[j, i]
                 end = max(end, (c * c).sum())
-        worst = max(worst, np.sqrt(end) / max(largest, EXPONENTS.least_divisor))
+        worst = max(worst, np.sqrt(end) / max(largest, EXPONENT_SETTINGS.least_divisor))
     return worst
 
 
@@ -185,7 +189,7 @@ def _tail_in_time(orbit: Orbit) -> float:
     return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
 
 
-@lru_cache(maxsize=ELEMENTS.max_pencils)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
 def _last_in_interval(stages: int) -> Array:
     """Weights, (s + 1,), with which the values at the start and the stages of an interval give its last
     Legendre coefficient."""
@@ -221,7 +225,7 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
                     top += row[j] * points[k + j, stress_index(a, i, nodes)]
                 size += top**2
             tail = max(tail, size)
-        worst = max(worst, np.sqrt(tail / max(largest, EXPONENTS.least_divisor)))
+        worst = max(worst, np.sqrt(tail / max(largest, EXPONENT_SETTINGS.least_divisor)))
     return float(worst)
 
 

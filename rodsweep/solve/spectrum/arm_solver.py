@@ -9,7 +9,7 @@ from ...discretization.straight.arm_resolution import ArmMesh
 from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalues
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
-from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
+from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
 
 
 class ArmSolver(ShiftInvertSolver):
@@ -49,7 +49,7 @@ class ArmSolver(ShiftInvertSolver):
         return fields_of_vectors(vectors, self.matrices.scale)
 
 
-_kept = LruPool(ArmSolver, KRYLOV.max_arm_solvers)
+_kept = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:

@@ -54,7 +54,7 @@ class CandidateSettings(CompiledSettings):
     """Part of the distance in `proof_line_errors` that is proportional to |w|, divided by |w|."""
 
 
-CANDIDATES = CandidateSettings()
+CANDIDATE_SETTINGS = CandidateSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,12 +95,12 @@ class CountComparison:
 
 
 def candidates_on(
-    problem: TransverseProblem, mesh: AnyMesh, wanted: int, vectors: bool, tight: bool
+    problem: TransverseProblem, mesh: AnyMesh, requested: int, vectors: bool, tight: bool
 ) -> Candidates:
     """The eigenvalues of a mesh nearest to the shift of `problem`, refined to roots of D; spurious
     eigenvalues are dropped.
 
-    wanted: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
+    requested: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
     eigenvalues of the mesh converge to rounding error before they are refined. After an error inside PETSc,
     SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
@@ -109,12 +109,12 @@ def candidates_on(
     failure = ""
     try:
         solver = problem.solver(mesh)
-        raw = solver.solve(problem.rod, problem.shift, wanted, tight)
+        raw = solver.solve(problem.rod, problem.shift, requested, tight)
         kept = solver.vectors(len(raw)) if vectors else None
     except PETSC_ERRORS as error:
         destroy_pooled_solvers()
         failure = cause_of(error)
-    kept_roots = problem.roots(raw, CANDIDATES.max_waves_per_node * mesh.elements * mesh.order)
+    kept_roots = problem.roots(raw, CANDIDATE_SETTINGS.max_waves_per_node * mesh.elements * mesh.order)
     kept = kept[:, kept_roots.indices] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)
 
@@ -146,7 +146,10 @@ def line_for_proof(last: complex, error: float) -> float:
     last, error: the last wanted eigenvalue and its absolute error.
     """
     return min(
-        last.real - CANDIDATES.proof_line_errors * error - CANDIDATES.proof_line_distance * abs(last), 0.0
+        last.real
+        - CANDIDATE_SETTINGS.proof_line_errors * error
+        - CANDIDATE_SETTINGS.proof_line_distance * abs(last),
+        0.0,
     )
 
 
@@ -165,15 +168,15 @@ def lines_for_count(w: list[complex], modes: int) -> list[float]:
     `wide_gap_of_flutter`) are equally good; the rightmost comes first. The last line lies to the left of all
     eigenvalues found.
     """
-    wide = CANDIDATES.wide_gap_of_flutter if w[0].real > 0 else CANDIDATES.wide_gap
+    wide = CANDIDATE_SETTINGS.wide_gap_of_flutter if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap
     target = min(w[modes - 1].real, 0.0)
     below = [target] + [value.real for value in w if value.real < target]
     gaps = []
     for right, left in zip(below[:-1], below[1:], strict=True):
         width = (right - left) / abs(left)
-        if width > CANDIDATES.min_gap:
+        if width > CANDIDATE_SETTINGS.min_gap:
             gaps.append((min(width, wide), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last = below[-1]
-    behind = last - CANDIDATES.last_line_distance * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: CANDIDATES.max_lines - 1]), behind]
+    behind = last - CANDIDATE_SETTINGS.last_line_distance * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
+    return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_lines - 1]), behind]

@@ -12,7 +12,7 @@ from ...discretization.straight.pencil import Pencil, assemble_pencil, fields_of
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
-from .shift_invert import KRYLOV, LoadedPencil, ShiftInvertSolver
+from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
 
 
 @compiled
@@ -77,7 +77,7 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(UniformSolver, KRYLOV.max_uniform_solvers)
+_kept = LruPool(UniformSolver, KRYLOV_SETTINGS.max_uniform_solvers)
 
 
 def uniform_solver(resolution: Resolution) -> UniformSolver:

@@ -35,7 +35,7 @@ from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import UniformSolver, uniform_solver
 from .path.prediction import KnownRoots
-from .shift_invert import KRYLOV
+from .shift_invert import KRYLOV_SETTINGS
 
 
 class TransverseProblem(ABC):
@@ -106,7 +106,7 @@ class UniformProblem(TransverseProblem):
     def __init__(self, rod: Rod):
         self.rod = rod
         growth, self._wave = most_amplified_wave(rod)
-        self.shift = KRYLOV.shift_above_growth * growth
+        self.shift = KRYLOV_SETTINGS.shift_above_growth * growth
         self._amplification = sqrt(squared_amplification(rod))
         self.has_bound = isfinite(self._amplification)
 
@@ -142,7 +142,7 @@ class ArmProblem(TransverseProblem):
         self.has_bound = isfinite(self._hull.a)
         self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
         growth, _ = local_growth(rod)
-        self.shift = KRYLOV.shift_above_growth * float(growth.max())
+        self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
@@ -153,24 +153,26 @@ class ArmProblem(TransverseProblem):
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
-        wanted, largest = self._of_proof(raw)
-        return roots_of_arm(np.where(wanted, raw, np.inf), self._determinant, self._hull, most_waves, largest)
+        in_proof, largest = self._of_proof(raw)
+        return roots_of_arm(
+            np.where(in_proof, raw, np.inf), self._determinant, self._hull, most_waves, largest
+        )
 
     def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest
         |w| at which the proof needs D; 0 if unknown.
         """
-        wanted = np.isfinite(raw)
-        if not self._to_prove or not self.has_bound or wanted.sum() < self._to_prove:
-            return wanted, 0.0
-        finite = np.flatnonzero(wanted)
+        in_proof = np.isfinite(raw)
+        if not self._to_prove or not self.has_bound or in_proof.sum() < self._to_prove:
+            return in_proof, 0.0
+        finite = np.flatnonzero(in_proof)
         order = finite[np.lexsort((-raw.imag[finite], -raw.real[finite]))]
         line = min(float(raw[order[self._to_prove - 1]].real), 0.0)
         number, size = cheapest_proof(line, self._hull, raw[order], self._to_prove)
         if not number:
-            return wanted, largest_w_of_count(line, self._determinant, self._hull)
-        wanted[order[number:]] = False
-        return wanted, size
+            return in_proof, largest_w_of_count(line, self._determinant, self._hull)
+        in_proof[order[number:]] = False
+        return in_proof, size
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         known = () if found is None else (found.w, found.error)

@@ -9,7 +9,7 @@ error and count are satisfactory.
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import outcome_or_failure
@@ -67,10 +67,10 @@ def warm_up() -> None:
 class Search:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
 
-    wanted: number of eigenvalues in the first request; by default, the modes plus `spare_eigenvalues`.
+    requested: number of eigenvalues in the first request; by default, the modes plus `spare_eigenvalues`.
     """
 
-    def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
+    def __init__(self, rod: Rod, request: SpectrumRequest, requested: int | None = None):
         self.problem = transverse_problem(rod, request.modes if request.certify else 0)
         self.request = request
         self.modes = request.modes
@@ -78,22 +78,24 @@ class Search:
         bounded = self.problem.has_bound
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.aim)
-        self.wanted = request.modes + self.problem.spare_eigenvalues if wanted is None else wanted
+        self.requested = request.modes + self.problem.spare_eigenvalues if requested is None else requested
         self.best: CheckedCandidates | None = None
         self.stalled = self.failures = 0
         self.disagreement: CountComparison | None = None
         """The comparison of the last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether on the last mesh neither the eigenvalues nor a count showed which eigenvalue leads."""
-        self.why = f"no mesh of at most {RESOLUTION.max_unknowns} unknowns resolves the requested modes"
+        self.why = (
+            f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns resolves the requested modes"
+        )
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
         for turn in range(SEARCH.max_meshes):
-            if self.mesh.unknowns > RESOLUTION.max_unknowns or self.failures > SEARCH.max_failures:
+            if self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns or self.failures > SEARCH.max_failures:
                 break
             tight = self.with_vectors or turn > 0
-            found = candidates_on(self.problem, self.mesh, self.wanted, self.with_vectors, tight)
+            found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
             judged = self.judge(found)
             if judged is None:
                 continue
@@ -117,7 +119,7 @@ class Search:
             self.why = found.failure or self.why
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
             if len(found.roots.w) >= SEARCH.min_resolved_fraction * self.modes:
-                self.wanted += self.modes
+                self.requested += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if self.needs_beyond_axis(found):
@@ -157,8 +159,8 @@ class Search:
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
         more = number + SEARCH.spare_modes
-        if more <= self.wanted:  # missing eigenvalues are far from the shift or unresolved
-            more = self.wanted + number - here + SEARCH.spare_modes
+        if more <= self.requested:  # missing eigenvalues are far from the shift or unresolved
+            more = self.requested + number - here + SEARCH.spare_modes
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_more(more)
 
@@ -174,19 +176,18 @@ class Search:
         decaying modes.
         """
         self.unresolved = True
-        if number < self.wanted:
+        if number < self.requested:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_more(max(self.wanted, 2 * number + SEARCH.spare_modes))
+        self.request_more(max(self.requested, 2 * number + SEARCH.spare_modes))
 
-    def request_more(self, wanted: int) -> None:
-        """Requests `wanted` eigenvalues, and refines the mesh until it has enough unknowns for this
-        number."""
+    def request_more(self, requested: int) -> None:
+        """Requests `requested` eigenvalues, and refines the mesh until it has enough unknowns for them."""
         while (
-            wanted > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
-            and self.mesh.unknowns <= RESOLUTION.max_unknowns
+            requested > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
+            and self.mesh.unknowns <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.wanted = wanted
+        self.requested = requested
 
     def update_best(self, judged: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""

@@ -66,7 +66,7 @@ class KrylovSettings:
     constant matrices."""
 
 
-KRYLOV = KrylovSettings()
+KRYLOV_SETTINGS = KrylovSettings()
 
 SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override the settings of this eigensolver, as in -spectrum_eps_ncv 32."""
@@ -119,7 +119,7 @@ class ShiftInvertSolver(ABC):
         self.nodes = pattern.nodes
         n = pattern.unknowns
         package = sparse_package()
-        self.dense = n <= KRYLOV.max_dense_unknowns or package is None
+        self.dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
         self.diagonal = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
@@ -133,9 +133,11 @@ class ShiftInvertSolver(ABC):
         self.line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         first = np.zeros(n)
-        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV.first_vector_width
+        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV_SETTINGS.first_vector_width
         first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
-        first[pattern.nodes : 2 * pattern.nodes] = KRYLOV.first_vector_rotation * first[: pattern.nodes]
+        first[pattern.nodes : 2 * pattern.nodes] = (
+            KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.nodes]
+        )
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
@@ -169,8 +171,8 @@ class ShiftInvertSolver(ABC):
         """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
         k)."""
 
-    def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
-        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if
+    def solve(self, rod: Rod, shift: float, requested: int, tight: bool = False) -> Complex:
+        """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `requested` if
         enough eigenvalues converge.
 
         tight: whether the eigenvalues converge to rounding error on the mesh, instead of the few digits that
@@ -181,13 +183,13 @@ class ShiftInvertSolver(ABC):
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
         most = self.loaded.finite_eigenvalues
-        wanted = min(wanted, most - 1)  # a conjugate pair may add one
-        spare = KRYLOV.tight_spare_vectors if tight else KRYLOV.loose_spare_vectors
-        tolerance = KRYLOV.tight_tolerance if tight else KRYLOV.loose_tolerance
-        krylov = self.users_krylov or max(2 * wanted, wanted + spare)
-        self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV.max_restarts)
-        krylov = min(krylov, most + KRYLOV.vectors_for_infinity)
-        self.eps.setDimensions(wanted, krylov, krylov)
+        requested = min(requested, most - 1)  # a conjugate pair may add one
+        spare = KRYLOV_SETTINGS.tight_spare_vectors if tight else KRYLOV_SETTINGS.loose_spare_vectors
+        tolerance = KRYLOV_SETTINGS.tight_tolerance if tight else KRYLOV_SETTINGS.loose_tolerance
+        krylov = self.users_krylov or max(2 * requested, requested + spare)
+        self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV_SETTINGS.max_restarts)
+        krylov = min(krylov, most + KRYLOV_SETTINGS.vectors_for_infinity)
+        self.eps.setDimensions(requested, krylov, krylov)
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
         found = self.eps.getConverged()
@@ -216,9 +218,9 @@ class ShiftInvertSolver(ABC):
         n = len(self.line) - 1
         krylov = self.eps.getDimensions()[1] + 1
         matrices = (
-            KRYLOV.stored_dense_matrices * n * n
+            KRYLOV_SETTINGS.stored_dense_matrices * n * n
             if self.dense
-            else KRYLOV.stored_numbers_per_entry * len(self.indices)
+            else KRYLOV_SETTINGS.stored_numbers_per_entry * len(self.indices)
         )
         return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
 

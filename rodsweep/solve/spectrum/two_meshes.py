@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.elements.resolution import RESOLUTION, mesh_accuracy
+from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
@@ -74,7 +74,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     best: Spectrum | None = None
     for _ in range(TWO_MESHES.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
-        if mesh.unknowns > RESOLUTION.max_unknowns:
+        if mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns:
             break
         found = _leading(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
@@ -85,7 +85,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             best = here if best is None else min(best, here, key=_worst)
         before = found
     if best is None:
-        most = RESOLUTION.max_unknowns
+        most = RESOLUTION_SETTINGS.max_unknowns
         raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
     return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
@@ -112,22 +112,22 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
     The result is empty if the mesh is too coarse for a doubled request.
     """
     solver = problem.solver(mesh)
-    wanted = modes + TWO_MESHES.spare_eigenvalues
+    requested = modes + TWO_MESHES.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
     before = np.empty(0, complex)
     while True:
-        raw = solver.solve(problem.rod, problem.shift, wanted, tight=True)
+        raw = solver.solve(problem.rod, problem.shift, requested, tight=True)
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
         by_rounding = TWO_MESHES.unchanged_rounding_tolerance * _scale(problem)
         if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged_tolerance, atol=by_rounding):
             return _MeshEigenvalues(raw[order], order)
-        if 2 * wanted > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
+        if 2 * requested > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
             return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
-        wanted = 2 * wanted
+        requested = 2 * requested
 
 
 def _worst(found: Spectrum) -> float:

@@ -126,7 +126,7 @@ class ChainSolver:
         found = self.checkpoints.read(chain)
         if found is None or found[0] not in order:
             return 0, None
-        place = order.index(found[0]) + 1
-        if self.missing[order[:place]].any():
+        solved = order.index(found[0]) + 1
+        if self.missing[order[:solved]].any():
             return 0, None
-        return place, found[1]
+        return solved, found[1]

@@ -103,17 +103,17 @@ class Points:
         """Parameter values of the point at a flat index, by name."""
         values = {}
         for name, column in zip(reversed(self.names), reversed(self.columns), strict=True):
-            place = index
+            index_on_axis = index
             if self.is_grid:  # NumPy's unravel_index takes three times as long
-                index, place = divmod(index, len(column))
-            values[name] = float(column[place])
+                index, index_on_axis = divmod(index, len(column))
+            values[name] = float(column[index_on_axis])
         return {name: values[name] for name in self.names}
 
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
         """Parameter values, (n,) each, of the points at flat indices, (n,), by name."""
         places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
         each = zip(self.names, self.columns, places, strict=True)
-        return {name: column[place] for name, column, place in each}
+        return {name: column[index_on_axis] for name, column, index_on_axis in each}
 
     def rod(self, index: int, **beside: float) -> Rod:
         """Rod of the point at a flat index; raises Crushed.

@@ -10,10 +10,10 @@ import numpy as np
 from ...errors import InputError
 
 BLOCKS_A_SHARD = 64
-"""Number of blocks of consecutive units in a shard. Many blocks give shards of equal cost, but separate
+"""Number of blocks of consecutive items in a shard. Many blocks give shards of equal cost, but separate
 neighbouring points in the result file of the shard."""
 IndexRange = tuple[int, int]
-"""Range of flat indices of points, or of numbers of units: (first index, index after the last)."""
+"""Range of flat indices of points, or of numbers of items: (first index, index after the last)."""
 
 
 def index_count(ranges: Iterable[IndexRange]) -> int:
@@ -51,8 +51,8 @@ class IndexSet:
 
     def __getitem__(self, indices: Any) -> Any:
         """Whether each of `indices` is in the set: a boolean, or a boolean array of the same shape."""
-        place = np.searchsorted(self.firsts, indices, side="right") - 1
-        return indices < self.ends[place]
+        number = np.searchsorted(self.firsts, indices, side="right") - 1
+        return indices < self.ends[number]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +67,14 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.of}"
 
-    def ranges_of_shard(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
-        """Ranges of the units in `todo` that belong to this shard.
+    def ranges_of_shard(self, todo: Sequence[IndexRange], items: int) -> list[IndexRange]:
+        """Ranges of the items in `todo` that belong to this shard.
 
-        Blocks of the sweep's `units` units are assigned to the shards in turn.
+        Blocks of the sweep's `items` items are assigned to the shards in turn.
         """
         if self.of == 1:
             return list(todo)
-        block = max(1, units // (self.of * BLOCKS_A_SHARD))
+        block = max(1, items // (self.of * BLOCKS_A_SHARD))
         mine: list[IndexRange] = []
         for start, stop in todo:
             turn = start // block

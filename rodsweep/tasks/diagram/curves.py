@@ -61,11 +61,11 @@ class DiagramCurves:
             self.special[number] = row.special
         return row
 
-    def initial_data(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
+    def initial_data(self, items: "SpecialBoundaries", chosen: Sequence[int]) -> "dict[int, Any]":
         """Special points cached on this rank, by number of the row, for the rows on which the half curves
-        `units_to_solve` start.
+        `items_to_solve` start.
         """
-        rows = {units.row_of(unit) for unit in wanted}
+        rows = {items.row_of(item) for item in chosen}
         return {row: self.special[row] for row in rows if row in self.special}
 
     def add_initial_data(self, starts: "Mapping[int, Any]") -> None:
@@ -74,7 +74,7 @@ class DiagramCurves:
         """
         self.special.update(starts)
 
-    def units(self, view: View) -> "SpecialBoundaries | None":
+    def items(self, view: View) -> "SpecialBoundaries | None":
         """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
         requested, or if fewer than two rows have a finite value.
 
@@ -89,9 +89,9 @@ class DiagramCurves:
         special = row_specials(view, plane.axes[0].name, self.task.points.by_name[row])
         return SpecialBoundaries(*plane.axes, special)
 
-    def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """Result of the half curve number `unit`, as arrays with the shapes of `TracedHalfCurve`."""
-        return units.solve(unit, self._special_points, self.workspace)
+    def solve(self, items: "SpecialBoundaries", item: int) -> dict[str, np.ndarray]:
+        """Result of the half curve number `item`, as arrays with the shapes of `TracedHalfCurve`."""
+        return items.solve(item, self._special_points, self.workspace)
 
     def empty_result(self) -> dict[str, np.ndarray]:
         """Result of a half curve without points: arrays of shape (0, ...)."""
@@ -100,7 +100,7 @@ class DiagramCurves:
         return TracedHalfCurve(None).arrays()
 
     def variables(
-        self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
+        self, view: View, items: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
         """All curves as variables of the file. view: the file with all rows. results: results of all half
         curves by number, with shapes as in `TracedHalfCurve`.
@@ -125,9 +125,9 @@ class DiagramCurves:
             variables += criticality_record(criticalities, names, self.task.config.gamma1)
         if options.bautin_parameter is not None:
             variables += self._bautin_curves(plane, criticalities, *options.bautin_parameter)
-        if units is not None:
+        if items is not None:
             curves = with_hopf_ends(
-                units.curves(results), plane, criticalities, unstored_specials(view, self._finite)
+                items.curves(results), plane, criticalities, unstored_specials(view, self._finite)
             )
             variables += cycle_curve_record(curves, names)
         return variables

@@ -62,12 +62,12 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     widest = max(others, key=lambda axis: points.shape[axis])
     step = max(1, MAX_POINTS_IN_MEMORY * points.shape[widest] // prod(points.shape))
     for first in range(0, points.shape[widest], step):
-        place: list[slice] = [slice(None)] * len(points.shape)
-        place[widest] = slice(first, first + step)
-        columns = [points.columns[axis][place[axis]] for axis in others]
+        index: list[slice] = [slice(None)] * len(points.shape)
+        index[widest] = slice(first, first + step)
+        columns = [points.columns[axis][index[axis]] for axis in others]
         fixed = np.stack([table.ravel() for table in np.meshgrid(*columns, indexing="ij")], axis=-1)
         growth, frequency, unstable = (
-            np.moveaxis(values[name][tuple(place)], along, len(others))
+            np.moveaxis(values[name][tuple(index)], along, len(others))
             for name in ("growth_rate", "frequency", "unstable_count")
         )
         shape = (len(fixed), points.shape[along])

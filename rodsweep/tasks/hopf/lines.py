@@ -39,15 +39,21 @@ class HopfLine:
         """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
-        from ...solve.changes.unstable_modes import CHANGE_COUNTS
+        from ...solve.changes.unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
         from ...solve.point import FAILURES
 
         start = self.start
         stop = self.stop
         if self.name == "F":
-            stop = min(stop, self._crushing_share * self.fixed["k1"] * (1 - CHANGE_COUNTS.crushing_margin))
+            stop = min(
+                stop,
+                self._crushing_share * self.fixed["k1"] * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin),
+            )
         if self.name == "k1":
-            start = max(start, self.fixed["F"] / (self._crushing_share * (1 - CHANGE_COUNTS.crushing_margin)))
+            start = max(
+                start,
+                self.fixed["F"] / (self._crushing_share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)),
+            )
         if not start < stop:
             return None
         at_start: dict[str, Any] = self.fixed | {self.name: start}

@@ -16,7 +16,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy import refinement
-from rodsweep.solve.cycle.accuracy.cycle_errors import CYCLE_ERRORS
+from rodsweep.solve.cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS
 from rodsweep.solve.cycle.accuracy.minimal_period import (
     common_divisor,
     over_minimal_period,
@@ -92,8 +92,8 @@ def test_accuracy_asked_for_is_reached():
         assert c.measures.tip_y_max == pytest.approx(exact.measures.tip_y_max, rel=accuracy)
         for name in ("tip_x_min", "tip_x_max", "tip_theta_max"):
             error = abs(getattr(c.measures, name) - getattr(exact.measures, name)) / exact.measures.tip_y_max
-            assert error <= c.errors.extrema_error <= CYCLE_ERRORS.extrema_tolerance_ratio * accuracy
-        assert abs(c.measures.energy_imbalance) <= CYCLE_ERRORS.extrema_tolerance_ratio * accuracy
+            assert error <= c.errors.extrema_error <= CYCLE_ERROR_SETTINGS.extrema_tolerance_ratio * accuracy
+        assert abs(c.measures.energy_imbalance) <= CYCLE_ERROR_SETTINGS.extrema_tolerance_ratio * accuracy
 
 
 def test_cycle_does_not_depend_on_the_start():
@@ -452,7 +452,9 @@ def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
 
 def test_a_motion_that_takes_too_many_steps_is_not_settled_and_says_so(monkeypatch):
     """Motions that return seldom went on for a minute, because only returns were counted."""
-    monkeypatch.setattr(schemes, "SCHEMES", replace(schemes.SCHEMES, default_max_steps=1))
+    monkeypatch.setattr(
+        schemes, "TIME_SCHEME_SETTINGS", replace(schemes.TIME_SCHEME_SETTINGS, default_max_steps=1)
+    )
     c = solve_cycle(rod_of(240.0, *SOFT), REQUEST)
     assert c.status == CycleStatus.not_settled
     assert c.periods < REQUEST.most_periods

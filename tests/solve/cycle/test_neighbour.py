@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
-from rodsweep.solve.cycle.along_parameter import PREDICTION, CyclePredictor
+from rodsweep.solve.cycle.along_parameter import CYCLE_PREDICTION_SETTINGS, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -53,7 +53,7 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
 
 def test_a_chain_goes_on_by_the_cycles_behind(chain):
     last = chain[-1].predictor
-    assert np.count_nonzero(last.orders == 0) == PREDICTION.max_earlier_orbits
+    assert np.count_nonzero(last.orders == 0) == CYCLE_PREDICTION_SETTINGS.max_earlier_orbits
     assert last.offsets[0] == 0 and np.all(last.offsets[1:] > 0)  # it went downwards
 
 

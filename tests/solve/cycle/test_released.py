@@ -9,7 +9,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
-from rodsweep.solve.cycle.transient.shape_trace import SHAPE_TRACE
+from rodsweep.solve.cycle.transient.shape_trace import SHAPE_TRACE_SETTINGS
 from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
 from rodsweep.solve.motion.integrator import integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
@@ -38,8 +38,8 @@ def test_a_rod_below_flutter_comes_to_rest_and_the_motion_ends_there():
     found = released(replace(FLUTTER, F=20.0), 0.7, 0.5)
     deflection = np.abs(found.motion.shapes[1])
     assert found.status == CycleStatus.straight
-    assert deflection[-1].max() < 2 * SHAPE_TRACE.max_rest_deflection
-    assert deflection[-20:].max() > SHAPE_TRACE.max_rest_deflection
+    assert deflection[-1].max() < 2 * SHAPE_TRACE_SETTINGS.max_rest_deflection
+    assert deflection[-20:].max() > SHAPE_TRACE_SETTINGS.max_rest_deflection
 
 
 def test_of_two_stable_states_the_place_decides():
@@ -60,4 +60,4 @@ def test_the_motion_is_that_of_another_time_scheme():
 def test_a_motion_that_settles_slowly_is_stored_up_to_its_limit():
     onset = 37.0
     found = released(replace(FLUTTER, F=onset), 0.7, 0.5)
-    assert found.motion.shapes.shape[1] <= SHAPE_TRACE.max_frames
+    assert found.motion.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_frames

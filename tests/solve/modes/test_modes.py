@@ -24,7 +24,7 @@ from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
 from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM, largest_norm
+from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, largest_norm
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.modes.propagator import Propagator, exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -592,7 +592,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
 
 
 def test_a_search_that_is_given_up_leaves_the_bound_where_it_is(monkeypatch):
-    monkeypatch.setattr(peak_module, "NORM_MAXIMUM", replace(NORM_MAXIMUM, max_halvings=1))
+    monkeypatch.setattr(peak_module, "NORM_MAXIMUM_SETTINGS", replace(NORM_MAXIMUM_SETTINGS, max_halvings=1))
     propagator = toy([[-0.05, 9 * 155.0], [-155.0 / 9, -0.05]])
     (largest, _), bound = largest_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
     scan = brute_force(propagator, np.linspace(1, 8, 4000)).max()

@@ -22,7 +22,7 @@ from rodsweep.solve.motion.integrator import (
 )
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.motion.predictor import extrapolate
-from rodsweep.solve.motion.step_record import STEP_RECORD
+from rodsweep.solve.motion.step_record import STEP_RECORD_SETTINGS
 from rodsweep.solve.motion.time_scheme import EXTRAPOLATION_POINTS, TimeScheme
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -180,7 +180,7 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
 
 def test_all_steps_of_a_long_run_are_kept():
     beam = Beam(ROD, mesh(1, 6))
-    start, steps = 0.1 * leading_mode(beam).z.real, 3 * STEP_RECORD.first_capacity
+    start, steps = 0.1 * leading_mode(beam).z.real, 3 * STEP_RECORD_SETTINGS.first_capacity
     method = TimeScheme("arkimex", "3", equal_steps=True)
     run = integrator(beam.mesh, method).run(beam, start, 0.03, 0.03 / steps)
     assert run.times == pytest.approx(np.linspace(0.0, 0.03, steps + 1))

@@ -13,7 +13,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.orbit.matrix.elimination import eliminate
-from rodsweep.solve.orbit.matrix.inversion import INVERSION, invert
+from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert
 from rodsweep.solve.orbit.matrix.linearisation import change_along, jump_of
 from rodsweep.solve.orbit.matrix.phase import phase, phase_change, phase_row
 from rodsweep.solve.orbit.matrix.right_sides import equations, residuals, right_sides
@@ -88,13 +88,13 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
 
 
 @pytest.mark.kernel
-@pytest.mark.parametrize("n", [5, INVERSION.panel, 54])
+@pytest.mark.parametrize("n", [5, INVERSION_SETTINGS.panel, 54])
 @pytest.mark.parametrize("unit", [1e-8, 1.0, 1e8])
 def test_an_inverse_is_as_accurate_in_any_unit(n, unit):
     random = np.random.default_rng(n)
     A = unit * (random.normal(size=(n, n)) + np.diag(random.uniform(5, 50, n)))
     inverse = A.copy()
-    invert(inverse, np.empty(n, np.int64), np.empty((n, INVERSION.panel)))
+    invert(inverse, np.empty(n, np.int64), np.empty((n, INVERSION_SETTINGS.panel)))
     assert np.abs(inverse @ A - np.eye(n)).max() < 1e-13
 
 

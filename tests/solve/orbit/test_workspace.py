@@ -12,7 +12,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
-from rodsweep.solve.orbit.matrix.workspace import WORKSPACE, MatrixMemory, NewtonWorkspace
+from rodsweep.solve.orbit.matrix.workspace import WORKSPACE_SETTINGS, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
@@ -116,7 +116,10 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
 
 def test_a_released_workspace_keeps_what_most_rods_need():
     workspace = NewtonWorkspace()
-    for numbers, kept in ((WORKSPACE.kept_numbers, True), (WORKSPACE.kept_numbers + 1, False)):
+    for numbers, kept in (
+        (WORKSPACE_SETTINGS.kept_numbers, True),
+        (WORKSPACE_SETTINGS.kept_numbers + 1, False),
+    ):
         memory = MatrixMemory(workspace, numbers, 1, 1)
         buffer = memory.factors.blocks.base
         workspace.release()

@@ -14,7 +14,7 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import problem as problem_module
 from rodsweep.solve.spectrum.krylov_schur import uniform_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.shift_invert import KRYLOV
+from rodsweep.solve.spectrum.shift_invert import KRYLOV_SETTINGS
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -171,9 +171,9 @@ class Forgetful:
     def __getattr__(self, name):
         return getattr(self.solver, name)
 
-    def solve(self, rod, shift, wanted, tight=False):
-        w = self.solver.solve(rod, shift, wanted, tight)
-        if wanted >= self.remembers_from:
+    def solve(self, rod, shift, requested, tight=False):
+        w = self.solver.solve(rod, shift, requested, tight)
+        if requested >= self.remembers_from:
             return w
         return w[w.real < w.real.max() - 1e-6 * abs(w.real.max())]
 
@@ -212,11 +212,11 @@ def test_mesh_never_gives_more_eigenvalues_than_it_has(gamma3):
     """k2 = inf: two thirds of the pencil's eigenvalues are infinite, and no space is left for them."""
     rng = np.random.default_rng(1)
     for nodes in range(6, 20):
-        for wanted in range(1, nodes // 2 + 1):
+        for requested in range(1, nodes // 2 + 1):
             rod = Rod(F=float(10 ** rng.uniform(0, 2.5)), k1=np.inf, k2=np.inf, gamma3=gamma3)
             solver = uniform_solver(Resolution(1, nodes))
-            found = solver.solve(rod, 1.05 * most_amplified_wave(rod)[0], wanted, tight=True)
-            assert wanted <= len(found) <= nodes
+            found = solver.solve(rod, 1.05 * most_amplified_wave(rod)[0], requested, tight=True)
+            assert requested <= len(found) <= nodes
             assert (np.abs(found) < 1e12).all(), "an infinite one is as large as rounding lets it be"
 
 
@@ -385,7 +385,9 @@ def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
 
 def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     """petsc4py would set it aside until the end of the process, some megabyte a resolution."""
-    solvers = [uniform_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV.max_uniform_solvers)]
+    solvers = [
+        uniform_solver(Resolution(1, nodes)) for nodes in range(6, 6 + KRYLOV_SETTINGS.max_uniform_solvers)
+    ]
     assert uniform_solver(Resolution(1, 6)) is solvers[0]
     uniform_solver(Resolution(2, 6))
     first, longest_unused, *others = solvers
@@ -417,7 +419,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     )
     result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
-    assert 3 * result.elements * result.order > KRYLOV.max_dense_unknowns
+    assert 3 * result.elements * result.order > KRYLOV_SETTINGS.max_dense_unknowns
     assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ...certificate.winding_number import COUNT, NO_INTEGER, PHASE_LOST, EigenvalueCount
+from ...certificate.winding_number import NO_INTEGER, PHASE_LOST, WINDING_SETTINGS, EigenvalueCount
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, BoundedPropagators
 from ..elements.settings import ARM_ELEMENTS
@@ -84,7 +84,7 @@ def count_right_of(
     except FloatingPointError as unresolved:
         return EigenvalueCount(None, 0, str(unresolved))
     number = round(total / math.pi)
-    if abs(total / math.pi - number) > COUNT.integer_tolerance:
+    if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
         return EigenvalueCount(None, nodes, NO_INTEGER)
     return EigenvalueCount(number + int((known.real > line).sum()), nodes)
 
@@ -113,7 +113,10 @@ def _corner(line: float, hull: Hull) -> complex:
     line.
     """
     real, imag = hull.box(max(-line, 0.0))
-    return complex(COUNT.width_factor * real + COUNT.width_added, max(imag, COUNT.min_height * abs(line)))
+    return complex(
+        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.width_added,
+        max(imag, WINDING_SETTINGS.min_height * abs(line)),
+    )
 
 
 def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 from ....arrays import Complex
 from ....model.compiled.compilation import compiled
-from ...exponents import EXPONENTS
+from ...exponents import EXPONENT_SETTINGS
 from ...value import DeterminantValue
 from ..determinant import BoundedPropagators
 from ..hull.region import Hull, clearance
@@ -103,7 +103,7 @@ def _node_inside(
     """
     w = node.w
     samples, (W, propagators) = arm
-    unit = min(trial[0], ARM_COUNT.max_log_slope / max(abs(node.L), EXPONENTS.least_divisor))
+    unit = min(trial[0], ARM_COUNT.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
     smallest = ARM_COUNT.smallest_radius * unit
     room = ARM_COUNT.max_change - ARM_COUNT.rounding_over_noise * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
@@ -122,7 +122,7 @@ def _node_inside(
             v = w + rho * direction
             log = chain_size(v, W, propagators) - _log_of_known(v, known)
             size = max(size, log - tangent(tried, v, samples).real)
-            M = ARM_COUNT.between_points_factor * math.exp(min(size - here, EXPONENTS.largest_exponent))
+            M = ARM_COUNT.between_points_factor * math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
             reach = _reach_of_circle(rho, M, room)
             if reach <= best.reach or (reach < ARM_COUNT.min_reach_fraction * rho and rho / 2 >= smallest):
                 reach = 0.0
@@ -151,5 +151,5 @@ def _log_of_known(v: complex, known: Complex) -> float:
     """log prod |v - w_n| over the known eigenvalues w_n, (n,)."""
     total = 0.0
     for n in range(len(known)):
-        total += math.log(max(abs(v - known[n]), EXPONENTS.least_divisor))
+        total += math.log(max(abs(v - known[n]), EXPONENT_SETTINGS.least_divisor))
     return total

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ...exponents import EXPONENTS
+from ...exponents import EXPONENT_SETTINGS
 from .settings import ARM_ELEMENTS
 
 
@@ -102,7 +102,7 @@ def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
     for q in range(quantities - 1):
         for arm in range(arms):
             for e in range(elements):
-                size = EXPONENTS.least_divisor  # a compliance or a drag may be 0
+                size = EXPONENT_SETTINGS.least_divisor  # a compliance or a drag may be 0
                 first = 0.0
                 second = 0.0
                 for i in range(stages):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
-from ...certificate.box import BOX
+from ...certificate.box import BOX_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,7 +62,7 @@ class Hull(NamedTuple):
             return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
-        pad = BOX.padding * depth + BOX.least_padding
+        pad = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
         return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
 
 

@@ -44,14 +44,14 @@ def _outermost(axes: Axes, which: str) -> Axes:
     at the top or at the right. which: "x" or "y".
     """
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
-    place = axes.get_subplotspec()
+    grid_cell = axes.get_subplotspec()
     panels = [other for other in shared.get_siblings(axes) if other.get_subplotspec() is not None]
-    if place is None or not panels:
+    if grid_cell is None or not panels:
         return axes
     if which == "x":
-        column = [other for other in panels if other.get_subplotspec().colspan == place.colspan]
+        column = [other for other in panels if other.get_subplotspec().colspan == grid_cell.colspan]
         return min(column, key=lambda other: other.get_subplotspec().rowspan.start)
-    row = [other for other in panels if other.get_subplotspec().rowspan == place.rowspan]
+    row = [other for other in panels if other.get_subplotspec().rowspan == grid_cell.rowspan]
     return max(row, key=lambda other: other.get_subplotspec().colspan.start)
 
 

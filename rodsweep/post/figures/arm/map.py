@@ -67,17 +67,17 @@ def draw_arm_map(request: FigureRequest) -> str:
     first = {name: 0 for name in view.arm_axes if name not in axes}
     if DRAG in first:  # the likeliest drag has the smallest number
         first[DRAG] = int(np.argmin(view.variables[DRAG]))
-    place = tuple(first.get(name, slice(None)) for name in view.arm_axes)
+    index = tuple(first.get(name, slice(None)) for name in view.arm_axes)
     panels = PANELS[view.task](view)
-    style.require_content(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
+    style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
     figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
     handles: list[Artist] = []
     for subplot, panel in zip(drawn, panels, strict=True):
         if y:
-            handles = [*handles, *_map(subplot, panel, view, (x, y), place)]
+            handles = [*handles, *_map(subplot, panel, view, (x, y), index)]
         else:
-            handles = [*handles, *_lines(subplot, panel, view, x, place)]
-    covers = [_cover(plot, view, panel, (x, y), place) for plot, panel in zip(drawn, panels, strict=True)]
+            handles = [*handles, *_lines(subplot, panel, view, x, index)]
+    covers = [_cover(plot, view, panel, (x, y), index) for plot, panel in zip(drawn, panels, strict=True)]
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     banded = [DRAG] if not y and DRAG in first else []
@@ -115,13 +115,13 @@ def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
 
 
-def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
+def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], index: Any) -> list[Artist]:
     """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
-    place: index of the drawn points in the grid.
+    index: index of the drawn points in the grid.
     """
     (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
-    values = np.ma.masked_invalid(panel.values[place].T)
-    style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[place].T, panel.label)
+    values = np.ma.masked_invalid(panel.values[index].T)
+    style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
     handles: list[Artist] = []
     if panel.zero_label and values.min() < 0 < values.max():
         axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)
@@ -132,8 +132,8 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
     return handles
 
 
-def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
-    """Draws a panel as curves against the quantity `name`; returns legend entries. place: index of the drawn
+def _lines(axes: Axes, panel: Panel, view: View, name: str, index: Any) -> list[Artist]:
+    """Draws a panel as curves against the quantity `name`; returns legend entries. index: index of the drawn
     points in the grid.
     """
     x, label = _axis(view, name)
@@ -141,9 +141,9 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     handles: list[Artist] = []
     for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
         style_of_line = "o" if name == DRAG else "-o"
-        axes.plot(x, values[place], style_of_line, ms=2.5, lw=1.2, color=colour)
-        handles += _band(axes, view, name, values, place, colour)
-        if line and np.isfinite(values[place]).any():
+        axes.plot(x, values[index], style_of_line, ms=2.5, lw=1.2, color=colour)
+        handles += _band(axes, view, name, values, index, colour)
+        if line and np.isfinite(values[index]).any():
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale(axes, "x", x)
     if name == DRAG:
@@ -153,33 +153,33 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     return handles
 
 
-def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
+def _band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
     """Draws the range of a result over the drags as a band; returns the legend entry as a list. x: name of
-    the quantity on the horizontal axis. values: the result at all points. place: as in `_lines`.
+    the quantity on the horizontal axis. values: the result at all points. index: as in `_lines`.
     """
     if DRAG not in view.arm_axes or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
     drag = view.arm_axes.index(DRAG)
-    whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(place) if i != drag)]
+    whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(index) if i != drag)]
     low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
     axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
     line = DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line})")]
 
 
-def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
+def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: Any) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells without a rod or a value; returns
-    legend entries. names: quantities on x and y. place: as in `_map`.
+    legend entries. names: quantities on x and y. index: as in `_map`.
     """
     x, y = names
-    rods = view.variables["status"][place] < NOT_SLENDER
-    empty = [(rods & np.isnan(panel.values[place]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []
+    rods = view.variables["status"][index] < NOT_SLENDER
+    empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []
     across = cell_edges(_axis(view, x)[0])
     limits = axes.get_ylim()
     up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
     for variable, value, label, look in COVERED_CELL_LOOKS:
-        chosen = view.variables[variable][place] == value
+        chosen = view.variables[variable][index] == value
         empty.append((chosen if variable == "status" else chosen & rods, label, look))
     for chosen, label, look in empty:
         for i, j in np.argwhere(chosen if y else chosen[:, None]):

@@ -102,6 +102,6 @@ def cell_centres(edges: Array) -> Array:
     """
     centres = np.empty(len(edges) - 1)
     centres[0] = (edges[0] + edges[1]) / 2
-    for place in range(1, len(centres)):
-        centres[place] = 2 * edges[place] - centres[place - 1]
+    for i in range(1, len(centres)):
+        centres[i] = 2 * edges[i] - centres[i - 1]
     return centres

@@ -73,8 +73,8 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
-        for k, place in enumerate(drawn):
-            x, y, theta = (cycle.values[name][place] for name in SHAPE_VARIABLES)
+        for k, frame in enumerate(drawn):
+            x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
         axes.set_xlabel(cycle.units.along("x"))

@@ -114,8 +114,8 @@ def _break_texts(figure: Figure) -> bool:
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
         box = axes.get_window_extent()
-        place = axes.get_subplotspec()
-        rows = 1 if place is None else ceil(place.get_gridspec().nrows / len(place.rowspan))
+        grid_cell = axes.get_subplotspec()
+        rows = 1 if grid_cell is None else ceil(grid_cell.get_gridspec().nrows / len(grid_cell.rowspan))
         centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
         across = min(centred, _pitch(axes, figure) - 2 * margin)
         down = max(figure.bbox.height / rows - 2 * margin, box.height)
@@ -134,13 +134,13 @@ def _pitch(axes: Axes, figure: Figure) -> float:
     """Distance, in pixels, between the centres of a panel and of the nearest panel in another column; the
     width of the figure if there is only one column.
     """
-    place = axes.get_subplotspec()
-    if place is None:
+    grid_cell = axes.get_subplotspec()
+    if grid_cell is None:
         return float(figure.bbox.width)
     middles = {
         round(other.get_position(original=True).intervalx.mean() * figure.bbox.width)
         for other in figure.axes
-        if (its := other.get_subplotspec()) is not None and its.get_gridspec() is place.get_gridspec()
+        if (its := other.get_subplotspec()) is not None and its.get_gridspec() is grid_cell.get_gridspec()
     }
     own = round(axes.get_position(original=True).intervalx.mean() * figure.bbox.width)
     return float(min((abs(middle - own) for middle in middles - {own}), default=figure.bbox.width))
@@ -186,12 +186,12 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
     width, height = figure.get_size_inches()
     spare = [height]
     for axes in figure.axes:
-        place = axes.get_subplotspec()
-        if place is None or hasattr(axes, "_colorbar"):
+        grid_cell = axes.get_subplotspec()
+        if grid_cell is None or hasattr(axes, "_colorbar"):
             continue
         room = axes.get_position(original=True)
-        ratios = np.asarray(place.get_gridspec().get_height_ratios())
-        part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
+        ratios = np.asarray(grid_cell.get_gridspec().get_height_ratios())
+        part = ratios[grid_cell.rowspan.start : grid_cell.rowspan.stop].sum() / ratios.sum()
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
         scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
         own = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)

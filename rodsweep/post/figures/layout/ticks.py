@@ -23,8 +23,8 @@ def visible_labels(axis: Axis) -> list[Text]:
     near = EDGE_TOLERANCE * (high - low)
     return [
         label
-        for place, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False)
-        if label.get_visible() and label.get_text() and low - near <= place <= high + near
+        for position, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False)
+        if label.get_visible() and label.get_text() and low - near <= position <= high + near
     ]
 
 

@@ -35,10 +35,10 @@ def draw_eigenvalues(view: View) -> Figure:
     axes = figure.subplots()
     handles = _mark(axes, growth, frequency, growth > 0)
     scale_if_spread(axes, growth, frequency)
-    for place in range(min(modes, MAX_NUMBERED)):
-        if np.isfinite(growth[place]):
-            at = growth[place], frequency[place]
-            axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", size=8)
+    for mode in range(min(modes, MAX_NUMBERED)):
+        if np.isfinite(growth[mode]):
+            at = growth[mode], frequency[mode]
+            axes.annotate(str(mode + 1), at, (5, 5), textcoords="offset points", size=8)
     axes.axvline(0, color="0.5", lw=0.6)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)

@@ -114,10 +114,10 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
     found = int(view.variables["crossing_count"].ravel()[rod])
     start = 0.0
     word = "monotone"
-    for place in np.flatnonzero(kinds > 0):
-        yield start, float(F[place]), word
-        start = float(F[place])
-        word = _class_beyond(int(kinds[place]), int(after[place]))
+    for index in np.flatnonzero(kinds > 0):
+        yield start, float(F[index]), word
+        start = float(F[index])
+        word = _class_beyond(int(kinds[index]), int(after[index]))
     if found > np.count_nonzero(kinds > 0):  # the file has no room for all crossings
         word = "undecided"
     if np.isfinite(end):
@@ -134,11 +134,11 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
     kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
     values = view.point_columns[row]
     found: list[tuple[float, float, int]] = []
-    for place in np.flatnonzero(np.isfinite(values)):
-        for this, following in pairwise(np.flatnonzero(kinds[place] > 0)):
-            word = _class_beyond(int(kinds[place, this]), int(after[place, this]))
-            middle = (at[place, this] + at[place, following]) / 2
-            found.append((float(middle), float(values[place]), numbers[word]))
+    for index in np.flatnonzero(np.isfinite(values)):
+        for this, following in pairwise(np.flatnonzero(kinds[index] > 0)):
+            word = _class_beyond(int(kinds[index, this]), int(after[index, this]))
+            middle = (at[index, this] + at[index, following]) / 2
+            found.append((float(middle), float(values[index]), numbers[word]))
     x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
 
@@ -200,20 +200,20 @@ def mark_thresholds_on_bars(
 
 
 def class_along_row(
-    view: View, variable: str, line: str, row: str, place: int, edges: Array
+    view: View, variable: str, line: str, row: str, index: int, edges: Array
 ) -> NDArray[np.intp]:
     """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
-    parameters along and across rows. place: index of the row. edges: edges of the pixels, (n + 1,).
+    parameters along and across rows. index: index of the row. edges: edges of the pixels, (n + 1,).
 
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
     """
     x = view.variables[line]
-    classes = view.by_point(variable)[place]
-    changes = _changes(view, variable, line, place)
+    classes = view.by_point(variable)[index]
+    changes = _changes(view, variable, line, index)
     if variable == "class":
         between, rows, found = classes_between_crossings(view, row)
-        own = rows == view.axes[row][place]
+        own = rows == view.axes[row][index]
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
@@ -230,10 +230,10 @@ def class_along_row(
     return found
 
 
-def _changes(view: View, variable: str, line: str, place: int) -> Array:
-    """Positions of the changes of class along a row, in increasing order, (m,). place: index of the row."""
+def _changes(view: View, variable: str, line: str, index: int) -> Array:
+    """Positions of the changes of class along a row, in increasing order, (m,). index: index of the row."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
-    v = {name: view.by_point(name)[place] for name in names if name in view.variables}
+    v = {name: view.by_point(name)[index] for name in names if name in view.variables}
     at = v["crossing_at"]
     kinds = v["crossing_kind"]
     if variable == "class":
@@ -242,6 +242,6 @@ def _changes(view: View, variable: str, line: str, place: int) -> Array:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
     if line in CRUSHING and has_covering(view.config):  # other rods are not crushed at F = k1
         (other,) = set(CRUSHING) - {line}
-        found.append(view.point_columns[other][[place]])
+        found.append(view.point_columns[other][[index]])
     changes = np.concatenate(found)
     return np.unique(changes[np.isfinite(changes)])

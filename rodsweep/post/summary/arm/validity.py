@@ -44,8 +44,8 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
         everywhere = " at all points" if len(applies) > 1 else ""
         return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
-    place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
-    name = EFFECTS[int(effect[place])].replace("_", " ")
-    size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
+    index = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
+    name = EFFECTS[int(effect[index])].replace("_", " ")
+    size = f"{'up to ' * int(affected.sum() > 1)}{excess[index]:.2g}"
     doubt = f", more than {DOUBTFUL_FROM:g}" if worst == Validity.doubtful else ""
     return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"

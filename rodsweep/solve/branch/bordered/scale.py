@@ -21,7 +21,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.arm_on_mesh import profile_compliance_on
-from ....discretization.elements.elements import ELEMENTS
+from ....discretization.elements.elements import ELEMENT_SETTINGS
 from ....discretization.elements.mesh import Mesh
 from ....discretization.state_layout import StateLayout
 from ....model.material.build import Build
@@ -72,7 +72,7 @@ def deflection_row(orbit: Orbit) -> Array:
     return _deflection_row(form.layout, form.mesh, form.rod.build)
 
 
-@lru_cache(maxsize=ELEMENTS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """Cached `deflection_row`, (n,); callers share the array and must not change it."""
     # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight

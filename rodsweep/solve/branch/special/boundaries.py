@@ -1,7 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
 `changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a unit of work; its result does not depend on other half curves.
+special point of a row. Each half curve is a work item; its result does not depend on other half curves.
 """
 
 import math
@@ -12,7 +12,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import CYCLE_CURVES, SpecialCurveProblem
+from .curves import END_SETTINGS, SpecialCurveProblem
 from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalfCurve
 from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
@@ -38,7 +38,7 @@ class RowSpecialPoint:
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
-    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve (unit) 2 i leads
+    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve 2 i leads
     from special point i to larger values of the rows' parameter, half curve 2 i + 1 to smaller values.
     """
 
@@ -46,18 +46,18 @@ class SpecialBoundaries:
     rows: PlaneAxis
     special: Sequence[RowSpecialPoint]
 
-    def units_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
+    def items_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
         curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
-            needed += search.missing_units
-            likely += curves.possible_units(search)
+            needed += search.missing_items
+            likely += curves.possible_items(search)
         return needed + likely if needed else []
 
     def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
-        """All curves, from the results of the half curves; valid if `units_to_solve(results)` is empty."""
+        """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
@@ -72,24 +72,24 @@ class SpecialBoundaries:
             yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY.max_distance)
 
     def solve(
-        self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
+        self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
     ) -> Arrays:
-        """The result of half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that returns
+        """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # A unit is twice the index of its special point, plus one for the half to smaller values.
-        place, behind = divmod(unit, 2)
-        one = self.special[place]
+        # A item is twice the index of its special point, plus one for the half to smaller values.
+        index, behind = divmod(item, 2)
+        one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
-    def row_of(self, unit: int) -> int:
-        """Index of the row on which the half curve number `unit` starts."""
-        return self.special[unit // 2].number
+    def row_of(self, item: int) -> int:
+        """Index of the row on which the half curve number `item` starts."""
+        return self.special[item // 2].number
 
-    def unit_label(self, unit: int) -> str:
-        """Text for half curve `unit` in the progress display: kind of curve, starting row, direction."""
-        place, behind = divmod(unit, 2)
-        one = self.special[place]
+    def item_label(self, item: int) -> str:
+        """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
+        index, behind = divmod(item, 2)
+        one = self.special[index]
         way = "down" if behind else "up"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
 
@@ -114,29 +114,28 @@ class _CurvesOfKind:
 
     def next_seed(self, left: Sequence[int]) -> int:
         """Median special point among `left`, so that the two halves of its curve have similar lengths."""
-        return sorted(left, key=self._place)[len(left) // 2]
+        return sorted(left, key=self._position)[len(left) // 2]
 
-    def missing_units(self, seed: int) -> list[int]:
+    def missing_items(self, seed: int) -> list[int]:
         """Numbers of the half curves still to be followed for the curve through special point `seed`."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
-            return [unit for unit in (ahead, behind) if unit not in self.results]
+            return [item for item in (ahead, behind) if item not in self.results]
         half = TracedHalfCurve.of(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
 
-    def possible_units(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
+    def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Numbers of the half curves that may be needed later: from all special points on the rows on which
         the needed half curves start."""
-        rows = {self.special[unit // 2].row for unit in search.missing_units}
-        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._place)
-        return [unit for i in beside for unit in self.missing_units(i)]
+        rows = {self.special[item // 2].row for item in search.missing_items}
+        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._position)
+        return [item for i in beside for item in self.missing_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve through the special point `seed`, joined from two halves; None if a half could not be
-        followed."""
+        """The curve through the special point `seed`, joined from two halves; None if a half failed."""
         ahead = TracedHalfCurve.of(self.results[2 * seed])
         if ahead.half is None:
             return None
@@ -164,19 +163,20 @@ class _CurvesOfKind:
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
         return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
 
-    def _place(self, i: int) -> tuple[float, float]:
-        """Sort key of special point i: value of the rows' parameter, then value of the parameter along the
-        row."""
+    def _position(self, i: int) -> tuple[float, float]:
+        """Sort key of special point i: value of the rows' parameter, then of the parameter along the row."""
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
         """Positions of both ends of a curve in the parameter plane, each as (position on the rows' axis,
         position along a row), from 0 to 1, in ascending order."""
-        return sorted((p.place, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1]))
+        return sorted(
+            (p.row_coordinate, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1])
+        )
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
-        if one.tip_y_max >= CYCLE_CURVES.min_amplitude:
+        if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
@@ -184,7 +184,7 @@ class _CurvesOfKind:
             x = self.line.coordinate(end.at)
             y = self.rows.coordinate(end.row)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.coordinate(one.row) - y) / (last.place - y)
+            share = (self.rows.coordinate(one.row) - y) / (last.row_coordinate - y)
             chord = x + share * (self.line.coordinate(last.at) - x)
             if (
                 0 <= share <= 1
@@ -225,14 +225,14 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
     """Distance along the row from special point `one` to a curve, in row lengths; inf if it is not near."""
     if limits.kind != one.kind:
         return math.inf
-    place = limits.rows.coordinate(one.row)
+    row_coordinate = limits.rows.coordinate(one.row)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= place <= high or not _near(limits, a, b, one):
+        if not low <= row_coordinate <= high or not _near(limits, a, b, one):
             continue
         try:
-            crossing = limits.on_row(a, b, place)
+            crossing = limits.on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:

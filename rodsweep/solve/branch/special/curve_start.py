@@ -58,14 +58,14 @@ def first_point_of_curve(
     scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
-    place = rows.coordinate(row)
+    row_coordinate = rows.coordinate(row)
     start = SolvedPoint(
         orbit=orbit,
         scale=scale,
         ahead=ahead / np.linalg.norm(ahead),
-        row_coordinate=place,
+        row_coordinate=row_coordinate,
         parameter=special.at,
         row_parameter=row,
     )
     family = CycleFamily.near_point(special.kind, rows, start, workspace)
-    return family.correct_with_error(orbit, place, np.array([1.0, 0.0]))
+    return family.correct_with_error(orbit, row_coordinate, np.array([1.0, 0.0]))

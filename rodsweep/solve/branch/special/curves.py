@@ -46,7 +46,7 @@ CURVE_STEPS = StepControl(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CycleCurveSettings:
+class CurveEndSettings:
     """Settings for the ends of a curve of special points."""
 
     min_loop_points: int = 5
@@ -66,7 +66,7 @@ class CycleCurveSettings:
     the angle between multiplier and real axis is below this number at the last point."""
 
 
-CYCLE_CURVES = CycleCurveSettings()
+END_SETTINGS = CurveEndSettings()
 
 ALONG_BRANCH = np.array([1.0, 0.0])
 """Direction along the branch, (2,), in components (along the branch, along the rows' axis)."""
@@ -116,17 +116,17 @@ class SpecialCurveProblem:
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
-            place = last.row_coordinate + self.side * length
+            at_row = last.row_coordinate + self.side * length
             across = ALONG_BRANCH
             slope = 0.0
             rates = None
         else:
-            start, place = self._predicted(behind, self._step_before_crushing(behind, length))
+            start, at_row = self._predicted(behind, self._step_before_crushing(behind, length))
             change = last.scale.components(start) - last.scale.components(last.orbit)
-            across = last.normal(np.append(change, place - last.row_coordinate))
+            across = last.normal(np.append(change, at_row - last.row_coordinate))
             slope = chord_slope(*behind[-2:])
             rates = last.normal_derivatives
-        point = self._family(last).correct_with_error(start, place, across, slope, rates, last)
+        point = self._family(last).correct_with_error(start, at_row, across, slope, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.interpolate(start)
         # Prediction and point can be compared only on the same mesh.
@@ -156,24 +156,24 @@ class SpecialCurveProblem:
             weights = lagrange_weights(lengths, longest)
             rod = known[-1].orbit.form.rod
             at = float(np.dot(weights, [point.parameter for point in known]))
-            place = float(np.dot(weights, [point.row_coordinate for point in known]))
-            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
-            return 1 - CYCLE_CURVES.crushing_margin / 2 - values["F"] / values["k1"]
+            at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
+            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(at_row)}
+            return 1 - END_SETTINGS.crushing_margin / 2 - values["F"] / values["k1"]
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=CYCLE_CURVES.crushing_accuracy))
+        return float(brentq(distance, 0.0, step, rtol=END_SETTINGS.crushing_accuracy))
 
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
         """(orbit, place on the rows' axis): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.interpolate(point.orbit).values for point in points])
-        place = float(np.dot(weights, [point.row_coordinate for point in points]))
+        at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
         orbit = replace(mesh.interpolate(points[-1].orbit), values=values)
-        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
-        return orbit_with_parameters(orbit, changed), place
+        changed = {self.line.name: at, self.rows.name: self.rows.value(at_row)}
+        return orbit_with_parameters(orbit, changed), at_row
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 - F/k1
@@ -181,9 +181,9 @@ class SpecialCurveProblem:
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
-        crushing = 1 - CYCLE_CURVES.crushing_margin - rod.F / rod.k1
+        crushing = 1 - END_SETTINGS.crushing_margin - rod.F / rod.k1
         stretch = least_stretch_of_orbit(point.orbit)
-        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CYCLE_CURVES.min_amplitude])
+        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
 
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
@@ -194,7 +194,7 @@ class SpecialCurveProblem:
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= CYCLE_CURVES.max_edge_distance:
+        if ends[0] <= END_SETTINGS.max_edge_distance:
             return None
         try:
             if margin in ROW_EDGES:
@@ -215,7 +215,7 @@ class SpecialCurveProblem:
             found[share] = self.point_near_chord(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
-        return found[zero_along_step(left, ends, 1.0, CYCLE_CURVES.edge_bracket, CYCLE_CURVES.edge_bracket)]
+        return found[zero_along_step(left, ends, 1.0, END_SETTINGS.edge_bracket, END_SETTINGS.edge_bracket)]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether the step from `behind[-1]` to `point` passes the first point of the curve."""
@@ -225,25 +225,25 @@ class SpecialCurveProblem:
         # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-        return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
+        return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """Point of the curve near the fraction `share` from `one` to `other`; raises Unsolvable."""
-        start, place = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
+        start, at_row = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.normal(other.step_from(one))
-        return self._family(other).correct(start, place, across, other.normal_derivatives)
+        return self._family(other).correct(start, at_row, across, other.normal_derivatives)
 
-    def on_row(self, one: SolvedPoint, other: SolvedPoint, place: float) -> SolvedPoint:
-        """The point of the curve between two points, at `place` on the rows' axis; raises Unsolvable."""
+    def on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
+        """The point of the curve between two points, at `at_row` on the rows' axis; raises Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
-        share = (place - one.row_coordinate) / length if length else 0.0
+        share = (at_row - one.row_coordinate) / length if length else 0.0
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).correct(start, place, ALONG_BRANCH, other.normal_derivatives)
+        return self._family(other).correct(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
     def _why_lost(self, last: SolvedPoint) -> CurveEnd:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
-            if pair is None or abs(pair.imag) < CYCLE_CURVES.min_sine_at_resonance * abs(pair):
+            if pair is None or abs(pair.imag) < END_SETTINGS.min_sine_at_resonance * abs(pair):
                 return CurveEnd.resonance
         return CurveEnd.not_followed

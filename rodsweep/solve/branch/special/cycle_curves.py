@@ -88,13 +88,13 @@ class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
     at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. place: position of `row` on its axis, from 0 to 1. period: in tau2. tip_y_max: largest tip y,
-    in L.
+    parameter. row_coordinate: position of `row` on its axis, from 0 to 1. period: in tau2. tip_y_max:
+    largest tip y, in L.
     """
 
     at: float
     row: float
-    place: float
+    row_coordinate: float
     error: float
     period: float
     tip_y_max: float
@@ -144,7 +144,7 @@ class TracedHalfCurve:
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
-        return cls(half, {int(place): float(distance) for place, distance in arrays["distances"]})
+        return cls(half, {int(index): float(distance) for index, distance in arrays["distances"]})
 
 
 def _numbers(point: CurvePoint) -> list[float]:

@@ -25,7 +25,7 @@ from ..arc import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
-from .augmented.functions import AUGMENTED, FoldFunction, TorusFunction
+from .augmented.functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 from .augmented.nearby_cycles import NearbyCycleSolver
 from .on_curve import CURVE_SECANT, CurveErrors, NormalDerivatives, SolvedPoint, orbit_with_parameters
 from .point import SpecialKind
@@ -61,8 +61,7 @@ class CycleFamily:
     def near_point(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near the point `point` of a curve of special points. Other arguments as in
-        the class."""
+        """The family of cycles near `point` on a curve of special points. Other arguments: see the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
@@ -72,8 +71,7 @@ class CycleFamily:
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
-        """The test function that is zero at special points of this kind, for cycles near the orbit of
-        `matrix`."""
+        """The test function of this kind of special points, for cycles near the orbit of `matrix`."""
         if self.kind == SpecialKind.fold:
             return FoldFunction(matrix, self.border, self.small)
         return TorusFunction(matrix)
@@ -149,16 +147,16 @@ class _SecantState:
         self,
         family: CycleFamily,
         start: Orbit,
-        place: float,
+        row_coordinate: float,
         direction: Array,
         derivatives: NormalDerivatives | None,
         is_other_mesh: bool,
     ) -> None:
         self.family = family
-        self.row_coordinate = place
+        self.row_coordinate = row_coordinate
         self.direction = direction
         self.derivatives = derivatives
-        self.orbit = family.orbit_at_row(start, place)
+        self.orbit = family.orbit_at_row(start, row_coordinate)
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
@@ -200,7 +198,11 @@ class _SecantState:
         row = self.row_coordinate + self.distance * float(self.direction[1])
         self.orbit = family.orbit_at_row(self.orbit, row)
         slope = abs(rates.test) if rates else 1.0
-        enough = AUGMENTED.tolerance if rates else AUGMENTED.tolerance_share * CURVE_SECANT.first_secant
+        enough = (
+            AUGMENTED_SETTINGS.tolerance
+            if rates
+            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT.first_secant
+        )
         condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test = self.nearby.solve(self.orbit, condition, slope, enough)
         return _SecantIterate(self.orbit, self.nearby.function.vectors, test, self.distance)
@@ -229,20 +231,19 @@ class _SecantState:
         return moved_orbit(self.orbit, self.family.scale.name, step * derivatives.on_mesh_of(self.orbit))
 
     def _point(self, step: float, derivatives: NormalDerivatives) -> SolvedPoint:
-        """The point of the curve: the last cycle, moved by the short step `step` across the curve along
-        `derivatives`."""
+        """The point of the curve: the last cycle, moved by `step` across the curve along `derivatives`."""
         family = self.family
         matrix = self.nearby.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
-        place = self.row_coordinate + (self.distance + step) * float(self.direction[1])
-        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), place)
+        row_coordinate = self.row_coordinate + (self.distance + step) * float(self.direction[1])
+        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
         scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
             ahead=ahead / np.linalg.norm(ahead),
-            row_coordinate=place,
+            row_coordinate=row_coordinate,
             parameter=getattr(orbit.form.rod, scale.name),
             row_parameter=getattr(orbit.form.rod, family.rows.name),
             normal_derivatives=derivatives,

@@ -32,25 +32,25 @@ class LeastStretchSettings:
     a resolved polynomial varies by less than this number; no search is then made there."""
 
 
-LEAST_STRETCH = LeastStretchSettings()
+LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
 def least_stretch_of_cycle(point: ArcPoint) -> float:
     """Smallest h1 of a cycle of a branch over rod and period; the smallest nodal value if this value exceeds
     `safe_nodal_stretch`."""
     rough = point.cycle.measures.least_stretch
-    if rough > LEAST_STRETCH.safe_nodal_stretch:
+    if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return rough
-    return least_stretch(point.cycle.path, LEAST_STRETCH.safe_sampled_stretch)
+    return least_stretch(point.cycle.path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch)
 
 
 def least_stretch_of_orbit(orbit: Orbit) -> float:
     """Smallest h1 of an orbit over rod and period; the smallest nodal value if this value exceeds
     `safe_nodal_stretch`."""
     rough = orbit.form.least_stretch(orbit.points)
-    if rough > LEAST_STRETCH.safe_nodal_stretch:
+    if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return rough
-    return least_stretch(CyclePath(orbit), LEAST_STRETCH.safe_sampled_stretch)
+    return least_stretch(CyclePath(orbit), LEAST_STRETCH_SETTINGS.safe_sampled_stretch)
 
 
 def least_stretch(path: CyclePath, enough: float = inf) -> float:
@@ -64,21 +64,21 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     def least_of(coefficients: Complex) -> Array:
         at = -np.ascontiguousarray(coefficients)
-        return -maxima(at, series_samples(at, LEAST_STRETCH.times_per_harmonic * len(c)))
+        return -maxima(at, series_samples(at, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c)))
 
     def least(u: Array) -> Array:
         return least_of(c @ grid.evaluation_by_element(u).T)
 
     before = [index_before_jump(int(node), grid.order) for node in form.nodal.jumps]
-    at_jumps = float(least_of(c[:, before + [place + 1 for place in before]]).min(initial=inf))
-    places = np.linspace(0.0, 1.0, LEAST_STRETCH.positions_per_node * len(grid.positions))
+    at_jumps = float(least_of(c[:, before + [index + 1 for index in before]]).min(initial=inf))
+    places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(grid.positions))
     values = least(places)
     best = int(np.argmin(values))
     rough = min(float(values[best]), at_jumps)
     if rough > enough:
         return rough
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
-    tolerance = {"xatol": LEAST_STRETCH.position_tolerance}
+    tolerance = {"xatol": LEAST_STRETCH_SETTINGS.position_tolerance}
     found = minimize_scalar(
         lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
     )

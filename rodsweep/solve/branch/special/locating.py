@@ -126,15 +126,15 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
     safety factor. The errors of period and largest tip y include the error of the last secant step, which is
     proportional to their difference between `start` and `end`, the cycles before and after the point."""
-    place = (
+    parameter_error = (
         SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
     )
     one = start.cycle.measures
     other = end.cycle.measures
-    period = SPECIAL_POINT.error_factor * abs(point.period - last.period) + place * abs(
+    period = SPECIAL_POINT.error_factor * abs(point.period - last.period) + parameter_error * abs(
         one.period - other.period
     )
-    size = SPECIAL_POINT.error_factor * abs(point.tip_y_max - last.tip_y_max) + place * abs(
+    size = SPECIAL_POINT.error_factor * abs(point.tip_y_max - last.tip_y_max) + parameter_error * abs(
         one.tip_y_max - other.tip_y_max
     )
     return replace(

@@ -9,7 +9,7 @@ import numpy as np
 from ....arrays import Complex
 from ...point import Unsolvable
 from ...spectrum.search import Spectrum, SpectrumRequest
-from ..anchors import ANCHORS, minimum_of_cubic
+from ..anchors import ANCHOR_SETTINGS, minimum_of_cubic
 from .path import ArmPath
 
 
@@ -24,7 +24,7 @@ class AxisModeSettings:
     """Maximum number of leading eigenvalues computed at a place."""
 
 
-AXIS_MODES = AxisModeSettings()
+AXIS_MODE_SETTINGS = AxisModeSettings()
 NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
@@ -69,7 +69,7 @@ class AxisModesOfPath:
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
         expected to grow, and `certify` is set."""
-        return self.certify and self.problem.expected_growing(p) > AXIS_MODES.many_modes
+        return self.certify and self.problem.expected_growing(p) > AXIS_MODE_SETTINGS.many_modes
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
         """The place at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
@@ -108,16 +108,18 @@ class AxisModesOfPath:
     def _leading_modes(self, p: float, growing: int) -> AxisModes:
         """The place at p from the leading modes, at least two more than the unstable modes. growing: expected
         number of unstable modes."""
-        modes = max(ANCHORS.min_known_modes, 2 + growing)
-        found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
-        while modes < _needed_modes(found) <= AXIS_MODES.max_known_modes:
+        modes = max(ANCHOR_SETTINGS.min_known_modes, 2 + growing)
+        found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHOR_SETTINGS.place_accuracy, self.certify))
+        while modes < _needed_modes(found) <= AXIS_MODE_SETTINGS.max_known_modes:
             if self.certify and found.unstable_count < 0:
                 break  # more modes do not help a failed count
             modes = _needed_modes(found)
-            found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHORS.place_accuracy, self.certify))
+            found = self.problem.spectrum(
+                p, SpectrumRequest(modes, ANCHOR_SETTINGS.place_accuracy, self.certify)
+            )
         if found.unstable_count < 0:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
-        if _needed_modes(found) > max(modes, AXIS_MODES.max_known_modes):
+        if _needed_modes(found) > max(modes, AXIS_MODE_SETTINGS.max_known_modes):
             raise Unsolvable(
                 f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, more than "
                 "the search follows"
@@ -152,6 +154,6 @@ def next_count_position(left: AxisModes, right: AxisModes) -> float:
                 return 0.5
             continue
         lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
-        if lowest < ANCHORS.explained * min(a[0], b[0]):
+        if lowest < ANCHOR_SETTINGS.explained * min(a[0], b[0]):
             return share
     return 0.0

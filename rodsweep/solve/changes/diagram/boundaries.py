@@ -19,7 +19,7 @@ from .boundary_curves import BoundaryCurve, trace
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChangeBoundarySettings:
+class BoundaryAssignmentSettings:
     """Settings for the assignment of the thresholds found on rows to boundary curves."""
 
     same_coordinate: float = 1e-12
@@ -39,7 +39,7 @@ class ChangeBoundarySettings:
     chord's ends along the first axis, which has length 1; continuation steps are shorter than this."""
 
 
-CHANGE_BOUNDARIES = ChangeBoundarySettings()
+BOUNDARY_ASSIGNMENT_SETTINGS = BoundaryAssignmentSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class _ChangeBoundaries:
         curve."""
         return left[0]
 
-    def missing_units(self, seed: int) -> list[int]:
+    def missing_items(self, seed: int) -> list[int]:
         """No work items: a curve is traced in milliseconds, at once."""
         return []
 
@@ -97,7 +97,7 @@ class _ChangeBoundaries:
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
             one.sign == other.sign
-            and float(np.abs(ends).max(axis=-1).min()) < CHANGE_BOUNDARIES.coincident_ends
+            and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.coincident_ends
         )
 
 
@@ -105,7 +105,9 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]
     """Boundary curves through all thresholds `seeds`; a threshold on a curve already followed starts no
     further curve."""
     problem = _ChangeBoundaries(plane, seeds)
-    return trace_boundaries(problem, range(len(seeds)), CHANGE_BOUNDARIES.change_distance).boundaries
+    return trace_boundaries(
+        problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.change_distance
+    ).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
@@ -117,20 +119,24 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     points = curve.scaled
     side = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
-    side[np.abs(side) < CHANGE_BOUNDARIES.same_coordinate] = 0.0
+    side[np.abs(side) < BOUNDARY_ASSIGNMENT_SETTINGS.same_coordinate] = 0.0
     if len(points) == 1:
-        return float(abs(points[0, 0] - x)) if abs(side[0]) < CHANGE_BOUNDARIES.change_distance else math.inf
+        return (
+            float(abs(points[0, 0] - x))
+            if abs(side[0]) < BOUNDARY_ASSIGNMENT_SETTINGS.change_distance
+            else math.inf
+        )
     best = math.inf
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
         a = points[i]
         b = points[i + 1]
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
-        if beside > CHANGE_BOUNDARIES.beside:
+        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.beside:
             continue
         there = _at_height(Boundary(plane, curve.sign), a, b, y)
         if (
             there is not None
-            and abs(there[2] - math.log(abs(seed.eigenvalue))) < CHANGE_BOUNDARIES.same_eigenvalue
+            and abs(there[2] - math.log(abs(seed.eigenvalue))) < BOUNDARY_ASSIGNMENT_SETTINGS.same_eigenvalue
         ):
             best = min(best, float(abs(there[0] - x)))
     return best
@@ -144,7 +150,7 @@ def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None
     curve follow.
     """
     share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
-    for _ in range(CHANGE_BOUNDARIES.max_secants):
+    for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secants):
         guess = a + share * (b - a)
         level = guess.copy()
         level[1] = y

@@ -16,7 +16,13 @@ from ....determinant.parameter_plane import Plane
 from ....watch import report
 from ...continuation.follower import CurveStop, follow_curve, zero_along_step
 from ...point import Unsolvable
-from .boundary_problem import BOUNDARY_STEPS, CHANGE_CURVES, BoundaryEnd, BoundaryPoint, ChangeCurveProblem
+from .boundary_problem import (
+    BOUNDARY_CURVE_SETTINGS,
+    BOUNDARY_STEPS,
+    BoundaryEnd,
+    BoundaryPoint,
+    ChangeCurveProblem,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +83,7 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > CHANGE_CURVES.coincident_points
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.coincident_points
     return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
@@ -119,7 +125,11 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
         length = zero_along_step(
-            component, ends, size, CHANGE_CURVES.fold_accuracy, CHANGE_CURVES.fold_accuracy
+            component,
+            ends,
+            size,
+            BOUNDARY_CURVE_SETTINGS.fold_accuracy,
+            BOUNDARY_CURVE_SETTINGS.fold_accuracy,
         )
         # Along the chord the component changes by the difference of `ends`: its error moves the fold.
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
@@ -131,8 +141,8 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
 def _tangent_noise(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
     if not boundary.plane.standard:
-        return CHANGE_CURVES.arm_tangent
-    return CHANGE_CURVES.double_tangent if boundary.sign else CHANGE_CURVES.hopf_tangent
+        return BOUNDARY_CURVE_SETTINGS.arm_tangent
+    return BOUNDARY_CURVE_SETTINGS.double_tangent if boundary.sign else BOUNDARY_CURVE_SETTINGS.hopf_tangent
 
 
 def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:

@@ -30,7 +30,7 @@ enough for a smooth drawn curve."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChangeCurveSettings:
+class BoundaryCurveSettings:
     """Settings for points, ends and folds of a boundary curve."""
 
     beside_an_edge: float = 1e-9
@@ -53,7 +53,7 @@ class ChangeCurveSettings:
     """Minimum number of points of a closed curve."""
 
 
-CHANGE_CURVES = ChangeCurveSettings()
+BOUNDARY_CURVE_SETTINGS = BoundaryCurveSettings()
 CRUSHED_MARGIN = 4
 """Index of the margin that is negative for a crushed rod; the four edges of the plane have indices 0 to 3."""
 
@@ -127,7 +127,9 @@ class ChangeCurveProblem:
         found = self.boundary.point_near(inner + share * (outer.v - inner), np.eye(3)[axis])
         if (
             found is None
-            or not -CHANGE_CURVES.beside_an_edge <= found.v[1 - axis] <= 1 + CHANGE_CURVES.beside_an_edge
+            or not -BOUNDARY_CURVE_SETTINGS.beside_an_edge
+            <= found.v[1 - axis]
+            <= 1 + BOUNDARY_CURVE_SETTINGS.beside_an_edge
         ):
             return None
         return BoundaryPoint.on(found, behind[-1].tangent)
@@ -139,7 +141,9 @@ class ChangeCurveProblem:
         step = float(np.linalg.norm(there.v - last.v))
         near = float(np.linalg.norm(there.v - first.v)) < step
         return (
-            len(behind) >= CHANGE_CURVES.min_loop_points and near and float(there.tangent @ first.tangent) > 0
+            len(behind) >= BOUNDARY_CURVE_SETTINGS.min_loop_points
+            and near
+            and float(there.tangent @ first.tangent) > 0
         )
 
     def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
@@ -155,7 +159,10 @@ class ChangeCurveProblem:
         if followed.end is CurveStop.margin:
             return BoundaryEnd.crushed if followed.margin == CRUSHED_MARGIN else BoundaryEnd.edge
         v, tangent = followed.solutions[-1]
-        if self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min() <= CHANGE_CURVES.beside_an_edge:
+        if (
+            self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min()
+            <= BOUNDARY_CURVE_SETTINGS.beside_an_edge
+        ):
             return BoundaryEnd.edge
         beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.min_length * tangent, tangent)
         is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0

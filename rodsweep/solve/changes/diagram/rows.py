@@ -18,7 +18,7 @@ from ....model.rod import Rod
 from ...point import outcome_or_failure
 from ..along_path import Transitions, transitions
 from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
-from ..unstable_modes import CHANGE_COUNTS
+from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
 
 class Motion(IntEnum):
@@ -90,8 +90,8 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
     share = rod.build.relative_crushing_force(rod.taper)
     crushing = k1 * share
-    alive = crushing * (1 - CHANGE_COUNTS.crushing_margin) > F
-    crushed = crushing * (1 - CHANGE_COUNTS.meets_crushing) <= F
+    alive = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin) > F
+    crushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.meets_crushing) <= F
     if not alive.any():
         row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
         return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
@@ -99,9 +99,9 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     stop = float(values[alive][-1])
     # Thresholds may lie between the last value that is not crushed and the crushing force.
     if name == "F" and not alive.all():
-        stop = rod.crushing_force * (1 - CHANGE_COUNTS.crushing_margin)
+        stop = rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)
     if name == "k1" and not alive.all():
-        start = rod.F / (share * (1 - CHANGE_COUNTS.crushing_margin)) if rod.F > 0 else start
+        start = rod.F / (share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)) if rod.F > 0 else start
     found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
     motion, unstable = classes(found, values)
     # Nearly crushed rods lie outside the searched range.

@@ -12,14 +12,14 @@ from math import ceil, inf
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.exponents import EXPONENTS
-from ....discretization.elements.resolution import RESOLUTION
+from ....determinant.exponents import EXPONENT_SETTINGS
+from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
 from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
 from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION
-from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
+from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
 
 MULTIPLIER = 4
 """Index of the error of the largest multiplier in the error arrays of a calibration; the smaller indices are
@@ -128,7 +128,9 @@ class Calibration:
         finer mesh if no allowed mesh suffices."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
-        orders = np.arange(lowest, min(RESOLUTION.max_order, present.order + CALIBRATION.max_more_orders) + 1)
+        orders = np.arange(
+            lowest, min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION.max_more_orders) + 1
+        )
         fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
         most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
@@ -166,7 +168,8 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
         whole[MULTIPLIER],
     ]
     least: Array = np.maximum(
-        np.array(stated), max(CYCLE_ERRORS.min_error_share * accuracy, CYCLE_ERRORS.rounding_error)
+        np.array(stated),
+        max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error),
     )
     return least
 
@@ -242,6 +245,6 @@ def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMes
 
 def _logarithm(before: Array, after: Array) -> Array:
     """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
-    least = EXPONENTS.least_divisor
+    least = EXPONENT_SETTINGS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
     return quotient

@@ -21,7 +21,7 @@ from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
 from .calibration import Calibration, calibration_of
 from .calibration_settings import CALIBRATION
-from .finer_meshes import COMPARISON, ComparedCycle
+from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +67,7 @@ class CoarserMeshes:
         self._highest_order = order + fewer + COARSER_MESHES.max_more_orders
         intervals = round(mesh.full_intervals / (1 + COARSER_MESHES.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = COMPARISON.newton_tolerance_share * accuracy
+        self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
         self._workspace = workspace
         self._coarse = self._solved(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}

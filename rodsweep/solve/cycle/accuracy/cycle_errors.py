@@ -23,7 +23,7 @@ class CycleErrorSettings:
     largest y converge fastest, because a time node lies at the largest y."""
 
 
-CYCLE_ERRORS = CycleErrorSettings()
+CYCLE_ERROR_SETTINGS = CycleErrorSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ def largest_error(period: Array | float, amplitude: Array | float, extrema: Arra
     """`CycleErrors.largest` for errors of the period, the largest y (`amplitude`) and the other extrema:
     numbers, or arrays of a common shape."""
     largest: Array = np.maximum(
-        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERRORS.extrema_tolerance_ratio
+        np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERROR_SETTINGS.extrema_tolerance_ratio
     )
     return largest
 

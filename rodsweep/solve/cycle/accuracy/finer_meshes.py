@@ -19,7 +19,7 @@ from .calibration import Calibration, calibration_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComparisonSettings:
+class FinerMeshSettings:
     """Settings for the two finer meshes by which the errors of a mesh are measured."""
 
     more_orders: int = 2
@@ -34,16 +34,19 @@ class ComparisonSettings:
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers."""
 
 
-COMPARISON = ComparisonSettings()
+FINER_MESH_SETTINGS = FinerMeshSettings()
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """Returns ((space, time), share): the mesh finer in space, the mesh finer in time, and the fraction of
     the error in time that the mesh finer in time removes."""
-    longer = ceil((1 + COMPARISON.more_intervals) * mesh.intervals)
+    longer = ceil((1 + FINER_MESH_SETTINGS.more_intervals) * mesh.intervals)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
     share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
-    return (replace(mesh, order=mesh.order + COMPARISON.more_orders), replace(mesh, intervals=longer)), share
+    return (
+        replace(mesh, order=mesh.order + FINER_MESH_SETTINGS.more_orders),
+        replace(mesh, intervals=longer),
+    ), share
 
 
 def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
@@ -56,7 +59,7 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
-    tolerance = COMPARISON.newton_tolerance_share * accuracy
+    tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
     others = (newton(target.interpolate(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
@@ -77,7 +80,7 @@ class ComparedCycle:
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers of the cycle, (rank - 1,), by descending modulus."""
-        return multipliers_of(at_orbit(self._found, COMPARISON.matrix_distance))[0]
+        return multipliers_of(at_orbit(self._found, FINER_MESH_SETTINGS.matrix_distance))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
         """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four of

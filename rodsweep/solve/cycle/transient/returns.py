@@ -40,7 +40,7 @@ class ReturnSettings:
     """Number of bisections of a time step that locate a return in time; enough for all digits."""
 
 
-RETURNS = ReturnSettings()
+RETURN_SETTINGS = ReturnSettings()
 
 
 def tip_angle_row(beam: Beam) -> Array:
@@ -48,8 +48,8 @@ def tip_angle_row(beam: Beam) -> Array:
     return beam.layout.vector({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
-def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
-    """Limit that ends a run from the state z, (unknowns,), after `wanted` returns of the tip. row:
+def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
+    """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip. row:
     `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
     last = float(row @ z)
@@ -59,9 +59,9 @@ def until_returns(row: Array, z: Array, wanted: int) -> RunLimit:
         angle = float(row @ state)
         count += int(last < 0 <= angle)
         last = angle
-        return count >= wanted
+        return count >= returns
 
-    return RunLimit(enough, RETURNS.max_steps_per_run)
+    return RunLimit(enough, RETURN_SETTINGS.max_steps_per_run)
 
 
 class EarlyEnd(NamedTuple):
@@ -79,7 +79,7 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
         return EarlyEnd(True, f"h1 = {h1:.3g} at a point of the rod after {returns} returns of the tip")
-    if not run.message and _loses_convexity(beam, run.states[-RETURNS.last_states :]):
+    if not run.message and _loses_convexity(beam, run.states[-RETURN_SETTINGS.last_states :]):
         why = f"after {returns} returns of the tip the strain energy of a section is not convex"
         return EarlyEnd(True, why)
     why = "the integrator finds no time step with an acceptable error"
@@ -110,7 +110,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
         low = 0.0
         high = 1.0
         # Bisection of a scalar cubic: no step can leave the interval, and the full state is evaluated once.
-        for _ in range(RETURNS.bisections):
+        for _ in range(RETURN_SETTINGS.bisections):
             middle = (low + high) / 2
             if sum(map(mul, _hermite_weights(middle), angles)) < 0:
                 low = middle
@@ -138,11 +138,11 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     1e7.
     """
     size = np.linalg.norm(moments[-1])
-    if size < RETURNS.straight_size:  # moments of this size are rounding errors, which do not repeat
+    if size < RETURN_SETTINGS.straight_size:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
     # The smallest m with a distance near the minimum: multiples of a period repeat as well.
-    enough = max(2 * min(found)[0], RETURNS.max_return_distance)
+    enough = max(2 * min(found)[0], RETURN_SETTINGS.max_return_distance)
     return next((m, distance) for distance, m in found if distance <= enough)
 
 

@@ -8,7 +8,7 @@ from .amplitude_equation import AMPLITUDE_EQUATION
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SchemeSettings:
+class TimeSchemeSettings:
     """Settings for the time schemes `default_scheme`, `fast_growth_scheme` and `accurate_scheme`, and for the
     choice of a scheme by the linear growth."""
 
@@ -58,7 +58,7 @@ class SchemeSettings:
         return TimeScheme("arkimex", "5", tolerance=self.accurate_tolerance)
 
 
-SCHEMES = SchemeSettings()
+TIME_SCHEME_SETTINGS = TimeSchemeSettings()
 
 
 class TransientSchemes(NamedTuple):
@@ -75,10 +75,19 @@ class TransientSchemes(NamedTuple):
 def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
-    if abs(growth) < SCHEMES.max_growth_of_accurate or is_stored:
-        careful = SCHEMES.accurate_scheme
-        return TransientSchemes(careful, careful, SCHEMES.accurate_noise, SCHEMES.accurate_max_steps)
+    if abs(growth) < TIME_SCHEME_SETTINGS.max_growth_of_accurate or is_stored:
+        careful = TIME_SCHEME_SETTINGS.accurate_scheme
+        return TransientSchemes(
+            careful, careful, TIME_SCHEME_SETTINGS.accurate_noise, TIME_SCHEME_SETTINGS.accurate_max_steps
+        )
     first = (
-        SCHEMES.fast_growth_scheme if growth > AMPLITUDE_EQUATION.max_slow_growth else SCHEMES.default_scheme
+        TIME_SCHEME_SETTINGS.fast_growth_scheme
+        if growth > AMPLITUDE_EQUATION.max_slow_growth
+        else TIME_SCHEME_SETTINGS.default_scheme
     )
-    return TransientSchemes(first, SCHEMES.default_scheme, SCHEMES.default_noise, SCHEMES.default_max_steps)
+    return TransientSchemes(
+        first,
+        TIME_SCHEME_SETTINGS.default_scheme,
+        TIME_SCHEME_SETTINGS.default_noise,
+        TIME_SCHEME_SETTINGS.default_max_steps,
+    )

@@ -26,7 +26,7 @@ class ShapeTraceSettings:
     """With fewer returns than this, the period of the leading mode is used as the period of the motion."""
 
 
-SHAPE_TRACE = ShapeTraceSettings()
+SHAPE_TRACE_SETTINGS = ShapeTraceSettings()
 
 
 class ShapeTrace:
@@ -42,12 +42,12 @@ class ShapeTrace:
     @property
     def is_full(self) -> bool:
         """Whether the maximum number of time steps is recorded; later steps are ignored."""
-        return self.steps >= SHAPE_TRACE.max_steps
+        return self.steps >= SHAPE_TRACE_SETTINGS.max_steps
 
     def needs_more_motion(self, z: Array) -> bool:
         """True until the record is complete, that is, the arm is at rest or the record is full. The motion is
         integrated until then, even if the outcome is known. z: present state, (unknowns,)."""
-        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE.max_rest_deflection
+        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
         """Records the start state z, (unknowns,). The relaxation from z to `relaxed`, (unknowns,), over
@@ -70,14 +70,14 @@ class ShapeTrace:
         """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest.
 
         returns: times of the last returns of the tip. period: period of the leading mode, in tau2, used if
-        there are fewer than SHAPE_TRACE.min_returns returns.
+        there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.
         """
         from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
         step = (
-            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE.min_returns else period
+            float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE_SETTINGS.min_returns else period
         ) / frames
-        due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, SHAPE_TRACE.max_frames))
+        due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_frames))
         run_of = np.searchsorted([times[0] for times in self.times], due, side="right") - 1
         states = np.empty((len(due), self.beam.unknowns))
         for number, (times, steps) in enumerate(zip(self.times, self.states, strict=True)):
@@ -85,6 +85,6 @@ class ShapeTrace:
             if within.any():
                 states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
-        is_whole = not self.is_full and len(due) < SHAPE_TRACE.max_frames
-        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE.max_rest_deflection)
+        is_whole = not self.is_full and len(due) < SHAPE_TRACE_SETTINGS.max_frames
+        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

@@ -30,7 +30,7 @@ from ..straight_rod import StraightRod, straight_rod
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
-from .returns import RETURNS, early_end, repetition, section_crossings, tip_angle_row, until_returns
+from .returns import RETURN_SETTINGS, early_end, repetition, section_crossings, tip_angle_row, until_returns
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
@@ -105,7 +105,7 @@ class Transient:
             times, states = section_crossings(self.beam, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
-            if self.straight.stable is not False and np.linalg.norm(z) < RETURNS.straight_size:
+            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 return self._ended(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
@@ -164,7 +164,7 @@ class Transient:
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
-        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURNS.straight_size)
+        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURN_SETTINGS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
@@ -209,7 +209,9 @@ class Transient:
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
         None."""
-        turns, distance = repetition([state for _, state in self.past][-1 - RETURNS.max_returns_per_period :])
+        turns, distance = repetition(
+            [state for _, state in self.past][-1 - RETURN_SETTINGS.max_returns_per_period :]
+        )
         if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
             self.unsolved = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"

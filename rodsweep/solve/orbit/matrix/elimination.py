@@ -20,7 +20,7 @@ from ....discretization.plane import jacobian
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
 from ..semidiscrete import Semidiscrete
-from .inversion import INVERSION, invert
+from .inversion import INVERSION_SETTINGS, invert
 from .substitution import map_start_to_end, reduce
 from .workspace import Factors
 
@@ -82,7 +82,7 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
     s = B.shape[0]
     n = B.shape[2]
     pivots = np.empty(n, np.int64)
-    rows = np.empty((n, INVERSION.panel))
+    rows = np.empty((n, INVERSION_SETTINGS.panel))
     end = np.empty((n, n))
     d = p.differentiation
     mass = p.mass
@@ -134,8 +134,8 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
         for j in range(2, s):
             if i != j:
                 B[i, j] = 0.0
-    for first in range(0, n, INVERSION.rows_in_cache):
-        last = min(n, first + INVERSION.rows_in_cache)
+    for first in range(0, n, INVERSION_SETTINGS.rows_in_cache):
+        last = min(n, first + INVERSION_SETTINGS.rows_in_cache)
         for i in range(2, s):
             _subtract_parts(right[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):

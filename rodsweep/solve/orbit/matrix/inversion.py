@@ -28,7 +28,7 @@ class InversionSettings(CompiledSettings):
     ranges: ClassVar = {"min_pivot": (0.0, 1.0)}
 
 
-INVERSION = InversionSettings()
+INVERSION_SETTINGS = InversionSettings()
 
 
 @compiled_for_vectors
@@ -41,20 +41,22 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
     n = len(A)
     ones = np.ones(2)
     extents = np.empty(6, np.int32)
-    for first in range(0, n, INVERSION.panel):
-        last = min(n, first + INVERSION.panel)
+    for first in range(0, n, INVERSION_SETTINGS.panel):
+        last = min(n, first + INVERSION_SETTINGS.panel)
         _sweep_panel(A, first, last, pivots)
         for j in range(n):
             if j < first or j >= last:
                 for i in range(last - first):
                     rows[j, i] = A[j, first + i]
                     A[j, first + i] = 0.0
-        extents[:] = first, n, last - first, INVERSION.panel, n, n
+        extents[:] = first, n, last - first, INVERSION_SETTINGS.panel, n, n
         panel = A.ctypes.data + 8 * n * first
         row = 8 * n * last
         product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
         extents[0] = n - last
-        product(rows.ctypes.data + 8 * INVERSION.panel * last, panel, A.ctypes.data + row, extents, ones)
+        product(
+            rows.ctypes.data + 8 * INVERSION_SETTINGS.panel * last, panel, A.ctypes.data + row, extents, ones
+        )
     # Exchanges of columns of A are undone as exchanges of rows of the inverse, in reverse order.
     for k in range(n - 1, -1, -1):
         if pivots[k] != k:
@@ -76,7 +78,7 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
             largest = max(largest, abs(row[i]))
         # Threshold pivoting: an exchange costs a pass over A, and a pivot ten times smaller loses one digit
         # at most.
-        if abs(row[k]) < INVERSION.min_pivot * largest:
+        if abs(row[k]) < INVERSION_SETTINGS.min_pivot * largest:
             for i in range(k, n):
                 if abs(row[i]) == largest:
                     p = i

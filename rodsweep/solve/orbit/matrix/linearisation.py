@@ -14,7 +14,7 @@ from ....model.compiled.compilation import compiled_for_vectors
 from ..orbit import Orbit
 from ..semidiscrete import Semidiscrete
 from .elimination import eliminate
-from .inversion import INVERSION, invert
+from .inversion import INVERSION_SETTINGS, invert
 from .multipliers import nonzero_eigenvalues
 from .phase import phase, phase_change, phase_row
 from .right_sides import ParameterDerivatives, residuals, right_sides, variation_sides
@@ -107,7 +107,7 @@ def linearise(
         for j in range(n):
             inverse[i, j] -= p.symmetry[i, j]
     phase_row(points[0], p.rod, p.matrices, inverse[n, :n])
-    invert(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, INVERSION.panel)))
+    invert(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, INVERSION_SETTINGS.panel)))
     rights = np.zeros((count - 1, n + 1))
     for m in range(1, count):
         for i in range(n):

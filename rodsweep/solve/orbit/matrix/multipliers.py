@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....determinant.exponents import EXPONENTS
+from ....determinant.exponents import EXPONENT_SETTINGS
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.small_eigenvalues import eigenvalues
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MultiplierSettings:
+class FloquetMultiplierSettings:
     """Settings for the factorisation of the derivative of a flow."""
 
     negligible: float = 1e-17
@@ -25,7 +25,7 @@ class MultiplierSettings:
     derivative."""
 
 
-MULTIPLIERS = MultiplierSettings()
+FLOQUET_MULTIPLIER_SETTINGS = FloquetMultiplierSettings()
 
 
 def nonzero_eigenvalues(A: Array) -> Complex:
@@ -34,7 +34,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
     Raises LinAlgError if A has entries that are not finite.
     """
-    values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), MULTIPLIERS.negligible)
+    values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible)
     if not len(values):
         raise np.linalg.LinAlgError("the derivative of the flow is not finite")
     return values
@@ -77,7 +77,7 @@ def compressed(A: Array, negligible: float) -> Array:
         r = R[rank]
         # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; `least_divisor`
         # avoids a division by 0 for a zero matrix.
-        q[:] = columns[p] / max(size, EXPONENTS.least_divisor)
+        q[:] = columns[p] / max(size, EXPONENT_SETTINGS.least_divisor)
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _without(columns[j], q, r, j)

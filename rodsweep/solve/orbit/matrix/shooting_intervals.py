@@ -3,7 +3,8 @@ intervals.
 
 The map P over all time intervals multiplies rounding errors by the growth of perturbations. This growth is
 1e15 for cycles with many unstable modes, whose Newton steps would have no correct digit. With the state at
-the start of every leg as an unknown (Ascher, Mattheij & Russell 1995, ch. 4), errors grow over one leg only.
+the start of every shooting interval as an unknown (Ascher, Mattheij & Russell 1995, ch. 4), errors grow over
+one shooting interval only.
 """
 
 from dataclasses import dataclass
@@ -21,32 +22,33 @@ from .workspace import Factors
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShootingIntervalSettings:
-    """Settings for the legs of an orbit."""
+    """Settings for the shooting intervals of an orbit."""
 
     max_growth: float = 1e7
-    """Largest norm of the map of a leg; a Newton step then has nine correct digits. Stable cycles have norms
-    below 1e3 and a single leg."""
+    """Largest norm of the map of a shooting interval; a Newton step then has nine correct digits. Stable
+    cycles have norms below 1e3 and a single shooting interval."""
     sweeps: int = 2
-    """Number of sweeps of the orthogonal iteration over all legs. The first sweep orders the directions by
-    their growth; the second starts with ordered directions."""
+    """Number of sweeps of the orthogonal iteration over all shooting intervals. The first sweep orders the
+    directions by their growth; the second starts with ordered directions."""
     negligible_multiplier: float = 1e-17
     """Multipliers with at most this modulus are treated as 0."""
 
 
-SHOOTING_INTERVALS = ShootingIntervalSettings()
+SHOOTING_INTERVAL_SETTINGS = ShootingIntervalSettings()
 
 
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
-    """The m legs of an orbit. edges: index of the first time interval of each leg, and the number of time
-    intervals, m + 1 numbers. maps: derivative of the end of each leg with respect to its start, (m, n, n)."""
+    """The m shooting intervals of an orbit. edges: index of the first time interval of each shooting
+    interval, and the number of time intervals, m + 1 numbers. maps: derivative of the end of each shooting
+    interval with respect to its start, (m, n, n)."""
 
     edges: tuple[int, ...]
     maps: Array
 
     def ends(self, factors: Factors, columns: Array, whole: Array, p: Semidiscrete) -> Array:
-        """Changes that right-hand sides cause at the ends of all legs, for fixed starts of the legs, (m,
-        columns, n).
+        """Changes that right-hand sides cause at the ends of all shooting intervals, for fixed starts of the
+        shooting intervals, (m, columns, n).
 
         columns: reduced right-hand sides, (K, s, columns, n). whole: changes of the end of the last time
         interval for a fixed start of the first time interval, (columns, n).
@@ -61,8 +63,8 @@ class ShootingIntervals:
         return ends
 
     def substituted(self, factors: Factors, starts: Array, columns: Array, p: Semidiscrete) -> Array:
-        """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the legs, (m, n). columns:
-        reduced right-hand sides, (K, s, 1, n)."""
+        """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
+        n). columns: reduced right-hand sides, (K, s, 1, n)."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
             part = factors._replace(blocks=factors.blocks[first:last])
@@ -71,16 +73,18 @@ class ShootingIntervals:
 
     def multipliers(self, orbit: Orbit) -> Complex:
         """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,); P: product of
-        the maps of all legs, S: symmetry. Raises LinAlgError if the map is not finite.
+        the maps of all shooting intervals, S: symmetry. Raises LinAlgError if the map is not finite.
 
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.
         """
         *others, last = self.maps
         ahead = triangle = np.eye(len(last))
-        for _ in range(SHOOTING_INTERVALS.sweeps):
+        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweeps):
             # Directions that decay to nothing over a period are dropped, to save time.
-            lasting = np.flatnonzero(np.abs(np.diag(triangle)) > SHOOTING_INTERVALS.negligible_multiplier)
+            lasting = np.flatnonzero(
+                np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier
+            )
             start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
             triangle = np.eye(start.shape[1])
             for A in (*others, orbit.symmetry.apply_inverse(last, orbit.form.layout)):
@@ -93,20 +97,21 @@ class ShootingIntervals:
         # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
         # digits.
         values = np.diag(schur(graded, output="complex")[0])
-        return values[np.abs(values) > SHOOTING_INTERVALS.negligible_multiplier]
+        return values[np.abs(values) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier]
 
 
 def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
-    """The legs of an orbit, from its eliminated matrix. Time intervals are joined to a leg as long as the
-    norm of the leg's map is at most `SHOOTING_INTERVALS.max_growth`. mass: diagonal of M, (n,)."""
+    """The shooting intervals of an orbit, from its eliminated matrix. Time intervals are joined to a shooting
+    interval as long as the norm of the map of the shooting interval is at most
+    `SHOOTING_INTERVAL_SETTINGS.max_growth`. mass: diagonal of M, (n,)."""
     blocks = factors.blocks
-    if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVALS.max_growth:  # also true for nan
+    if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]
     maps = [blocks[0, 0, 1] * mass]
     for k in range(1, len(blocks)):
         longer = blocks[k, 0, 1] @ (mass[:, None] * maps[-1])
-        if np.linalg.norm(longer) <= SHOOTING_INTERVALS.max_growth:
+        if np.linalg.norm(longer) <= SHOOTING_INTERVAL_SETTINGS.max_growth:
             maps[-1] = longer
         else:
             firsts.append(k)

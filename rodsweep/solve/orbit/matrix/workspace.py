@@ -23,7 +23,7 @@ class WorkspaceSettings:
     most rods."""
 
 
-WORKSPACE = WorkspaceSettings()
+WORKSPACE_SETTINGS = WorkspaceSettings()
 
 
 class Factors(NamedTuple):
@@ -46,28 +46,29 @@ class NewtonWorkspace:
 
     def __init__(self) -> None:
         self._buffer = np.empty(0)
-        self._claim = 0
+        self._reservation = 0
 
-    def claim(self, size: int) -> int:
-        """Starts a new claim on the buffer, ends earlier claims, and returns the number of the claim. size:
-        required size of the buffer."""
+    def reserve(self, size: int) -> int:
+        """Starts a new reservation of the buffer, ends earlier reservations, and returns the number of the
+        new reservation. size: required size of the buffer."""
         if len(self._buffer) < size:
             self._buffer = np.empty(0)  # frees the old buffer before the new one is allocated
             self._buffer = np.empty(size)
-        self._claim += 1
-        return self._claim
+        self._reservation += 1
+        return self._reservation
 
-    def buffer(self, claim: int) -> Array:
-        """The buffer, (size,) or longer, for the claim with the number `claim`; raises RuntimeError if this
-        claim has ended."""
-        if claim != self._claim:
+    def buffer(self, reservation: int) -> Array:
+        """The buffer, (size,) or longer, for the reservation with the number `reservation`; raises
+        RuntimeError if this reservation has ended."""
+        if reservation != self._reservation:
             raise RuntimeError("the factors of this matrix are overwritten: its workspace was used again")
         return self._buffer
 
     def release(self) -> None:
-        """Ends the last claim, and frees the buffer if it is larger than WORKSPACE.kept_numbers."""
-        self._claim += 1
-        if len(self._buffer) > WORKSPACE.kept_numbers:
+        """Ends the last reservation, and frees the buffer if it is larger than
+        WORKSPACE_SETTINGS.kept_numbers."""
+        self._reservation += 1
+        if len(self._buffer) > WORKSPACE_SETTINGS.kept_numbers:
             self._buffer = np.empty(0)
 
 
@@ -78,7 +79,7 @@ class MatrixMemory:
     def __init__(self, workspace: NewtonWorkspace, intervals: int, stages: int, unknowns: int) -> None:
         self.workspace = workspace
         self._shape = (intervals, stages, stages, unknowns, unknowns)
-        self._claim = workspace.claim(prod(self._shape))
+        self._reservation = workspace.reserve(prod(self._shape))
         self.propagator = np.zeros((unknowns, unknowns))
         """P, (n, n), which stays valid when the workspace is used again."""
         self._inverse = np.zeros((unknowns + 1, unknowns + 1))
@@ -86,5 +87,5 @@ class MatrixMemory:
     @property
     def factors(self) -> Factors:
         """The factors; raises RuntimeError if another matrix was assembled in the workspace."""
-        blocks = self.workspace.buffer(self._claim)[: prod(self._shape)].reshape(self._shape)
+        blocks = self.workspace.buffer(self._reservation)[: prod(self._shape)].reshape(self._shape)
         return Factors(blocks, self.propagator, self._inverse)

@@ -21,11 +21,11 @@ from ....determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
 from ....determinant.arm.hull.region import Hull, PathHulls, hull_at
 from ....determinant.arm.value import ARM_VALUE, chain_along, determinant_along_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
-from ....determinant.value import DETERMINANT, second_difference
+from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
-from ..candidates import CANDIDATES
+from ..candidates import CANDIDATE_SETTINGS
 from .following import (
-    FOLLOWING,
+    FOLLOWING_SETTINGS,
     CorrectedEigenvalue,
     are_distinct_roots,
     converged_error,
@@ -57,7 +57,7 @@ def _settled(
     The error is inf without convergence.
     """
     here = first
-    for _ in range(FOLLOWING.max_newton_steps):
+    for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
@@ -69,7 +69,7 @@ def _settled(
 def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
-    h = DETERMINANT.second_difference_step * abs(middle)
+    h = DETERMINANT_SETTINGS.second_difference_step * abs(middle)
     after = determinant_along_chain(middle + h, level[0], level[1])
     before = determinant_along_chain(middle - h, level[0], level[1])
     second = second_difference(after, before, S, h)
@@ -124,7 +124,10 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Propa
     error = track.error[i]
     k = track.order[i, modes - 1]
     line = min(
-        w[k].real - CANDIDATES.proof_line_errors * error[k] - CANDIDATES.proof_line_distance * abs(w[k]), 0.0
+        w[k].real
+        - CANDIDATE_SETTINGS.proof_line_errors * error[k]
+        - CANDIDATE_SETTINGS.proof_line_distance * abs(w[k]),
+        0.0,
     )
     here = 0
     for j in range(len(w)):

@@ -220,7 +220,7 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
     """
     try:
         modes = request.modes + further
-        search = Search(path.rod_at(p), replace(request, modes=modes, certify=False), wanted=modes)
+        search = Search(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:

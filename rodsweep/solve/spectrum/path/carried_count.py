@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
 from ....determinant.moving_line import IntervalEnd, proves_no_crossing
-from ....determinant.roots.settings import ROOTS
+from ....determinant.roots.settings import ROOT_SETTINGS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
 from ....model.rod import Coefficients
@@ -167,9 +167,9 @@ def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> 
             k = track.order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
-            if abs(w.real) <= max(ROOTS.axis_errors * error, ROOTS.axis_tolerance * abs(w)):
+            if abs(w.real) <= max(ROOT_SETTINGS.axis_errors * error, ROOT_SETTINGS.axis_tolerance * abs(w)):
                 good[s] = False
-            if rank < modes and not error <= min(ROOTS.double_root_correction, accuracy / 2) * abs(w):
+            if rank < modes and not error <= min(ROOT_SETTINGS.double_root_correction, accuracy / 2) * abs(w):
                 good[s] = False
             unstable[s] += w.real > 0
     return good, unstable

@@ -96,19 +96,21 @@ class FollowedArms:
                 continue
             here = None
             known = 0
-            wanted = 0
+            requested = 0
             growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
             # More modes may grow at p than at the nearest point.
-            while wanted < (needed := min(max(modes, growing + ARM_STRETCH.modes_beyond_growing), followed)):
-                wanted = needed
-                here, known = self._from_nearest(one, p, wanted)
+            while requested < (
+                needed := min(max(modes, growing + ARM_STRETCH.modes_beyond_growing), followed)
+            ):
+                requested = needed
+                here, known = self._from_nearest(one, p, requested)
                 growing = 0 if here is None else int((here.w.real > 0).sum())
             if here is None:
                 continue
-            for number in sorted({wanted, modes}, reverse=True):
+            for number in sorted({requested, modes}, reverse=True):
                 if known < number:
                     known = max(known, count_at(self.path, one, p, number, here))
-            yield ProvedEigenvalues(max(modes, min(known, wanted)), here, known)
+            yield ProvedEigenvalues(max(modes, min(known, requested)), here, known)
             if known >= modes:
                 return
 

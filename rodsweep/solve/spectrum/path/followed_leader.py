@@ -21,7 +21,7 @@ from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error
 from ....model.rod import Rod
-from ..candidates import CANDIDATES, line_for_proof
+from ..candidates import CANDIDATE_SETTINGS, line_for_proof
 from .following import are_distinct_roots
 from .prediction import KnownRoots
 
@@ -113,4 +113,7 @@ def _matches_neighbour(w: complex, error: float, near: complex, accuracy: float)
 def _lines(w: complex) -> Iterator[float]:
     """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper count
     first."""
-    return (w.real - far * abs(w) for far in (CANDIDATES.leader_line_distance, CANDIDATES.last_line_distance))
+    return (
+        w.real - far * abs(w)
+        for far in (CANDIDATE_SETTINGS.leader_line_distance, CANDIDATE_SETTINGS.last_line_distance)
+    )

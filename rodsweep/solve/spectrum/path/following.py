@@ -16,8 +16,8 @@ from ....determinant.exponents import ROUND_OFF
 from ....determinant.parameter_path import determinant_along
 from ....determinant.roots.newton import ROOT_NEWTON
 from ....determinant.roots.roots import sort_descending, two_roots
-from ....determinant.roots.settings import ROOTS
-from ....determinant.value import DETERMINANT
+from ....determinant.roots.settings import ROOT_SETTINGS
+from ....determinant.value import DETERMINANT_SETTINGS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
 from ....model.rod import Coefficients
@@ -40,7 +40,7 @@ class FollowingSettings(CompiledSettings):
     """Newton's method stops when the step is at most this multiple of the eigenvalue's rounding error."""
 
 
-FOLLOWING = FollowingSettings()
+FOLLOWING_SETTINGS = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
@@ -60,7 +60,7 @@ def correct_eigenvalue(
     gamma3)/dp.
     """
     D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
-    return newton_step(w, D, D_w, D_p, DETERMINANT.typical_noise * noise)
+    return newton_step(w, D, D_w, D_p, DETERMINANT_SETTINGS.typical_noise * noise)
 
 
 @compiled
@@ -90,7 +90,7 @@ def curvature_estimate(w: Complex, k: int) -> float:
     for j in range(len(w)):
         if j != k:
             total += 1 / abs(w[k] - w[j])
-    return FOLLOWING.curvature_safety_factor * total
+    return FOLLOWING_SETTINGS.curvature_safety_factor * total
 
 
 @compiled
@@ -99,11 +99,13 @@ def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> 
     enough.
 
     crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
-    rounding error, instead of `FOLLOWING.accuracy` |w|.
+    rounding error, instead of `FOLLOWING_SETTINGS.accuracy` |w|.
     """
     left = crowding * here.step * here.step
-    allowed = max(here.rounding, ROUND_OFF * abs(here.w)) if exact else FOLLOWING.accuracy * abs(here.w)
-    if left <= allowed or here.step <= FOLLOWING.final_step * here.rounding:
+    allowed = (
+        max(here.rounding, ROUND_OFF * abs(here.w)) if exact else FOLLOWING_SETTINGS.accuracy * abs(here.w)
+    )
+    if left <= allowed or here.step <= FOLLOWING_SETTINGS.final_step * here.rounding:
         return max(here.rounding, min(left, here.step))
     return math.inf
 
@@ -140,7 +142,7 @@ def _iterate_to_convergence(
     convergence.
     """
     here = first
-    for _ in range(FOLLOWING.max_newton_steps):
+    for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
@@ -155,7 +157,7 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
         for j in range(k):
-            if not abs(w[k] - w[j]) > ROOTS.same_root_distance * (error[k] + error[j]):
+            if not abs(w[k] - w[j]) > ROOT_SETTINGS.same_root_distance * (error[k] + error[j]):
                 return False
     return True
 

@@ -29,7 +29,7 @@ from .prediction import Track, slice_track, start_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StretchSettings:
+class SweepStretchSettings:
     """Settings for eigenvalues followed along neighbouring rods of a sweep."""
 
     further_modes: int = 2
@@ -37,7 +37,7 @@ class StretchSettings:
     these additional modes."""
 
 
-STRETCH = StretchSettings()
+SWEEP_STRETCH_SETTINGS = SweepStretchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +66,8 @@ class Stretch:
         """(F, nu, c2, gamma3) of every rod, (n, 4), identical to `Rod.coefficients`."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
         table = np.empty((len(self), len(columns)))
-        for place, column in enumerate(columns):
-            table[:, place] = column
+        for number, column in enumerate(columns):
+            table[:, number] = column
         return table
 
 
@@ -89,22 +89,22 @@ def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretc
     n = len(stretch)
     columns = _unsolved(n, request.modes)
     solved = np.zeros(n, np.bool_)
-    place = 0
+    start = 0
     patience = 1
-    while place < n:
-        found = _followed(stretch, place, request)
+    while start < n:
+        found = _followed(stretch, start, request)
         if found is None:
             # If no proof succeeds, for example without a bound, following is tried less and less often.
-            place += patience
+            start += patience
             patience *= 2
             continue
-        here = slice(place, place + len(found.accepted))
+        here = slice(start, start + len(found.accepted))
         columns["eigenvalues"][here] = found.w
         columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
         columns["unstable_count"][here] = found.unstable_count
         columns["certified"][here] = True
         solved[here] = found.accepted
-        place = here.stop
+        start = here.stop
         patience = 1
     seconds = np.full(n, (time.perf_counter() - began) / max(1, int(solved.sum())))
     return FollowedStretch(Spectrum(seconds=seconds, **columns), solved)
@@ -182,8 +182,8 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
     complete); None after a failure.
     """
     try:
-        modes = request.modes + STRETCH.further_modes
-        search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
+        modes = request.modes + SWEEP_STRETCH_SETTINGS.further_modes
+        search = Search(rod, replace(request, modes=modes - 1, certify=True), requested=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:

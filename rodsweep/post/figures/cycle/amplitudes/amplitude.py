@@ -173,8 +173,8 @@ def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
         axes.set_ylim(-0.04 * height, 1.1 * height)
         axes.axhline(0, color="0.8", lw=0.6, zorder=0)
         axes.set_ylabel(label)
-        place = axes.get_subplotspec()
-        if place is not None and place.is_last_row():
+        grid_cell = axes.get_subplotspec()
+        if grid_cell is not None and grid_cell.is_last_row():
             axes.set_xlabel(LABELS[name])
 
 

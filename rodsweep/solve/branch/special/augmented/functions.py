@@ -53,7 +53,7 @@ class AugmentedSettings:
     ratio of `inverse_shift` to the relative gap between the eigenvalues."""
 
 
-AUGMENTED = AugmentedSettings()
+AUGMENTED_SETTINGS = AugmentedSettings()
 
 
 class FoldFunction:
@@ -108,9 +108,9 @@ class TorusFunction:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
         p = matrix.orbit.semidiscrete
-        self.shifted = matrix.propagator - (1 + AUGMENTED.inverse_shift) * pair * p.symmetry
+        self.shifted = matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_shift) * pair * p.symmetry
         start = np.ones(len(p.mass), dtype=complex)
-        for _ in range(AUGMENTED.inverse_iterations):
+        for _ in range(AUGMENTED_SETTINGS.inverse_iterations):
             start = np.linalg.solve(self.shifted, p.symmetry @ start)
             start /= np.linalg.norm(start)
         self.border = start.conj()
@@ -148,13 +148,13 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
     Unsolvable."""
     value = function.value(orbit)
     last = np.inf
-    for _ in range(AUGMENTED.max_corrections):
+    for _ in range(AUGMENTED_SETTINGS.max_corrections):
         function.correct(orbit)
         before = value
         value = function.value(orbit)
         change = abs(value - before)
         if change <= SPECIAL_POINT.function_tolerance or (
-            change > last / 2 and change <= AUGMENTED.rounding_correction
+            change > last / 2 and change <= AUGMENTED_SETTINGS.rounding_correction
         ):
             return
         if change > last:

@@ -12,7 +12,7 @@ from ....point import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import Scale
-from .functions import AUGMENTED, FoldFunction, TorusFunction
+from .functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 
 
 class CycleFamilyInterface(Protocol):
@@ -74,7 +74,7 @@ class NearbyCycleSolver:
         tolerance of cycle and test function.
         """
         last = 0.0
-        for _ in range(AUGMENTED.max_corrections):
+        for _ in range(AUGMENTED_SETTINGS.max_corrections):
             report()
             orbit, change = self._corrected(orbit, condition)
             distance = self.distance
@@ -86,12 +86,12 @@ class NearbyCycleSolver:
             # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
             rate = off / last if last else min(1.0, self.contraction * distance)
             if last and not self._family.small:
-                measured = AUGMENTED.contraction_safety * rate / distance
-                self.contraction = max(AUGMENTED.min_contraction, measured)
-            if off * min(rate, 1.0) <= max(enough, AUGMENTED.tolerance_share * abs(value) / slope):
+                measured = AUGMENTED_SETTINGS.contraction_safety * rate / distance
+                self.contraction = max(AUGMENTED_SETTINGS.min_contraction, measured)
+            if off * min(rate, 1.0) <= max(enough, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope):
                 return orbit, value
-            if last and rate > AUGMENTED.max_correction_ratio:
-                if off <= AUGMENTED.rounding_correction:
+            if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
+                if off <= AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
                 self._eliminate(orbit)
                 off = 0.0
