@@ -129,7 +129,8 @@ class ArcPoint:
 
     def _taylor(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
-        its cube. before: previous cycle, through which the cubic passes."""
+        its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
+        cubic."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
         last = mesh.interpolate(before.orbit)

@@ -29,8 +29,8 @@ class BranchPoint:
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
     unstable_count: int
-    """Number of Floquet multipliers outside the unit circle; -1 if a multiplier has modulus 1 within its
-    error."""
+    """Number of nontrivial Floquet multipliers outside the unit circle; -1 if one of them has modulus 1
+    within its error."""
 
     @classmethod
     def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
@@ -51,8 +51,8 @@ class BranchPoint:
 
     @property
     def min_unstable_multipliers(self) -> int:
-        """Least number of multipliers outside the unit circle: 0 if the cycle is stable, -1 if its stability
-        is unknown."""
+        """Least number of nontrivial multipliers outside the unit circle: 0 if the cycle is stable, -1 if its
+        stability is unknown."""
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 

@@ -60,7 +60,7 @@ ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBranchStart:
     """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
-    off."""
+    off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf point."""
 
     crossing: Crossing
     rod: Rod

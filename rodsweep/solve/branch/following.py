@@ -101,8 +101,7 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
 
 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
-    """Progress along a branch: text with the parameter at its last cycle `start`, and fraction of the
-    work."""
+    """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
     name = start.scale.name
     # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
@@ -129,7 +128,7 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
 
 
 def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
-    """Position of a cycle relative to the parameter range: 0 below, 1 above, -1 within the range."""
+    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
     low, high = limits.ends
     if point.coordinate < low:
         return 0
@@ -137,8 +136,9 @@ def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
 
 
 def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """Appends the next cycle after `start`, and the special points before this cycle, to the branch; returns
-    the cycle, or the end of the branch."""
+    """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
+    the last cycle, from which the branch continues, or the end of the branch. If a step to the mirror image
+    is too long, nothing is appended, and `start` with half the step length is returned."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)

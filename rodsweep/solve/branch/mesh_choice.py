@@ -93,7 +93,8 @@ def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The same cycle with the errors of `calibration`, which was measured or interpolated at this cycle."""
+    """The same cycle with the errors of `calibration`, which was measured or interpolated at this cycle. In
+    the result the number of unmeasured steps is 0."""
     cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
@@ -125,8 +126,9 @@ def solve_on_sufficient_mesh(
 
 
 def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
-    """The same cycle solved on the mesh `mesh`, without measured errors; raises Unsolvable. condition:
-    equation that defines the same cycle on every mesh."""
+    """The same cycle solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
+    calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
+    """
     found = condition.on_mesh(
         mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy)
     )
@@ -186,10 +188,10 @@ def _with_errors_between(
     """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
     same mesh; raises Unsolvable.
 
-    share: fraction of the arc length from `last` to `end` at which `point` lies. The errors of `point` are
-    measured instead if its coefficient tails are much larger than at `last` and `end`, or if the parameter
-    changes more slowly than at `last` and `end`, as near a fold: the errors at `last` and `end` are then no
-    bound.
+    share: fraction of the arc length from `last` to `end` at which `point` lies. accuracy: relative accuracy
+    of the cycles. The errors of `point` are measured instead if its coefficient tails are much larger than at
+    `last` and `end`, or if the parameter changes more slowly than at `last` and `end`, as near a fold: the
+    errors at `last` and `end` are then no bound.
     """
     ends = (last, end)
     slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(

@@ -163,7 +163,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
 
     whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
-    minus deflection of the symmetric cycle.
+    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle.
     """
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION

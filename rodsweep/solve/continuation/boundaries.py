@@ -52,8 +52,8 @@ class BoundarySearch(Generic[Curve]):
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
     each seed point from the nearest curve so far, by index. missing_units: numbers of the units of work whose
-    missing results stopped the search. open_seeds: seed points that lie on no curve so far, except the point
-    where the search stopped.
+    missing results stopped the search. open_seeds: indices of the seed points that lie on no curve so far and
+    were not tried, without the seed point at which the search stopped.
     """
 
     tolerance: float
@@ -64,7 +64,8 @@ class BoundarySearch(Generic[Curve]):
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """All curves; valid if `missing_units` is empty."""
+        """All curves, with the agreement and the number of untraced seed points; valid if `missing_units` is
+        empty."""
         found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 

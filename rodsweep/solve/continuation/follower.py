@@ -91,17 +91,17 @@ class StepControl:
             raise ValueError(f"max_ratio = {self.max_ratio} must be above 1, so that steps can grow")
 
     def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
-        """The next solution `there`; raises Unsolvable if its prediction error or angle is so large that the
+        """The result `there` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
         if not there.prediction_error <= self.max_error:
-            raise Unsolvable("the corrected solution is too far from its predictor")
+            raise Unsolvable("the corrected solution is too far from its prediction")
         if not _angle(there.cosine) <= self.max_angle:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
-        """Length of the next step. length: length of the accepted last step. there: result of the last step.
-        solutions: number of solutions so far."""
+        """Length of the next step, from the prediction error and the angle of the last step. length: length
+        of the last, accepted step. there: result of the last step. solutions: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
         by_distance = (self.target_error / max(there.prediction_error, self.min_measured)) ** (
             1 / min(self.prediction_order, solutions)
@@ -121,7 +121,7 @@ class CurveStop(Enum):
 
     margin = "a margin is zero"
     closed = "the curve returned to its start"
-    lost = "no solution was found beyond"
+    lost = "no solution was found beyond the last solution"
     full = "the curve has the maximum number of solutions"
 
 

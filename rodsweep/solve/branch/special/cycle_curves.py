@@ -56,8 +56,12 @@ Arrays = dict[str, Array]
 
 
 class CurveEnd(IntEnum):
-    """Reason for the end of a curve of special points, stored by value in the result file. none: the point is
-    not an end."""
+    """Reason for the end of a curve of special points, stored by value in the result file.
+
+    none: the point is not an end. edge: edge of the parameter plane. crushed: F is near the crushing force.
+    hopf: the cycles vanish at a Hopf point. left_the_model: h1 = 0. resonance: the complex pair of
+    multipliers becomes real. closed: first point of a closed curve. not_followed: no further point was found.
+    """
 
     none = 0
     edge = 1
@@ -87,9 +91,8 @@ class VanishingPoint:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. place: position of `row` on its axis, from 0 to 1. period: in tau2. tip_y_max: largest tip y,
-    in L.
+    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
+    place: row coordinate, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
     at: float
@@ -130,8 +133,8 @@ class TracedHalfCurve:
     distances: dict[int, float] = field(default_factory=dict)
 
     def arrays(self) -> Arrays:
-        """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,); distances
-        (near, 2), index and distance of each nearby special point."""
+        """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
+        the `CurveEnd`; distances (near, 2), index and distance of each nearby special point."""
         points = [] if self.half is None else [_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
