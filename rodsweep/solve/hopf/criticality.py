@@ -71,8 +71,8 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`. coefficients: normal form coefficients of
-    the first Hopf points, at most as many as requested."""
+    """Result for one rod: all Hopf points up to the force `end`. transitions: result of the search for Hopf
+    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested."""
 
     status: CriticalityStatus
     transitions: Transitions
@@ -146,7 +146,7 @@ def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
-    problem, or ok."""
+    problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

@@ -41,8 +41,8 @@ class NormalFormSettings:
     """Relative offset of the shift from the eigenvalue estimate; without an offset the shifted matrix might
     be singular."""
     found: float = 1e-8
-    """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this: two
-    iterations with this shift reach rounding error."""
+    """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
+    two iterations with this shift reach rounding error."""
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
     accuracy_share: float = 0.1
@@ -98,8 +98,7 @@ class NormalForm:
     @property
     def amplitude(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
-        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F.
-        """
+        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
         squared = -self.slope.real / self.c.real
         return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
 
@@ -183,8 +182,8 @@ def finer_by_a_third(elements: Elements) -> Elements:
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
-    Raises Unsolvable if the mesh has no eigenvalue equal to w within the relative accuracy `accuracy`, or if
-    the mesh has too many nodes.
+    Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
+    `accuracy` and `NORMAL_FORM.found`, or if the mesh has too many nodes.
     """
     nodes = elements.nodes
     limit = NORMAL_FORM.max_nodes if rod.standard else NORMAL_FORM.max_arm_nodes
@@ -202,10 +201,10 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
-    """(w, q, p) for the eigenvalue nearest to `guess`; the transverse modes q and p are scaled as in the
-    module docstring.
+    """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
+    docstring.
 
-    Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
+    Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift. Raises Unsolvable.
     """
     w = complex(guess)
     for _ in range(NORMAL_FORM.max_shifts):

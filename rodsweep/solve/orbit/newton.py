@@ -137,7 +137,8 @@ def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
 
 def multiplier_change(multipliers: Complex, others: Complex) -> float:
     """Error of the largest multiplier, from the multipliers on two meshes: the distance of `multipliers[0]`
-    from the nearest of `others`, or the difference of the two largest moduli, whichever is larger.
+    from the nearest of `others`, or the difference of the two largest moduli, whichever is larger; 0 if a
+    list is empty.
 
     multipliers, others: by descending modulus, (m,) and (l,). Multipliers with the same index are not
     compared, because two multipliers may be in a different order on another mesh. The moduli alone may agree

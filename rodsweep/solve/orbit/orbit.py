@@ -127,7 +127,8 @@ class Orbit:
 
 @lru_cache(maxsize=ELEMENTS.max_pencils)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
-    """Data of the equations of orbits with the given form, symmetry and time intervals; cached."""
+    """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
+    cached."""
     d = radau_method(stages).differentiation
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)

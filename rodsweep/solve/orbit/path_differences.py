@@ -29,7 +29,8 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 
 def rod_difference(one: Orbit, other: Orbit) -> float:
-    """Largest relative difference between the parameters of the rods of two orbits."""
+    """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
+    orbit `other`."""
     a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())

@@ -51,7 +51,7 @@ class Symmetry:
 
 @lru_cache(maxsize=ELEMENTS.max_meshes)
 def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
-    """`Symmetry.matrix`, (unknowns, unknowns)."""
+    """The cached matrix that `Symmetry.matrix` returns, (unknowns, unknowns)."""
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)
 
 

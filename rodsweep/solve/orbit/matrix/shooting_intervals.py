@@ -1,9 +1,10 @@
-"""Legs of a strongly unstable orbit: the shooting intervals of multiple shooting, each of several time
+"""Shooting intervals of a strongly unstable orbit, for multiple shooting; each consists of several time
 intervals.
 
 The map P over all time intervals multiplies rounding errors by the growth of perturbations. This growth is
 1e15 for cycles with many unstable modes, whose Newton steps would have no correct digit. With the state at
-the start of every leg as an unknown (Ascher, Mattheij & Russell 1995, ch. 4), errors grow over one leg only.
+the start of every shooting interval as an unknown (Ascher, Mattheij & Russell 1995, ch. 4), errors grow over
+one shooting interval only.
 """
 
 from dataclasses import dataclass
@@ -21,14 +22,14 @@ from .workspace import Factors
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShootingIntervalSettings:
-    """Settings for the legs of an orbit."""
+    """Settings for the shooting intervals of an orbit."""
 
     max_growth: float = 1e7
-    """Largest norm of the map of a leg; a Newton step then has nine correct digits. Stable cycles have norms
-    below 1e3 and a single leg."""
+    """Largest norm of the map of a shooting interval; a Newton step then has nine correct digits. Stable
+    cycles have norms below 1e3 and a single shooting interval."""
     sweeps: int = 2
-    """Number of sweeps of the orthogonal iteration over all legs. The first sweep orders the directions by
-    their growth; the second starts with ordered directions."""
+    """Number of sweeps of the orthogonal iteration over all shooting intervals. The first sweep orders the
+    directions by their growth; the second starts with ordered directions."""
     negligible_multiplier: float = 1e-17
     """Multipliers with at most this modulus are treated as 0."""
 
@@ -38,18 +39,20 @@ SHOOTING_INTERVALS = ShootingIntervalSettings()
 
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
-    """The m legs of an orbit. edges: index of the first time interval of each leg, and the number of time
-    intervals, m + 1 numbers. maps: derivative of the end of each leg with respect to its start, (m, n, n)."""
+    """The m shooting intervals of an orbit. edges: index of the first time interval of each shooting
+    interval, and the number of time intervals, m + 1 numbers. maps: derivative of the end of each shooting
+    interval with respect to its start, (m, n, n)."""
 
     edges: tuple[int, ...]
     maps: Array
 
     def ends(self, factors: Factors, columns: Array, whole: Array, p: Semidiscrete) -> Array:
-        """Changes that right-hand sides cause at the ends of all legs, for fixed starts of the legs, (m,
-        columns, n).
+        """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
+        the shooting intervals, (m, k, n).
 
-        columns: reduced right-hand sides, (K, s, columns, n). whole: changes of the end of the last time
-        interval for a fixed start of the first time interval, (columns, n).
+        columns: reduced right-hand sides, (K, s, k, n). whole: changes of the end of the last time interval
+        for a fixed start of the first time interval, (k, n). factors: eliminated matrix. p: equations of the
+        orbit.
         """
         ends = np.zeros((len(self.maps), *whole.shape))
         if len(ends) == 1:
@@ -61,8 +64,9 @@ class ShootingIntervals:
         return ends
 
     def substituted(self, factors: Factors, starts: Array, columns: Array, p: Semidiscrete) -> Array:
-        """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the legs, (m, n). columns:
-        reduced right-hand sides, (K, s, 1, n)."""
+        """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
+        n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated matrix. p: equations of the
+        orbit."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
             part = factors._replace(blocks=factors.blocks[first:last])
@@ -71,7 +75,7 @@ class ShootingIntervals:
 
     def multipliers(self, orbit: Orbit) -> Complex:
         """Nonzero multipliers of the map S^-1 P over the solved part of the period, (rank,); P: product of
-        the maps of all legs, S: symmetry. Raises LinAlgError if the map is not finite.
+        the maps of all shooting intervals, S: symmetry. Raises LinAlgError if the map is not finite.
 
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.
@@ -97,8 +101,9 @@ class ShootingIntervals:
 
 
 def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
-    """The legs of an orbit, from its eliminated matrix. Time intervals are joined to a leg as long as the
-    norm of the leg's map is at most `SHOOTING_INTERVALS.max_growth`. mass: diagonal of M, (n,)."""
+    """The shooting intervals of an orbit, from its eliminated matrix. A time interval is joined to the
+    present shooting interval if the norm of the joined map is at most `SHOOTING_INTERVALS.max_growth`. mass:
+    diagonal of M, (n,)."""
     blocks = factors.blocks
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVALS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
