@@ -180,11 +180,12 @@ def _cycle_of(
     accuracy: float,
     workspace: NewtonWorkspace,
 ) -> ArcPoint:
-    """The cycle near the cycle that the normal form predicts for the largest tip y `amplitude`, in L, solved
-    to the relative `accuracy`; raises Unsolvable.
+    """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
+    L, solved to the relative `accuracy`; raises Unsolvable.
 
     The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
-    whether the starting mesh is chosen for `aim` too; otherwise it is the coarser mesh of the normal form.
+    whether the starting mesh is chosen for `aim` too; otherwise the starting mesh is the coarser mesh of the
+    normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:

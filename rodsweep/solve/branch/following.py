@@ -211,7 +211,7 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
-    `start` with half the step, if its amplitude is too large for an extrapolation. Raises Unsolvable."""
+    `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
@@ -237,8 +237,8 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking between two cycles (a failure if it is unknown),
-    or `start` with half the step length, if the cycles are too asymmetric for an extrapolation."""
+    """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
+    near), or `start` with half the step, if `start` is too asymmetric for an extrapolation."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

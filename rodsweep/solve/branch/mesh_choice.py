@@ -85,7 +85,8 @@ def measurement_due(point: ArcPoint) -> bool:
 
 
 def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
-    """The same cycle with its errors measured on two finer meshes; raises Unsolvable."""
+    """The same cycle with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
+    accuracy of the cycle."""
     before = point.calibration.at_parameter
     return with_calibration(
         point, measured_errors(point.cycle.converged, point.derivatives, accuracy, before), accuracy
@@ -93,8 +94,8 @@ def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The same cycle with the errors of `calibration`, which was measured or interpolated at this cycle. In
-    the result the number of unmeasured steps is 0."""
+    """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
+    interpolated at this cycle. In the result the number of unmeasured steps is 0."""
     cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
@@ -102,9 +103,9 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
 def solve_on_sufficient_mesh(
     point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
 ) -> ArcPoint:
-    """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
-    Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every mesh; by
-    default the condition that its arc length is unchanged."""
+    """The same cycle with measured errors within the relative accuracy, on a mesh chosen for this accuracy;
+    raises Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every
+    mesh; by default the condition that its arc length is unchanged."""
     condition = condition or point.condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH.max_meshes):

@@ -137,8 +137,8 @@ def _moments(states: Array, orbit: Orbit) -> Array:
 def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
-    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`; raises
-    Unsolvable. The cycle has a larger largest tip y than its mirror image."""
+    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
+    relative accuracy; raises Unsolvable. The cycle has a larger largest tip y than its mirror image."""
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)

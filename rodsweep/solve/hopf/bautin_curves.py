@@ -154,7 +154,8 @@ class BautinSpace:
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
-        """Whether the curve has enough points and its first point lies between its last point and `there`."""
+        """Whether the curve has more than `BAUTIN.min_loop_points` points, and the first point of the curve
+        lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))

@@ -28,7 +28,8 @@ class BautinSettings:
     first_secant: float = 1e-3
     """First secant step along the Hopf curve; each parameter's range has length 1."""
     tolerance: float = 1e-12
-    """The secant method stops when the step is at most this number; each parameter's range has length 1."""
+    """The secant method stops when the step is at most this number, or at most the error caused by the error
+    of c; each parameter's range has length 1."""
     on_edge: float = 1e-12
     """A point lies on an end of a range if its distance from the end, as a fraction of the range, is below
     this number."""

@@ -134,7 +134,8 @@ class TracedHalfCurve:
 
     def arrays(self) -> Arrays:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
-        the `CurveEnd`; distances (near, 2), index and distance of each nearby special point."""
+        the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby special
+        point."""
         points = [] if self.half is None else [_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),

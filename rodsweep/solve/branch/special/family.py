@@ -68,7 +68,7 @@ class CycleFamily:
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
-        """The orbit with unchanged values, for the rod at a row coordinate; raises Unsolvable."""
+        """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:

@@ -166,8 +166,8 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 def reduced_residuals(
     points: Array, duration: float, rod: Semidiscrete, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """Residuals of `points`, (1 + K s, n), by the equations `rod`, reduced by the factors of a matrix of a
-    nearby rod with the equations `p`.
+    """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
+    duration: total length of the intervals, in tau2.
 
     Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
     fixed start, (1, n).
@@ -193,7 +193,8 @@ def reduced_variations(
     p: Semidiscrete,
     factors: Factors,
 ) -> tuple[Array, Array]:
-    """`variation_sides` for the rod `rod`, reduced by the factors of a matrix of the nearby rod `p`.
+    """The right-hand sides of `variation_sides` with the equations `rod`, reduced by a matrix of a nearby rod
+    `p`.
 
     Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
     of the last interval for a fixed start, (m, n).

@@ -15,9 +15,9 @@ from .workspace import Factors
 
 @compiled_for_vectors
 def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
-    """Reduces k right-hand sides of one interval, (s, k, n), in place. The right-hand sides of the first two
-    stages are unchanged. The right-hand side of the last stage becomes the change of the interval's end for a
-    fixed start. B: eliminated blocks of the interval, (s, s, n, n)."""
+    """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
+    first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
+    end for a fixed start. B: eliminated blocks of the interval, (s, s, n, n). p: equations."""
     s, count, n = columns.shape
     d = p.differentiation
     mass = p.mass
@@ -38,9 +38,9 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def map_start_to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
-    """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of its end. B:
-    eliminated blocks of the interval, (s, s, n, n). columns: reduced right-hand sides of its stages, (s, k,
-    n)."""
+    """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
+    interval. B: eliminated blocks of the interval, (s, s, n, n). columns: reduced right-hand sides of the
+    stages, (s, k, n). p: equations."""
     # The map of an interval acts on M x_0, as in `eliminate`.
     scaled = ends * p.mass
     ends[:] = columns[-1]
@@ -95,7 +95,7 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 @compiled_for_vectors
 def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
     """Writes the changes of all stages into `out`, (K, s, k, n). start: changes of the start, (k, n).
-    columns: reduced right-hand sides, (K, s, k, n)."""
+    columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""
     K, s, count, n = columns.shape
     y = np.empty((2, count, n))
     first = start.copy()
