@@ -57,13 +57,13 @@ class ArcPoint:
     length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
-    """Error measurement at this cycle, or else at the last cycle where errors were measured; the errors of
-    this cycle are estimated from it."""
+    """Errors of the mesh, measured or interpolated at this cycle, or measured at an earlier cycle; the errors
+    of this cycle are estimated from these errors."""
     unmeasured: int = 0
     """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are measured
     or interpolated."""
     arc_since_measured: float = 0.0
-    """Arc length of the branch since the last cycle with measured errors."""
+    """Arc length of the branch since the last cycle with measured errors; 0 if `unmeasured` is 0."""
     before: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
 

@@ -51,8 +51,8 @@ class BranchPoint:
 
     @property
     def min_unstable_multipliers(self) -> int:
-        """Least number of nontrivial multipliers outside the unit circle: 0 if the cycle is stable, -1 if its
-        stability is unknown."""
+        """Lower bound on the number of nontrivial multipliers outside the unit circle: 0 if the cycle is
+        stable, -1 if its stability is unknown."""
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
@@ -99,7 +99,7 @@ class BranchCurve:
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies beyond the present last cycle."""
+        """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:

@@ -68,7 +68,7 @@ class HopfBranchStart:
     coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     slope: complex
-    """Derivative dw/d(coordinate) of the critical eigenvalue w, in 1/tau2, at the Hopf point."""
+    """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients

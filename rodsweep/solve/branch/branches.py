@@ -210,7 +210,7 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
-        with solve_part(f"branch {len(curves) + 1}, without symmetry"):
+        with solve_part(f"branch {len(curves) + 1}, of asymmetric cycles"):
             curve = follow_asymmetric_branch(
                 which, name, replace(limits, max_cycles=left, breakings=breakings)
             )

@@ -52,7 +52,11 @@ class CoexistenceStatus(PointStatus):
         "stable state is undecided: multipliers of cycles between two special points disagree about "
         "stability or have modulus 1 within their errors; try a smaller number for the accuracy",
     )
-    special_full = 8, "there are more special points on the branches of the row than the file holds"
+    special_full = (
+        8,
+        "there are more special points on the branches of the row than the file holds; choose a smaller "
+        "range of the parameter along the row",
+    )
 
 
 class StableStates(IntEnum):

@@ -51,7 +51,7 @@ class BranchLimits:
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[number]`; its last special point stores a failure."""
+    """The branch from the Hopf point `limits.hopfs[number]`; the last special point stores a failure."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
     curve.add(hopf_as_special_point(hopf))
@@ -60,7 +60,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
-    `limits.breakings[which]`; a failure is stored in its last special point."""
+    `limits.breakings[which]`; a failure is stored in the last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))

@@ -4,8 +4,8 @@ A symmetric cycle equals its own mirror image half a period later. A branch of a
 symmetric branch where a multiplier of the half-period map composed with the reflection is -1. The two halves
 of the asymmetric branch are mirror images of each other, shifted by half a period. Only one half is followed,
 with cycles solved over the whole period. Near the crossing the deflection at t = 0 is linear in the
-asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, it
-continues as its own mirror image. A branch that ends at a Hopf point has the same property.
+asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, the
+branch continues as its own mirror image. A branch that ends at a Hopf point has the same property.
 """
 
 from collections.abc import Sequence

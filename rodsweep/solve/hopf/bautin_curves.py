@@ -183,7 +183,7 @@ class BautinSpace:
             last = here.relative_real_part
             before = s
             s = s + step
-        raise Unsolvable("no generalised Hopf point is found near the predictor")
+        raise Unsolvable("no generalised Hopf point is found near the predicted point")
 
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
@@ -237,7 +237,7 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at requested third parameters between `here` and `there`; raises Unsolvable or ValueError."""
+    """Points at the requested third parameters between `here` and `there`; raises Unsolvable, ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].coordinate, space.asked) if min(a, b) < z < max(a, b)]

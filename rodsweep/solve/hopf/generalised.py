@@ -110,7 +110,7 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
 
 @dataclass(frozen=True, slots=True)
 class HopfCurve:
-    """Normal forms along a Hopf curve.
+    """Normal forms along a Hopf curve. boundary: equation D = 0 of the curve in the plane of two parameters.
 
     scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
     relative accuracy of the Landau coefficient c.

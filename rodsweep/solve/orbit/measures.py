@@ -53,7 +53,8 @@ class Measures:
 
 
 class CyclePath:
-    """Motion of an orbit over its whole period, as trigonometric polynomials."""
+    """Motion of an orbit over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
+    `coefficients` and `samples` of its `TipPath`."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit

@@ -153,7 +153,8 @@ def interval_starts(intervals: int) -> Array:
 
 
 def node_times(intervals: int, stages: int) -> Array:
-    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,)."""
+    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K `intervals`
+    with s `stages` each."""
     starts = interval_starts(intervals)[:, None]
     lengths = interval_lengths(intervals)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)

@@ -18,8 +18,8 @@ from ...model.balance import Values
 
 @dataclass(frozen=True, eq=False)
 class Symmetry:
-    """Symmetry x(T/p) = S x(0) of an orbit. turn: orthogonal matrix, (d, d), by which S multiplies the stress
-    components and the velocity components at every node. parts: p."""
+    """Symmetry x(T/p) = S x(0) of an orbit. turn: orthogonal matrix, (d, d), by which S multiplies the d
+    stress components and the d velocity components at every node. parts: p."""
 
     turn: Array
     parts: int

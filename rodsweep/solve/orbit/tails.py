@@ -125,9 +125,9 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 
 def smooth_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, (2,), divided by the largest values. These tails change smoothly along a
-    branch, because the tail in space is the norm of `TAILS.last_coefficients` coefficients: a single
-    coefficient may vanish."""
+    """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
+    smoothly along a branch, because the tail in space is the norm of `TAILS.last_coefficients` coefficients:
+    a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
         fields = _by_elements(orbit, orbit.points)

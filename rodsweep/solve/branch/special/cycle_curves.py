@@ -77,8 +77,8 @@ class CurveEnd(IntEnum):
 class VanishingPoint:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. period: period of the vanishing cycles, in tau2.
+    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
+    period: period of the vanishing cycles, in tau2.
     """
 
     at: float

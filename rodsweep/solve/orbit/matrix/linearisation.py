@@ -131,9 +131,9 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Changes of the orbit values, (k, N), for k right-hand sides. rights: right-hand sides of the closing
-    and phase conditions, (k, n + 1). by_period: reduced derivative of the stage residuals with respect to the
-    period, (K, s, n). columns: reduced right-hand sides of the stages, (K, s, k, n)."""
+    """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
+    rights: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand sides of
+    the stages, (K, s, k, n). by_period: reduced derivative of stage residuals by the period, (K, s, n)."""
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
     for m in range(count):
@@ -230,8 +230,8 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
 @compiled_for_vectors
 def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
     """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
-    divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns: of a
-    state. nodes: number of nodes without the tip."""
+    divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:
+    length of a state. nodes: number of nodes without the tip."""
     largest = abs(step[-1]) / abs(values[-1])
     for change in step:
         # NaN would be lost in the comparisons below.

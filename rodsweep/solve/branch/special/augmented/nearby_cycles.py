@@ -55,8 +55,8 @@ class NearbyCycleSolver:
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
-        """Assembles and factorises a new matrix at an orbit, and sets `distance`, the relative distance of
-        the present cycle from this orbit, to 0."""
+        """Assembles and factorises a new matrix at an orbit, with a new test function. Sets `distance`, the
+        relative distance of the present cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
         self.distance = 0.0
         self.function = self._family.function(self.matrix)
