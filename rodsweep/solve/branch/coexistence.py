@@ -75,7 +75,7 @@ class StableStates(IntEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. row: outcome for the straight rod. stable_states: `StableStates`
-    at each parameter value, (values,). special: special points of all branches."""
+    at each parameter value, (values,). special: special points of all branches. seconds: computing time."""
 
     row: DiagramRow
     stable_states: NDArray[np.int8]

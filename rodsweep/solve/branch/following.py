@@ -33,7 +33,7 @@ from .symmetry import (
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits of the branches of a rod: range, number of cycles, and special points where a branch may end."""
+    """Range, number of cycles, and possible ends of branches of a rod; relative accuracy of the cycles."""
 
     hopfs: Sequence[HopfBranchStart]
     """Hopf points of the rod within the range."""

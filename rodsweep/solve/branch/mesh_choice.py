@@ -50,8 +50,8 @@ BRANCH_MESH = BranchMeshSettings()
 def first_measured_cycle(
     found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float
 ) -> ArcPoint:
-    """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on a
-    finer mesh if necessary; raises Unsolvable.
+    """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on
+    another mesh if necessary; raises Unsolvable.
 
     scale: units of arc length. side: direction of the branch in components (deflection, log period,
     parameter), (3,). born: arc length from the special point where the branch starts; parameter and

@@ -38,8 +38,7 @@ class BoundaryProblem(Protocol[Curve]):
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
     """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
-    curve, divided by the length of a row. untraced: number of seed points through which no curve could be
-    traced."""
+    curve, divided by the length of a row. untraced: number of seed points that lie on no traced curve."""
 
     curves: tuple[Curve, ...]
     agreement: float

@@ -77,9 +77,10 @@ class StepControl:
     max_angle: float
     """Largest angle in radians between successive steps; a step with a larger angle fails."""
     max_ratio: float
-    """Largest ratio of a step length to the previous step length."""
+    """Largest ratio of a step length to the length of the last accepted step."""
     min_ratio: float = 0.5
-    """Smallest ratio of a step length to the length of the previous, accepted step."""
+    """Smallest ratio of the next chosen step length to the length of the last accepted step; failed steps are
+    halved further."""
     max_solutions: int = 5000
     """Maximum number of solutions on a curve."""
     min_measured: float = 1e-9

@@ -89,8 +89,8 @@ class BautinSpace:
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _CurvePoint:
-        """The generalised Hopf point near the coordinates `guess`, (4,), with parameter number `held` (0, 1
-        or 2) fixed; raises Unsolvable."""
+        """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index `held`
+        fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))

@@ -49,7 +49,7 @@ class NormalFormSettings:
     """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
     error of c may be five times the error of the eigenvalue."""
     largest_order: int = 20
-    """Largest element order; an additional element costs less than a higher order."""
+    """Largest element order chosen by the mesh rule; an additional element costs less than a higher order."""
     max_nodes: int = 2000
     """Maximum number of nodes for a uniform rod; Unsolvable is raised for a rod that needs more nodes."""
     max_arm_nodes: int = 400

@@ -52,7 +52,8 @@ class TipPath(NamedTuple):
 
 
 class OrbitMeans(NamedTuple):
-    """Means of the powers over a period, and the smallest h1; names and units as in `Measures`."""
+    """Means (`_mean`) and rms fluctuations (`_rms`) of the powers over a period, and the smallest h1; names
+    and units as in `Measures`."""
 
     injection_mean: float
     injection_rms: float

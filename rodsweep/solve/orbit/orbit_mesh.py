@@ -39,7 +39,7 @@ class OrbitMeshSettings:
     min_intervals: int = 4
     """Smallest number of time intervals of a chosen mesh."""
     max_intervals: int = 256
-    """Largest number of time intervals of a chosen mesh."""
+    """Largest number of time intervals of an allowed mesh."""
     stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
     """Largest relative accuracies at which four, five and six collocation stages cost less than three, four
     and five stages."""

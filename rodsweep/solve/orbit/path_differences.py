@@ -14,7 +14,7 @@ PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
     """Differences of two paths, (4,): difference of the period, of the largest y, of the extremum with the
-    largest difference, and largest difference of the tip over the period.
+    largest difference, and largest difference of the tip's x, y or theta over the period.
 
     The first number is the larger of two relative differences: of the periods, and of the parameters of the
     rods, which may be different on a branch. The remaining three differences are divided by the largest y of

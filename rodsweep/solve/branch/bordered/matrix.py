@@ -54,7 +54,7 @@ class BorderedMatrix:
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
             self._matrix[rows, rows] = self._shooting_intervals.maps[j]
-            # The last shooting interval ends at the symmetric image of the start of the first one.
+            # The last shooting interval ends at the symmetric image of the first interval's start.
             if j < m - 1:
                 self._matrix[rows, (j + 1) * n : (j + 2) * n] = -np.eye(n)
             else:

@@ -77,7 +77,7 @@ class SpecialBoundaries:
     ) -> Arrays:
         """The result of half curve number `unit`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # A unit is twice the index of its special point, plus one for the half to smaller values.
+        # A unit's number is twice the index of its special point, plus 1 for the half to smaller values.
         place, behind = divmod(unit, 2)
         one = self.special[place]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
@@ -105,7 +105,8 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_boundaries`. results: arrays of half curves, by number."""
+    """Curves of one kind as a problem of `trace_boundaries`; line, rows and special: as in
+    `SpecialBoundaries`. results: arrays of half curves, by number."""
 
     kind: SpecialKind
     line: PlaneAxis

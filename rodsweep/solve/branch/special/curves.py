@@ -48,7 +48,7 @@ class CycleCurveSettings:
     max_edge_distance: float = 1e-8
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
     edge_bracket: float = 1e-10
-    """Tolerance of the position at which a margin becomes 0, divided by the step length."""
+    """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
     crushing_margin: float = 1e-3
     """A curve ends where the relative distance 1 - F/k1 of F from the crushing force k1 is this number."""
     crushing_accuracy: float = 1e-6
@@ -186,8 +186,8 @@ class SpecialCurveProblem:
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
-        """The point between `behind[-1]` and `outer` at which the margin number `margin` is 0; None if this
-        point is not found or is `behind[-1]` itself. For the margin of the amplitude: `outer`."""
+        """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
+        this point is not found or is `behind[-1]` itself. For the margin of the amplitude: `outer`."""
         inner = behind[-1]
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated

@@ -32,7 +32,8 @@ class CurveIdentitySettings:
     max_period_difference: float = 1e-4
     """Largest relative difference between the periods of two solutions for the same cycle."""
     max_end_distance: float = 1e-4
-    """Largest distance between the ends of two identical curves; each axis has length 1."""
+    """Two curves are identical if the coordinates of their ends differ by at most this number; each axis has
+    length 1."""
     max_last_chord_distance: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
     the curve if its distance, along the row, from the chord is at most this fraction of the length of a
@@ -44,8 +45,8 @@ class CurveIdentitySettings:
     """Safety factor on the error of an extrapolated Hopf point. The errors of the points do not include the
     displacement of the Hopf point along the curve that is caused by the mesh."""
     max_hopf_distance: float = 0.01
-    """An extrapolated Hopf point is identical to a generalised Hopf point of a Hopf curve if their distance
-    is at most this number; each axis has length 1."""
+    """An extrapolated Hopf point is identical to a generalised Hopf point of a Hopf curve if their two
+    coordinates differ by at most this number; each axis has length 1."""
 
 
 CURVE_IDENTITY = CurveIdentitySettings()

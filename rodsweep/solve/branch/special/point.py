@@ -56,7 +56,7 @@ class SpecialPointSettings:
     """Largest increase of the order of the elements on the next finer mesh."""
     space_decay: float = 0.8
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by
-    one, measured at a torus point."""
+    1, measured at a torus point."""
     min_interval_ratio: float = 1.2
     """Smallest ratio of the number of time intervals of the next finer mesh to the number of the present
     mesh."""
@@ -95,8 +95,9 @@ class SpecialKind(IntEnum):
 
 
 class EndReason(IntEnum):
-    """Reason for the end of a branch. range_end (end of the parameter range) and crushed (the force nearly
-    crushes the rod) are true ends; no_cycle_found and list_full (maximum number of cycles) are failures."""
+    """Reason for the end of a branch at a special point of kind `end`. range_end (end of the parameter range)
+    and crushed (the force nearly crushes the rod) are true ends; no_cycle_found and list_full (maximum number
+    of cycles) are failures."""
 
     range_end = 1
     crushed = 2

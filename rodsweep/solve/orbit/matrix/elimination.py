@@ -111,9 +111,10 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 @compiled_for_vectors
 def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
     """Eliminates the first two stages: computes the blocks of all later stages in B, (s, s, n, n), and their
-    matrices in `right` (see `_eliminate_interval`).
+    matrices in `right` (see `_eliminate_interval`). p: equations.
 
-    parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the others are computed.
+    parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the remaining products are
+    computed.
     """
     s = B.shape[0]
     n = B.shape[2]

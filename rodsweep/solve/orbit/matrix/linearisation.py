@@ -133,7 +133,7 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
     """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
     rights: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand sides of
-    the stages, (K, s, k, n). by_period: reduced derivative of stage residuals by the period, (K, s, n)."""
+    the stages, (K, s, k, n). by_period: reduced period derivative of the stage residuals, (K, s, n)."""
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
     for m in range(count):
