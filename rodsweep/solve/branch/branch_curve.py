@@ -120,7 +120,8 @@ class BranchCurve:
         self.special[:] = [point for point in self.special if point.after < len(self.points)]
 
     def end(self, end: BranchEnd) -> None:
-        """Appends the end of the branch as its last special point."""
+        """Appends the end of the branch as its last special point, and sets the fields for the end of the
+        branch."""
         self.add(end.special)
         self.complete = end.complete
         self.list_full = end.list_full

@@ -88,7 +88,8 @@ class CoexistenceRow:
 def solve_coexistence(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> CoexistenceRow:
-    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception.
+    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
+    0 there is no cycle.
 
     special: maximum number of stored special points. workspace: memory of Newton's matrices, as in
     `solve_branches`.

@@ -238,7 +238,7 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
-    near), or `start` with half the step, if `start` is too asymmetric for an extrapolation."""
+    near), or `start` with half the step, if `start` is too asymmetric to extrapolate. Raises Unsolvable."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

@@ -227,7 +227,7 @@ class SpecialCurveProblem:
         return len(behind) > CYCLE_CURVES.min_loop_points and 0 <= passed <= 1 and near
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """Point of the curve near the fraction `share` of the chord `one` to `other`; raises Unsolvable."""
+        """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
         start, place = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.normal(other.step_from(one))
         return self._family(other).correct(start, place, across, other.normal_derivatives)

@@ -164,7 +164,7 @@ class _SecantState:
         self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
         self.max_last_step = CURVE_SECANT.max_linear_step if is_other_mesh else CURVE_SECANT.max_carried_step
-        """Longest last secant step, as long as the present step gives no derivatives itself."""
+        """Longest last secant step, used if the present step gives no derivatives."""
         contraction = derivatives.contraction if derivatives and not family.small else inf
         self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
 
