@@ -57,13 +57,13 @@ class ArcPoint:
     length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
-    """Error measurement at this cycle, or else at the last cycle where errors were measured; the errors of
-    this cycle are estimated from it."""
+    """Errors of the mesh, measured or interpolated at this cycle, or measured at an earlier cycle; the errors
+    of this cycle are estimated from these errors."""
     unmeasured: int = 0
-    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are
-    measured."""
+    """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are measured
+    or interpolated."""
     arc_since_measured: float = 0.0
-    """Arc length of the branch since the last cycle with measured errors."""
+    """Arc length of the branch since the last cycle with measured errors; 0 if `unmeasured` is 0."""
     before: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
 
@@ -129,7 +129,8 @@ class ArcPoint:
 
     def _taylor(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
-        its cube. before: previous cycle, through which the cubic passes."""
+        its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
+        cubic."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
         last = mesh.interpolate(before.orbit)
@@ -161,30 +162,33 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
 
 def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
-    """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. side: direction in
-    components (deflection, log period, parameter), (3,); the tangent makes an acute angle with `side`."""
+    """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. scale: units of the
+    components. side: direction in components (deflection, log period, parameter), (3,); the tangent makes an
+    acute angle with `side`."""
     tangent = matrix.direction(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.directional_derivative(orbit, tangent) @ side > 0 else -tangent
 
 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
-    """The next cycle of a branch after `start`; raises Unsolvable if the shortest step fails."""
+    """The next cycle of a branch after `start`, to a relative accuracy; raises Unsolvable if the shortest
+    step fails."""
     end, length = advance(partial(_step_to_length, start, accuracy), start.length, ARC_STEPS)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order))
 
 
 def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
-    """The cycle at the arc length `length` from `start`; raises Unsolvable if no cycle is found, or if the
-    prediction error or the angle is so large that the cycle may lie on another branch."""
+    """The cycle at the arc length `length` from `start`, to a relative accuracy; raises Unsolvable if no
+    cycle is found, or if the prediction error or the angle is so large that the cycle may lie on another
+    branch."""
     return ARC_STEPS.accepted(_step_to_length(start, accuracy, length)).solution
 
 
 def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
-    """The cycle at the arc length `length` from `start`, with the prediction error and the cosine of the
-    angle between the tangents; raises Unsolvable. On the first step of a branch an allowed prediction error
-    is replaced by `target_error`."""
+    """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
+    and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch an
+    allowed prediction error is replaced by `target_error`."""
     condition = start.condition(length)
     predicted = start.predicted(length)
     tolerance = newton_tolerance(accuracy)
@@ -214,7 +218,8 @@ def cycle_with_calibrated_errors(
     """The solved orbit `found` as the cycle of the branch at the arc length `length` from `start`, with
     errors estimated from the calibration of `start`.
 
-    tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step.
+    tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step. accuracy:
+    relative accuracy of `found`.
     """
     cycle = with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
     derivatives = branch_derivatives(found, start.scale, tangent)

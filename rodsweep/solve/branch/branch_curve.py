@@ -29,8 +29,8 @@ class BranchPoint:
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
     unstable_count: int
-    """Number of Floquet multipliers outside the unit circle; -1 if a multiplier has modulus 1 within its
-    error."""
+    """Number of nontrivial Floquet multipliers outside the unit circle; -1 if one of them has modulus 1
+    within its error."""
 
     @classmethod
     def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
@@ -51,8 +51,8 @@ class BranchPoint:
 
     @property
     def min_unstable_multipliers(self) -> int:
-        """Least number of multipliers outside the unit circle: 0 if the cycle is stable, -1 if its stability
-        is unknown."""
+        """Lower bound on the number of nontrivial multipliers outside the unit circle: 0 if the cycle is
+        stable, -1 if its stability is unknown."""
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
@@ -99,7 +99,7 @@ class BranchCurve:
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies beyond the present last cycle."""
+        """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
@@ -120,7 +120,8 @@ class BranchCurve:
         self.special[:] = [point for point in self.special if point.after < len(self.points)]
 
     def end(self, end: BranchEnd) -> None:
-        """Appends the end of the branch as its last special point."""
+        """Appends the end of the branch as its last special point, and sets the fields for the end of the
+        branch."""
         self.add(end.special)
         self.complete = end.complete
         self.list_full = end.list_full

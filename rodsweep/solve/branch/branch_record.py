@@ -44,7 +44,7 @@ class BranchRecord:
         curve.points.append(BranchPoint.of(first, accuracy))
 
     def append(self, point: ArcPoint) -> None:
-        """Appends a cycle without measured errors."""
+        """Appends the cycle `point`, whose errors are not measured."""
         self._unmeasured.append(point)
         self.curve.points.append(BranchPoint.of(point, self.accuracy))
 

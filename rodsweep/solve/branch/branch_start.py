@@ -60,7 +60,7 @@ ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBranchStart:
     """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
-    off."""
+    off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf point."""
 
     crossing: Crossing
     rod: Rod
@@ -68,7 +68,7 @@ class HopfBranchStart:
     coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     slope: complex
-    """Derivative dw/d(coordinate) of the critical eigenvalue w, in 1/tau2, at the Hopf point."""
+    """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients
@@ -180,11 +180,12 @@ def _cycle_of(
     accuracy: float,
     workspace: NewtonWorkspace,
 ) -> ArcPoint:
-    """The cycle near the cycle that the normal form predicts for the largest tip y `amplitude`, in L, solved
-    to the relative `accuracy`; raises Unsolvable.
+    """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
+    L, solved to the relative `accuracy`; raises Unsolvable.
 
     The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
-    whether the starting mesh is chosen for `aim` too; otherwise it is the coarser mesh of the normal form.
+    whether the starting mesh is chosen for `aim` too; otherwise the starting mesh is the coarser mesh of the
+    normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:

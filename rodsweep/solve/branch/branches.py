@@ -71,9 +71,9 @@ class BranchStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class BranchRequest:
-    """Request for every rod. along, start, stop: name and range of the continuation parameter. accuracy:
-    relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing. cycles, special:
-    maximum numbers of stored cycles and special points."""
+    """Request, the same for every rod. along, start, stop: name and range of the continuation parameter.
+    accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing.
+    cycles, special: maximum numbers of stored cycles and special points."""
 
     along: str
     start: float
@@ -87,8 +87,8 @@ class BranchRequest:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
     """Outcome of the task `branch` for one rod. crossings: Hopf points within the range, by ascending
-    parameter. unstable_at_start: number of unstable modes of the straight rod at the start of the range, -1
-    if unknown. proved: whether `crossings` is proved complete. curves: all branches."""
+    parameter. unstable_at_start: number of unstable modes of the straight rod at the start, -1 if unknown.
+    proved: whether `crossings` is proved complete. curves: all branches. seconds: computing time."""
 
     status: BranchStatus
     message: str = ""
@@ -156,7 +156,8 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
 
 
 def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """(smallest, largest parameter without crushing, index of the end that is crushed or -1 for no end)."""
+    """(smallest and largest value of the parameter in the requested range without crushing, index of the
+    range end at which the rod is crushed: 0, 1, or -1 if the rod is crushed at neither end)."""
     low = request.start
     high = request.stop
     share = rod.build.relative_crushing_force(rod.taper)
@@ -210,7 +211,7 @@ def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
-        with solve_part(f"branch {len(curves) + 1}, without symmetry"):
+        with solve_part(f"branch {len(curves) + 1}, of asymmetric cycles"):
             curve = follow_asymmetric_branch(
                 which, name, replace(limits, max_cycles=left, breakings=breakings)
             )
@@ -224,8 +225,8 @@ def _status_and_message(
     found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
-    and all messages. found: result of the search for Hopf points. failures: messages on Hopf points without a
-    normal form."""
+    and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on
+    Hopf points without a normal form."""
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)

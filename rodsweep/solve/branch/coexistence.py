@@ -52,7 +52,11 @@ class CoexistenceStatus(PointStatus):
         "stable state is undecided: multipliers of cycles between two special points disagree about "
         "stability or have modulus 1 within their errors; try a smaller number for the accuracy",
     )
-    special_full = 8, "there are more special points on the branches of the row than the file holds"
+    special_full = (
+        8,
+        "there are more special points on the branches of the row than the file holds; choose a smaller "
+        "range of the parameter along the row",
+    )
 
 
 class StableStates(IntEnum):
@@ -71,7 +75,7 @@ class StableStates(IntEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. row: outcome for the straight rod. stable_states: `StableStates`
-    at each parameter value, (values,). special: special points of all branches."""
+    at each parameter value, (values,). special: special points of all branches. seconds: computing time."""
 
     row: DiagramRow
     stable_states: NDArray[np.int8]
@@ -84,7 +88,8 @@ class CoexistenceRow:
 def solve_coexistence(
     rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
 ) -> CoexistenceRow:
-    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception.
+    """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
+    0 there is no cycle.
 
     special: maximum number of stored special points. workspace: memory of Newton's matrices, as in
     `solve_branches`.

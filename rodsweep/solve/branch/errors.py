@@ -184,8 +184,9 @@ def measured_errors(
     found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
-    Unsolvable. derivatives: derivatives of the branch at `found`. before: calibration at a previous cycle,
-    from which convergence rates are estimated; None if there is no such cycle."""
+    Unsolvable. derivatives: derivatives of the branch at `found`. accuracy: relative accuracy of `found`.
+    before: calibration at a previous cycle, from which convergence rates are estimated; None if there is no
+    such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)

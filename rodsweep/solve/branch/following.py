@@ -33,7 +33,7 @@ from .symmetry import (
 
 @dataclass(frozen=True, slots=True)
 class BranchLimits:
-    """Limits of the branches of a rod: range, number of cycles, and special points where a branch may end."""
+    """Range, number of cycles, and possible ends of branches of a rod; relative accuracy of the cycles."""
 
     hopfs: Sequence[HopfBranchStart]
     """Hopf points of the rod within the range."""
@@ -51,7 +51,7 @@ class BranchLimits:
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[number]`; its last special point stores a failure."""
+    """The branch from the Hopf point `limits.hopfs[number]`; the last special point stores a failure."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
     curve.add(hopf_as_special_point(hopf))
@@ -60,7 +60,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
-    `limits.breakings[which]`; a failure is stored in its last special point."""
+    `limits.breakings[which]`; a failure is stored in the last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
@@ -101,8 +101,7 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
 
 
 def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
-    """Progress along a branch: text with the parameter at its last cycle `start`, and fraction of the
-    work."""
+    """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
     name = start.scale.name
     # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
@@ -129,7 +128,7 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
 
 
 def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
-    """Position of a cycle relative to the parameter range: 0 below, 1 above, -1 within the range."""
+    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
     low, high = limits.ends
     if point.coordinate < low:
         return 0
@@ -137,8 +136,9 @@ def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
 
 
 def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """Appends the next cycle after `start`, and the special points before this cycle, to the branch; returns
-    the cycle, or the end of the branch."""
+    """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
+    the last cycle, from which the branch continues, or the end of the branch. If a step to the mirror image
+    is too long, nothing is appended, and `start` with half the step length is returned."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
@@ -211,7 +211,7 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
-    `start` with half the step, if its amplitude is too large for an extrapolation. Raises Unsolvable."""
+    `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
@@ -237,8 +237,8 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
 
 
 def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking between two cycles (a failure if it is unknown),
-    or `start` with half the step length, if the cycles are too asymmetric for an extrapolation."""
+    """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
+    near), or `start` with half the step, if `start` is too asymmetric to extrapolate. Raises Unsolvable."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, length=arc_length_between(start, end) / 2)

@@ -50,8 +50,8 @@ BRANCH_MESH = BranchMeshSettings()
 def first_measured_cycle(
     found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float
 ) -> ArcPoint:
-    """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on a
-    finer mesh if necessary; raises Unsolvable.
+    """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on
+    another mesh if necessary; raises Unsolvable.
 
     scale: units of arc length. side: direction of the branch in components (deflection, log period,
     parameter), (3,). born: arc length from the special point where the branch starts; parameter and
@@ -85,7 +85,8 @@ def measurement_due(point: ArcPoint) -> bool:
 
 
 def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
-    """The same cycle with its errors measured on two finer meshes; raises Unsolvable."""
+    """The same cycle with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
+    accuracy of the cycle."""
     before = point.calibration.at_parameter
     return with_calibration(
         point, measured_errors(point.cycle.converged, point.derivatives, accuracy, before), accuracy
@@ -93,7 +94,8 @@ def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
 
 
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
-    """The same cycle with the errors of `calibration`, which was measured or interpolated at this cycle."""
+    """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
+    interpolated at this cycle. In the result the number of unmeasured steps is 0."""
     cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
     return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
 
@@ -101,9 +103,9 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
 def solve_on_sufficient_mesh(
     point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
 ) -> ArcPoint:
-    """The same cycle with measured errors within the accuracy, on a mesh chosen for this accuracy; raises
-    Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every mesh; by
-    default the condition that its arc length is unchanged."""
+    """The same cycle with measured errors within the relative accuracy, on a mesh chosen for this accuracy;
+    raises Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every
+    mesh; by default the condition that its arc length is unchanged."""
     condition = condition or point.condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH.max_meshes):
@@ -125,8 +127,9 @@ def solve_on_sufficient_mesh(
 
 
 def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
-    """The same cycle solved on the mesh `mesh`, without measured errors; raises Unsolvable. condition:
-    equation that defines the same cycle on every mesh."""
+    """The same cycle solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
+    calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
+    """
     found = condition.on_mesh(
         mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy)
     )
@@ -186,10 +189,10 @@ def _with_errors_between(
     """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
     same mesh; raises Unsolvable.
 
-    share: fraction of the arc length from `last` to `end` at which `point` lies. The errors of `point` are
-    measured instead if its coefficient tails are much larger than at `last` and `end`, or if the parameter
-    changes more slowly than at `last` and `end`, as near a fold: the errors at `last` and `end` are then no
-    bound.
+    share: fraction of the arc length from `last` to `end` at which `point` lies. accuracy: relative accuracy
+    of the cycles. The errors of `point` are measured instead if its coefficient tails are much larger than at
+    `last` and `end`, or if the parameter changes more slowly than at `last` and `end`, as near a fold: the
+    errors at `last` and `end` are then no bound.
     """
     ends = (last, end)
     slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(

@@ -23,8 +23,8 @@ def range_end_condition(start: ArcPoint, limit: float) -> BorderCondition:
 def cycle_at_range_end(
     start: ArcPoint, end: ArcPoint, range_end: BorderCondition, accuracy: float
 ) -> ArcPoint:
-    """The cycle at an end of the parameter range, between the cycles `start` and `end`; raises Unsolvable.
-    range_end: condition that the cycle lies at this end of the range."""
+    """The cycle at an end of the parameter range, between the cycles `start` and `end`, to a relative
+    accuracy; raises Unsolvable. range_end: condition that the cycle lies at this end of the range."""
     scale = start.scale
     segment = BranchSegment(start, end)
 

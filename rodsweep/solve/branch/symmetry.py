@@ -4,8 +4,8 @@ A symmetric cycle equals its own mirror image half a period later. A branch of a
 symmetric branch where a multiplier of the half-period map composed with the reflection is -1. The two halves
 of the asymmetric branch are mirror images of each other, shifted by half a period. Only one half is followed,
 with cycles solved over the whole period. Near the crossing the deflection at t = 0 is linear in the
-asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, it
-continues as its own mirror image. A branch that ends at a Hopf point has the same property.
+asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, the
+branch continues as its own mirror image. A branch that ends at a Hopf point has the same property.
 """
 
 from collections.abc import Sequence
@@ -137,8 +137,8 @@ def _moments(states: Array, orbit: Orbit) -> Array:
 def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ArcPoint:
-    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`; raises
-    Unsolvable. The cycle has a larger largest tip y than its mirror image."""
+    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
+    relative accuracy; raises Unsolvable. The cycle has a larger largest tip y than its mirror image."""
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)
@@ -163,7 +163,7 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
 
     whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
-    minus deflection of the symmetric cycle.
+    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle.
     """
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION

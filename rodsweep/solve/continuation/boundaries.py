@@ -38,8 +38,7 @@ class BoundaryProblem(Protocol[Curve]):
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
     """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
-    curve, divided by the length of a row. untraced: number of seed points through which no curve could be
-    traced."""
+    curve, divided by the length of a row. untraced: number of seed points that lie on no traced curve."""
 
     curves: tuple[Curve, ...]
     agreement: float
@@ -51,9 +50,9 @@ class BoundarySearch(Generic[Curve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
-    each seed point from the nearest curve so far, by index. missing_items: numbers of the work items whose
-    missing results stopped the search. open_seeds: seed points that lie on no curve so far, except the point
-    where the search stopped.
+    each seed point from the nearest curve so far, by index. missing_units: numbers of the units of work whose
+    missing results stopped the search. open_seeds: indices of the seed points that lie on no curve so far and
+    were not tried, without the seed point at which the search stopped.
     """
 
     tolerance: float
@@ -64,7 +63,8 @@ class BoundarySearch(Generic[Curve]):
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """All curves; valid if `missing_items` is empty."""
+        """All curves, with the agreement and the number of untraced seed points; valid if `missing_units` is
+        empty."""
         found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 

@@ -77,9 +77,10 @@ class StepControl:
     max_angle: float
     """Largest angle in radians between successive steps; a step with a larger angle fails."""
     max_ratio: float
-    """Largest ratio of a step length to the previous step length."""
+    """Largest ratio of a step length to the length of the last accepted step."""
     min_ratio: float = 0.5
-    """Smallest ratio of a step length to the length of the previous, accepted step."""
+    """Smallest ratio of the next chosen step length to the length of the last accepted step; failed steps are
+    halved further."""
     max_solutions: int = 5000
     """Maximum number of solutions on a curve."""
     min_measured: float = 1e-9
@@ -91,17 +92,17 @@ class StepControl:
             raise ValueError(f"max_ratio = {self.max_ratio} must be above 1, so that steps can grow")
 
     def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
-        """The next solution `there`; raises Unsolvable if its prediction error or angle is so large that the
+        """The result `there` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
         if not there.prediction_error <= self.max_error:
-            raise Unsolvable("the corrected solution is too far from its predictor")
+            raise Unsolvable("the corrected solution is too far from its prediction")
         if not _angle(there.cosine) <= self.max_angle:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
-        """Length of the next step. length: length of the accepted last step. there: result of the last step.
-        solutions: number of solutions so far."""
+        """Length of the next step, from the prediction error and the angle of the last step. length: length
+        of the last, accepted step. there: result of the last step. solutions: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
         by_distance = (self.target_error / max(there.prediction_error, self.min_measured)) ** (
             1 / min(self.prediction_order, solutions)
@@ -121,7 +122,7 @@ class CurveStop(Enum):
 
     margin = "a margin is zero"
     closed = "the curve returned to its start"
-    lost = "no solution was found beyond"
+    lost = "no solution was found beyond the last solution"
     full = "the curve has the maximum number of solutions"
 
 
@@ -210,7 +211,7 @@ def zero_along_step(
 
     known = {0.0: ends[0], length: ends[1]}
     if not ends[0] * ends[1] <= 0:
-        raise Unsolvable("there is no change of sign along the step")
+        raise Unsolvable("the function has the same sign at both ends of the step")
 
     def settled(at: float) -> float:
         here = known[at] if at in known else value(at)

@@ -2,8 +2,8 @@
 
 Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, c: Landau coefficient), are isolated in a
 plane of two parameters and form a curve over three parameters. Each step prescribes the parameter that
-changes fastest along the curve, so that folds in all parameters are possible. The predictor is the line
-through the last two points; the corrector moves along the Hopf curve of the two free parameters to Re c = 0.
+changes fastest along the curve, so folds in all parameters are possible. The predictor is the line through
+the last two points; the corrector moves along the Hopf curve of both free parameters to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,8 @@ from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
 
 
 class BautinEnd(IntEnum):
-    """Reason why a curve of generalised Hopf points ends."""
+    """Reason why a curve ends. none: the point is not an end. range_end: end of the third parameter's range.
+    plane_edge: end of the range of another parameter. not_found: no point was found beyond the end."""
 
     none = 0
     range_end = 1
@@ -45,9 +46,8 @@ END_OTHERWISE = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point in the space of three parameters. values, errors: both parameters of the
-    plane, then the third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2).
-    """
+    """A generalised Hopf point over three parameters. values, errors: both parameters of the plane, then the
+    third parameter, (3,). frequency in 1/tau2, landau_imag = Im c in 1/(tau2 L^2)."""
 
     values: Array
     errors: Array
@@ -73,11 +73,9 @@ class _CurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`.
-
-    rod: values of the fixed parameters. asked: values of the third parameter at which points are added.
-    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1.
-    """
+    """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
+    values of the fixed parameters. asked: values of the third parameter at which points are added, (m,).
+    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
@@ -91,8 +89,8 @@ class BautinSpace:
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _CurvePoint:
-        """The generalised Hopf point near `guess`, (4,), with the fixed parameter number `held` (0, 1 or 2);
-        raises Unsolvable."""
+        """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index `held`
+        fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
@@ -113,7 +111,8 @@ class BautinSpace:
         return _CurvePoint(self.scaled(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
-        """The next point after the points `behind`, predicted along the last chord; raises Unsolvable."""
+        """The next point after `behind`, predicted along the last chord, at first along the third parameter;
+        raises Unsolvable. length: largest predicted change of a parameter, divided by its range."""
         here = behind[-1].v
         tangent = np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
@@ -155,7 +154,8 @@ class BautinSpace:
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
-        """Whether the curve is closed: its first point lies between its last point and `there`."""
+        """Whether the curve has more than `BAUTIN.min_loop_points` points, and the first point of the curve
+        lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))
@@ -183,7 +183,7 @@ class BautinSpace:
             last = here.relative_real_part
             before = s
             s = s + step
-        raise Unsolvable("no generalised Hopf point is found near the predictor")
+        raise Unsolvable("no generalised Hopf point is found near the predicted point")
 
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
@@ -208,7 +208,7 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
 
 
 def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether `point`, at a requested value of the third parameter, is equal to a point of `curve`."""
+    """Whether `point`, at a requested third parameter, equals a point of `curve` (`BAUTIN.same_point`)."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point for other in others)
@@ -216,7 +216,7 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
 
 def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """(points from `start` in the direction `space.side` of the third parameter, including points at its
-    requested values; why the curve ends)."""
+    requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report)
@@ -237,7 +237,7 @@ def _report(places: Sequence[_CurvePoint]) -> None:
 
 
 def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at requested values of the third parameter between two points; raises Unsolvable, ValueError."""
+    """Points at the requested third parameters between `here` and `there`; raises Unsolvable, ValueError."""
     a = here.v[2]
     b = there.v[2]
     inner = [z for z in map(space.axes[2].coordinate, space.asked) if min(a, b) < z < max(a, b)]

@@ -1,10 +1,11 @@
 """Normal form coefficients of a Hopf point, with error estimates from two meshes and from the determinant D.
 
-The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
-from the value of the coarser mesh is the error estimate, which overestimates the error by some decades. The
-effects of rounding and of the error of the Hopf point are added. The slope dw/dF is the slope of the root of
-D, free of mesh error; its difference from the slope on the finer mesh is the error estimate. For arms, the
-slope of the finer mesh is stored.
+The Landau coefficient c is computed on successively finer meshes, at least two. The value of the last mesh is
+stored, and its difference from the value of the mesh before is the error estimate, which overestimates the
+error by some decades. The effects of rounding and of the error of the Hopf point are added. The slope dw/dF
+is the slope of the root of D, free of mesh error; its difference from the slope on the last mesh is the error
+estimate. For arms, the slope on the last mesh is stored, with its difference from the slope on the mesh
+before as the error estimate.
 """
 
 import math
@@ -53,7 +54,8 @@ class HopfCoefficients:
 
     growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), with errors relative to their moduli;
     amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), with errors relative to their values.
-    All numbers are NaN if the computation failed; `message` then states the cause.
+    elements, order: number and order of the elements of the last mesh. If the computation failed, all
+    coefficients and errors are NaN, and `message` states the cause.
     """
 
     growth_slope: complex = complex(math.nan, math.nan)
@@ -94,7 +96,8 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
     Unsolvable.
 
-    rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds `accuracy`.
+    rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds `accuracy`, or if
+    the finest mesh does not suffice.
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
@@ -135,7 +138,8 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
 def _with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
-    """The coefficients of `normal`, with errors that follow from the relative errors of c, dw/dF and F."""
+    """The coefficients of `normal`, with errors from three relative errors: `landau_error` of c,
+    `slope_error` of dw/dF, and `force_error` of F."""
     c = normal.c
     slope = normal.slope
     slope_off = slope_error * abs(slope)

@@ -71,8 +71,9 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`. coefficients: normal form coefficients of
-    the first Hopf points, at most as many as requested."""
+    """Result for one rod: all Hopf points up to the force `end`. transitions: result of the search for Hopf
+    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
+    seconds: computing time."""
 
     status: CriticalityStatus
     transitions: Transitions
@@ -89,8 +90,8 @@ class Criticality:
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     """All Hopf points of `rod` for forces up to `request.F_max`, or to just below the crushing force if
-    smaller, with coefficients. The force of `rod` is ignored; a failure is returned as a status, never
-    raised."""
+    smaller, and the coefficients of the first `request.crossings`. The force of `rod` is ignored; a failure
+    is returned as a status, never raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:
@@ -146,7 +147,7 @@ def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
-    problem, or ok."""
+    problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

@@ -39,8 +39,8 @@ class GeneralisedHopfSettings:
     slope_step: float = 1e-3
     """Difference step for the derivative of Re c, as a fraction of the distance between two neighbours."""
     max_zero_ratio: float = 1e-6
-    """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this; otherwise Re c
-    jumps from negative to positive values."""
+    """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this number; otherwise
+    Re c jumps from negative to positive values."""
 
 
 GENERALISED_HOPF = GeneralisedHopfSettings()
@@ -110,7 +110,7 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
 
 @dataclass(frozen=True, slots=True)
 class HopfCurve:
-    """Normal forms along a Hopf curve.
+    """Normal forms along a Hopf curve. boundary: equation D = 0 of the curve in the plane of two parameters.
 
     scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
     relative accuracy of the Landau coefficient c.
@@ -121,7 +121,7 @@ class HopfCurve:
     accuracy: float
 
     def sign(self, i: int) -> float:
-        """Sign of Re c at the stored point of index i: -1 or 1; 0 if undecided, NaN if the normal form
+        """Sign of Re c at the stored point with the index i: -1 or 1; 0 if undecided, NaN if the normal form
         fails."""
         points = len(self.scaled)
         report(lambda: SolvePosition(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
@@ -136,7 +136,7 @@ class HopfCurve:
 
     def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
         """The Hopf point at which the Hopf curve crosses the plane through `guess`, (3,), with normal vector
-        `normal`, (3,), and its normal form; raises Unsolvable."""
+        `normal`, (3,), and its normal form; raises Unsolvable. accuracy: relative accuracy of c."""
         there = self.boundary.point_near(guess, normal)
         if there is None:
             raise Unsolvable("no Hopf point is found between two points of the curve")
@@ -151,8 +151,9 @@ class HopfCurve:
         return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
-        """The zero of Re c between the points of indices `first` and `last`, at which Re c has opposite
-        signs; None if Brent's method finds no zero."""
+        """The generalised Hopf point between the stored points with the indices `first` and `last`, at which
+        Re c has opposite signs. None if a normal form fails, if Brent's method finds no zero, or if Re c
+        jumps there."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         start = self.scaled[first]

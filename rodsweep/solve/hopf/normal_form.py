@@ -41,15 +41,15 @@ class NormalFormSettings:
     """Relative offset of the shift from the eigenvalue estimate; without an offset the shifted matrix might
     be singular."""
     found: float = 1e-8
-    """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this: two
-    iterations with this shift reach rounding error."""
+    """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
+    two iterations with this shift reach rounding error."""
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
     accuracy_share: float = 0.1
     """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
     error of c may be five times the error of the eigenvalue."""
     largest_order: int = 20
-    """Largest element order; an additional element costs less than a higher order."""
+    """Largest element order chosen by the mesh rule; an additional element costs less than a higher order."""
     max_nodes: int = 2000
     """Maximum number of nodes for a uniform rod; Unsolvable is raised for a rod that needs more nodes."""
     max_arm_nodes: int = 400
@@ -98,8 +98,7 @@ class NormalForm:
     @property
     def amplitude(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
-        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F.
-        """
+        largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
         squared = -self.slope.real / self.c.real
         return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
 
@@ -148,7 +147,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
 
-    Raises Unsolvable if the mesh has no eigenvalue equal to w within this accuracy, or too many nodes.
+    Raises Unsolvable if the mesh has no eigenvalue equal to w, or too many nodes, as in `normal_form_on`.
     """
     return normal_form_on(elements_for(rod, w, accuracy), rod, w, accuracy)
 
@@ -185,8 +184,8 @@ def finer_by_a_third(elements: Elements) -> Elements:
 def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
-    Raises Unsolvable if the mesh has no eigenvalue equal to w within the relative accuracy `accuracy`, or if
-    the mesh has too many nodes.
+    Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
+    `accuracy` and `NORMAL_FORM_SETTINGS.found`, or if the mesh has too many nodes.
     """
     nodes = elements.nodes
     limit = NORMAL_FORM_SETTINGS.max_nodes if rod.standard else NORMAL_FORM_SETTINGS.max_arm_nodes
@@ -204,10 +203,10 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
-    """(w, q, p) for the eigenvalue nearest to `guess`; the transverse modes q and p are scaled as in the
-    module docstring.
+    """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
+    docstring.
 
-    Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
+    Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift. Raises Unsolvable.
     """
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):

@@ -24,8 +24,8 @@ class SubcriticalHopfSettings:
     accuracy: float = 1e-3
     """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
     largest_y: float = 0.5
-    """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this: the normal
-    form is too inaccurate."""
+    """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this number: the
+    normal form is too inaccurate."""
 
 
 SUBCRITICAL_HOPF = SubcriticalHopfSettings()
@@ -44,7 +44,8 @@ class SubcriticalHopf:
 
 
 def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
-    """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical.
+    """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical, or if
+    the force is not positive.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
     y of the unstable cycle is at most `SUBCRITICAL_HOPF.largest_y`. The straight rod must be stable. Raises

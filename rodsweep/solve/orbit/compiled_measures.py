@@ -39,10 +39,9 @@ class TipPath(NamedTuple):
     nodes.
 
     strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with respect to
-    t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). coefficients: Fourier coefficients
-    of (x, y, theta) of the tip, (count, 3). samples: (x, y, theta) at equidistant times of the period,
-    (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y, theta),
-    (3,).
+    t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). coefficients: the `count` Fourier
+    coefficients of (x, y, theta) of the tip, (count, 3). samples: (x, y, theta) at equidistant times of the
+    period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y, theta), (3,).
     """
 
     strains: Array
@@ -53,7 +52,8 @@ class TipPath(NamedTuple):
 
 
 class OrbitMeans(NamedTuple):
-    """Means of the powers over a period, and the smallest h1; names and units as in `Measures`."""
+    """Means (`_mean`) and rms fluctuations (`_rms`) of the powers over a period, and the smallest h1; names
+    and units as in `Measures`."""
 
     injection_mean: float
     injection_rms: float
@@ -65,7 +65,8 @@ class OrbitMeans(NamedTuple):
 @compiled_for_vectors
 def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
     """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
-    period for a symmetric orbit, otherwise the period. period: in tau2. m: result of `tip_matrices`."""
+    period for a symmetric orbit, otherwise the period. period: in tau2. p: equations of the orbit. m: result
+    of `tip_matrices`."""
     size = len(p.matrices.weights)
     order = len(m.ends) - 1
     strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
@@ -116,7 +117,7 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 @compiled_for_vectors
 def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
     """Means and rms deviations of the powers over a period, and the smallest h1. stages: states at the
-    stages, (K, s, n). weights: quadrature weights of the stages, (s,)."""
+    stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of the orbit."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
     nodes = len(p.matrices.weights) - 1
@@ -143,8 +144,8 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
 
 @compiled_for_vectors
 def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> float:
-    """The smaller h1 of the two sides of a jump of the material at `node`. state: (n,). sides: material
-    constants on the two sides, (2, 7)."""
+    """The smaller h1 of the two sides of a jump of the material at the node with the index `node`. state:
+    (n,). sides: material constants on the two sides, (2, 7). rod: material at the nodes."""
     n = rod.rest.shape[1] - 1
     q = Unknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
     a = unknowns_before_jump(rod.law, sides, q)
@@ -155,7 +156,7 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 @compiled_for_vectors
 def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
     """Writes the strain rates dE/dt at all nodes of `states`, (m, n), into `out`, (3, m, nodes + 1); at the
-    tip 0 is written."""
+    tip 0 is written. p: equations of the orbit."""
     size = len(p.matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))
@@ -169,8 +170,8 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def powers(states: Array, out: Array, p: Semidiscrete) -> None:
-    """Writes two powers for `states`, (m, n), into `out`, (2, m): the power of the follower force, computed
-    from the reaction at the tip, and the power lost by drag."""
+    """Writes two powers for `states`, (m, n), into `out`, (2, m): row 0, the power of the follower force,
+    computed from the reaction at the tip; row 1, the power lost by drag. p: equations of the orbit."""
     size = len(p.matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))

@@ -53,7 +53,8 @@ class Measures:
 
 
 class CyclePath:
-    """Motion of an orbit over its whole period, as trigonometric polynomials."""
+    """Motion of an orbit over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
+    `coefficients` and `samples` of its `TipPath`."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
@@ -89,7 +90,7 @@ class CyclePath:
 
     @cached_property
     def extrema(self) -> dict[str, float]:
-        """Extrema of the tip, by the names in `Measures`."""
+        """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `Measures`, by name."""
         least = self._path.least.tolist()
         largest = self._path.largest.tolist()
         return {
@@ -152,7 +153,7 @@ class CyclePath:
 
     def _sampled(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `start_phase`, (count,
-        ...)."""
+        ...). c: Fourier coefficients c_k, (coefficients, ...)."""
         turns = np.exp(2j * np.pi * self.start_phase * np.arange(len(c)))
         return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 

@@ -23,7 +23,7 @@ class OrbitNewtonSettings:
     longest_step: float = 0.5
     """Largest relative change of state, period or parameter in one iteration. If the parameter is unknown, a
     longer step is a failure. Otherwise a longer step is shortened; the iteration fails if a step after the
-    first is longer than this and longer than the step before."""
+    first is longer than this number and longer than the step before."""
     max_iterations: int = 12
     """Maximum number of iterations; slower convergence means that there is no orbit near the start."""
     quadratic_error: float = 1e5
@@ -137,7 +137,8 @@ def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
 
 def multiplier_change(multipliers: Complex, others: Complex) -> float:
     """Error of the largest multiplier, from the multipliers on two meshes: the distance of `multipliers[0]`
-    from the nearest of `others`, or the difference of the two largest moduli, whichever is larger.
+    from the nearest of `others`, or the difference of the two largest moduli, whichever is larger; 0 if a
+    list is empty.
 
     multipliers, others: by descending modulus, (m,) and (l,). Multipliers with the same index are not
     compared, because two multipliers may be in a different order on another mesh. The moduli alone may agree
@@ -147,7 +148,7 @@ def multiplier_change(multipliers: Complex, others: Complex) -> float:
         return 0.0
     nearest = np.abs(others - multipliers[0]).min()
     # The largest multiplier of a strongly unstable cycle may differ by a factor between meshes; the nearest
-    # multiplier is then not the same.
+    # multiplier is then a different multiplier.
     return float(max(nearest, abs(abs(others[0]) - abs(multipliers[0]))))
 
 

@@ -41,8 +41,8 @@ def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
 
 
 def normalised(orbit: Orbit) -> Array:
-    """Normalised values of an orbit, (N + 1,): its values, of which the components that change sign under the
-    reflection are divided by the orbit's size, and then the squared size."""
+    """Normalised values of an orbit, (N + 1,): the orbit values, in which all components that change sign
+    under the reflection are divided by the size of the orbit; at the end, the squared size."""
     values: Array = normalised_values(orbit.values, reflected(orbit))
     return values
 
@@ -79,7 +79,7 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
     data.
 
     places: argument of each datum, (m,). orders: 1 if the datum is a slope p', 0 if it is a difference p -
-    p(0), (m,).
+    p(0), (m,). step: argument at which the polynomial is evaluated.
     """
     m = len(places)
     # Arguments are divided by the largest modulus, so that the Vandermonde matrix is well conditioned.

@@ -127,7 +127,8 @@ class Orbit:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
 def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
-    """Data of the equations of orbits with the given form, symmetry and time intervals; cached."""
+    """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
+    cached."""
     d = radau_method(stages).differentiation
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
@@ -152,7 +153,8 @@ def interval_starts(intervals: int) -> Array:
 
 
 def node_times(intervals: int, stages: int) -> Array:
-    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,)."""
+    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K `intervals`
+    with s `stages` each."""
     starts = interval_starts(intervals)[:, None]
     lengths = interval_lengths(intervals)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)

@@ -39,10 +39,10 @@ class OrbitMeshSettings:
     min_intervals: int = 4
     """Smallest number of time intervals of a chosen mesh."""
     max_intervals: int = 256
-    """Largest number of time intervals of a chosen mesh."""
+    """Largest number of time intervals of an allowed mesh."""
     stage_accuracies: tuple[float, ...] = (2e-5, 3e-9, 3e-11)
-    """At accuracies up to the first, second and third number, four stages cost less than three, five less
-    than four, and six less than five."""
+    """Largest relative accuracies at which four, five and six collocation stages cost less than three, four
+    and five stages."""
     fewest_stages: int = 3
     """Number of collocation stages at accuracies above the largest of `stage_accuracies`."""
     max_more_orders: int = 12
@@ -110,7 +110,8 @@ class OrbitMesh:
 
     @property
     def coarser(self) -> "OrbitMesh":
-        """Mesh coarser than this mesh, for the steps along a branch to a cycle to be solved on this mesh."""
+        """Mesh coarser than this mesh, for the first steps along a branch to a cycle that will be solved on
+        this mesh."""
         order = max(ORBIT_MESH.min_order - ORBIT_MESH.coarser_order, self.order - ORBIT_MESH.coarser_order)
         intervals = max(ORBIT_MESH.min_intervals - 1, round(ORBIT_MESH.coarser_share * self.intervals))
         return replace(self, order=order, intervals=intervals)

@@ -14,7 +14,7 @@ PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
 
 def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
     """Differences of two paths, (4,): difference of the period, of the largest y, of the extremum with the
-    largest difference, and largest difference of the tip over the period.
+    largest difference, and largest difference of the tip's x, y or theta over the period.
 
     The first number is the larger of two relative differences: of the periods, and of the parameters of the
     rods, which may be different on a branch. The remaining three differences are divided by the largest y of
@@ -29,7 +29,8 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 
 def rod_difference(one: Orbit, other: Orbit) -> float:
-    """Largest relative difference between the parameters of the rods of two orbits."""
+    """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
+    orbit `other`."""
     a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())

@@ -18,8 +18,8 @@ from ...model.balance import Values
 
 @dataclass(frozen=True, eq=False)
 class Symmetry:
-    """Symmetry x(T/p) = S x(0) of an orbit. turn: orthogonal matrix, (d, d), by which S multiplies the stress
-    components and the velocity components at every node. parts: p."""
+    """Symmetry x(T/p) = S x(0) of an orbit. turn: orthogonal matrix, (d, d), by which S multiplies the d
+    stress components and the d velocity components at every node. parts: p."""
 
     turn: Array
     parts: int
@@ -51,7 +51,7 @@ class Symmetry:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
 def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
-    """`Symmetry.matrix`, (unknowns, unknowns)."""
+    """The cached matrix that `Symmetry.matrix` returns, (unknowns, unknowns)."""
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)
 
 

@@ -64,8 +64,8 @@ def tails_of(orbit: Orbit) -> Tails:
 @compiled_for_vectors
 def _decay(c: Array) -> float:
     """Decay of coefficients: minus the slope, per order, of the natural logarithm of their envelope, fitted
-    over the upper half of the orders and limited to the range `min_decay` to `max_decay` of the settings. c:
-    moduli of the coefficients, (fields, p + 1)."""
+    over the upper half of the orders and limited to `COEFFICIENT_TAIL_SETTINGS.min_decay` ... `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the
+    coefficients of orders 0 to p, (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
     highest = COEFFICIENT_TAIL_SETTINGS.rounding
@@ -85,7 +85,7 @@ def _decay(c: Array) -> float:
 
 def _space_coefficients(orbit: Orbit) -> Array:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, over all elements and the ends
-    of all time intervals, (3, p + 1)."""
+    of all time intervals, (3, p + 1), p: order of the elements."""
     grid = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.states[:, -1])
     if not orbit.form.has_continuous_stresses:
@@ -104,8 +104,9 @@ def _analysis_on_element(order: int) -> Array:
 
 @compiled_for_vectors
 def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
-    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, (3, p + 1), over all elements
-    and all `states`, (m, n). analysis: as returned by `_analysis_on_element`."""
+    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, (3, p + 1), p: order of the
+    elements, over all elements and all `states`, (m, n). elements: number of elements. analysis: as returned
+    by `_analysis_on_element`."""
     size = len(analysis)
     nodes = elements * (size - 1)
     largest = np.zeros((PLANE_COMPONENTS, size))
@@ -126,9 +127,9 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 
 def smooth_tails(orbit: Orbit) -> Array:
-    """Tails in space and in time, (2,), divided by the largest values. These tails change smoothly along a
-    branch, because the tail in space is the norm of `COEFFICIENT_TAIL_SETTINGS.last_coefficients`
-    coefficients: a single coefficient may vanish."""
+    """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
+    smoothly along a branch, because the tail in space is the norm of `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients:
+    a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
         fields = _by_elements(orbit, orbit.points)
@@ -141,7 +142,8 @@ def smooth_tails(orbit: Orbit) -> Array:
 
 
 def _by_elements(orbit: Orbit, states: Array) -> Array:
-    """n1, n2 and m3 at the nodes of each element, (3, m, elements, p + 1). states: (m, n)."""
+    """n1, n2 and m3 at the nodes of each element, (3, m, elements, p + 1), p: order. states: states of
+    `orbit`, (m, n)."""
     form = orbit.form
     return stresses_by_element(form.nodal, form.mesh, form.stresses(states))
 
@@ -159,8 +161,8 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
     """Largest relative tail in space of n1, n2 and m3: 2-norm of the last coefficients of a field in an
     element, divided by the largest modulus of this field.
 
-    points: states, (m, n). analysis: matrix from values at the nodes of an element to its last coefficients,
-    (p + 1, count).
+    points: states, (m, n). elements: number of elements. analysis: matrix from values at the nodes of an
+    element to its last coefficients, (p + 1, count), p: order of the elements.
     """
     size, count = analysis.shape
     nodes = elements * (size - 1)
@@ -205,7 +207,7 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
     over all nodes.
 
     points: states at the start and at all stages, (1 + K s, n). row: as returned by `_last_in_interval`, (s +
-    1,).
+    1,). nodes: number of nodes without the tip.
     """
     s = len(row) - 1
     worst = 0.0

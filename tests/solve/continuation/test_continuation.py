@@ -185,7 +185,7 @@ def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
 
     assert zero_along_step(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
     assert not {0.0, 1.0} & set(asked)
-    with pytest.raises(Unsolvable, match="change of sign"):
+    with pytest.raises(Unsolvable, match="same sign at both ends"):
         zero_along_step(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
 
 

@@ -33,7 +33,7 @@ class BorderCondition:
         cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0
     ) -> "BorderCondition":
         """The condition that a new orbit lies farther along `border`, (3,), than the given `orbit`, by the
-        arc length `length`."""
+        arc length `length`. scale: units of the components."""
         return cls(scale, border, float(border @ scale.components(orbit)) + length)
 
     def residual(self, orbit: Orbit) -> float:

@@ -1,7 +1,7 @@
 """Newton's matrix for a cycle with the parameter as a further unknown: one further column for the parameter,
 and one further row, the border. The solved time interval is a half period for a symmetric orbit, otherwise
-the period. Shapes: K intervals with s stages each, n unknowns of a state, m shooting intervals, N
-orbit values."""
+the period. Shapes: K intervals with s stages each, n unknowns of a state, m shooting intervals, N orbit
+values."""
 
 from functools import cached_property
 
@@ -54,8 +54,8 @@ class BorderedMatrix:
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
             self._matrix[rows, rows] = self._shooting_intervals.maps[j]
-            # A shooting interval ends where the next one starts; the last one ends at the symmetric image of
-            # the first start.
+            # The last shooting interval ends at the symmetric image of the first interval's start.
+
             if j < m - 1:
                 self._matrix[rows, (j + 1) * n : (j + 2) * n] = -np.eye(n)
             else:
@@ -144,8 +144,8 @@ class BorderedMatrix:
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
     def border_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
-        """Right-hand sides, (m n,), of the closing conditions: each shooting interval ends where the
-        next one starts.
+        """Right-hand sides, (m n,), of the closing conditions: the end of a shooting interval is the start of
+        the next shooting interval.
 
         jump: right-hand side of the last shooting interval, (n,). columns: eliminated right-hand sides of the
         stages, (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a
@@ -179,8 +179,8 @@ class BorderedMatrix:
 
     def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
         """Change of orbit values and parameter, (N + 1,). found: changes of the starts of the shooting
-        intervals, period and parameter, (m n + 2,). sides: right-hand sides of the stages, (K, s, n). share:
-        factor on `sides`."""
+        intervals, of the period and of the parameter, (m n + 2,). sides: right-hand sides of the stages, (K,
+        s, n). share: factor on `sides`."""
         n = len(self.orbit.start)
         stages = found[-2] * self._columns[:, :, 0] + share * sides + found[-1] * self._columns[:, :, 2]
         columns = np.ascontiguousarray(stages[:, :, None])

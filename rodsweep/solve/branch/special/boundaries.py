@@ -1,7 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
 `changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a work item; its result does not depend on other half curves.
+special point of a row. Each half curve is a unit of work, independent of all other half curves.
 """
 
 import math
@@ -23,7 +23,7 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
-    """A special point as the result file stores it. number: index of the row. row: value of the rows'
+    """A special point as the result file stores it. number: index of the row. row: value of the row
     parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
 
     number: int
@@ -38,8 +38,9 @@ class RowSpecialPoint:
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
-    line: axis of the parameter along a row. rows: axis of the rows' parameter. Half curve 2 i leads
-    from special point i to larger values of the rows' parameter, half curve 2 i + 1 to smaller values.
+    line, rows: axes of the parameter along a row and of the row parameter. special: points of all rows. Half
+    curve (unit) 2 i leads from special point i to larger values of the row parameter, 2 i + 1 to smaller
+    values.
     """
 
     line: PlaneAxis
@@ -76,14 +77,15 @@ class SpecialBoundaries:
     ) -> Arrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # A item is twice the index of its special point, plus one for the half to smaller values.
+        # A unit's number is twice the index of its special point, plus 1 for the half to smaller values.
+
         index, behind = divmod(item, 2)
         one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, item: int) -> int:
-        """Index of the row on which the half curve number `item` starts."""
+        """Index of the row on which half curve number `unit` starts."""
         return self.special[item // 2].number
 
     def item_label(self, item: int) -> str:
@@ -96,7 +98,7 @@ class SpecialBoundaries:
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve joined from two halves. distances: distance of each nearby special point, in row lengths."""
+    """Curve of two halves. distances: distances of nearby special points in row lengths, by point index."""
 
     curve: CycleCurve
     distances: Mapping[int, float]
@@ -104,7 +106,8 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Problem of `trace_boundaries` for one kind of special points, with results of half curves so far."""
+    """Curves of one kind as a problem of `trace_boundaries`; line, rows and special: as in
+    `SpecialBoundaries`. results: arrays of half curves, by number."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -113,7 +116,7 @@ class _CurvesOfKind:
     results: Mapping[int, Arrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
-        """Median special point among `left`, so that the two halves of its curve have similar lengths."""
+        """Index, from `left`, of the median special point: both halves of its curve have similar lengths."""
         return sorted(left, key=self._position)[len(left) // 2]
 
     def missing_items(self, seed: int) -> list[int]:
@@ -135,7 +138,7 @@ class _CurvesOfKind:
         return [item for i in beside for item in self.missing_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
-        """The curve through the special point `seed`, joined from two halves; None if a half failed."""
+        """The curve through special point `seed`, joined from two halves; None if a half was not followed."""
         ahead = TracedHalfCurve.of(self.results[2 * seed])
         if ahead.half is None:
             return None
@@ -151,7 +154,7 @@ class _CurvesOfKind:
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
-        is not near, 0 if it lies on the curve's extrapolation to a Hopf point."""
+        is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
         near = curve.distances.get(seed, math.inf)
         lies_off = near > CURVE_IDENTITY.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
@@ -164,18 +167,17 @@ class _CurvesOfKind:
         return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
 
     def _position(self, i: int) -> tuple[float, float]:
-        """Sort key of special point i: value of the rows' parameter, then of the parameter along the row."""
+        """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
         return self.special[i].row, self.special[i].at
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
-        """Positions of both ends of a curve in the parameter plane, each as (position on the rows' axis,
-        position along a row), from 0 to 1, in ascending order."""
+        """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
         return sorted(
             (p.row_coordinate, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1])
         )
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
-        """Whether a special point lies on the extrapolation of a curve to a Hopf point."""
+        """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
@@ -201,7 +203,7 @@ def _traced(
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
     """One half of a curve, from the special point `one` of a row; `half` is None after a failure. located:
-    special points of this row, with cycles. special: special points whose distances from it are computed."""
+    special points of this row, with cycles. special: all special points, for the distances."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
@@ -222,7 +224,8 @@ def _traced(
 
 
 def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row from special point `one` to a curve, in row lengths; inf if it is not near."""
+    """Distance along the row of special point `one` from the curve through `points`, in row lengths; inf if
+    not near."""
     if limits.kind != one.kind:
         return math.inf
     row_coordinate = limits.rows.coordinate(one.row)

@@ -40,8 +40,8 @@ def first_point_of_curve(
     """The first point of a curve of special points, from the point `special` located on a row; raises
     Unsolvable.
 
-    line: name of the parameter along a row. rows: axis of the rows' parameter. row: value of the rows'
-    parameter. workspace: memory of Newton's matrices.
+    line: name of the parameter along a row. rows: axis of the row parameter. row: value of the row parameter.
+    workspace: memory of Newton's matrices.
     """
     orbit = special.orbit
     if orbit is None:

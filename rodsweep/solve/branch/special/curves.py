@@ -21,13 +21,7 @@ from .curve_start import first_point_of_curve
 from .cycle_curves import CURVE_IDENTITY, CurveEnd, lagrange_weights
 from .family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
-from .on_curve import (
-    SolvedPoint,
-    arc_lengths,
-    chord_slope,
-    orbit_with_parameters,
-    with_larger_errors,
-)
+from .on_curve import SolvedPoint, arc_lengths, chord_slope, orbit_with_parameters, with_larger_errors
 from .point import SpecialKind, SpecialPoint
 
 CURVE_STEPS = StepControl(
@@ -42,7 +36,7 @@ CURVE_STEPS = StepControl(
     max_solutions=400,
 )
 """Step length control along a curve of special points. Steps have four components: the three components of
-`Scale` and the position on the rows' axis, from 0 to 1."""
+`Scale` and the row coordinate, from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,13 +48,14 @@ class CurveEndSettings:
     max_edge_distance: float = 1e-8
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
     edge_bracket: float = 1e-10
-    """Tolerance of the position at which a margin becomes 0, divided by the step length."""
+    """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
     crushing_margin: float = 1e-3
-    """A curve ends where the relative distance of F from the crushing force k1 is this number."""
+    """A curve ends where the relative distance 1 - F/k1 of F from the crushing force k1 is this number."""
     crushing_accuracy: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
-    """A curve ends, and is extrapolated to a Hopf point, where the largest tip y, in L, falls below this."""
+    """A curve ends where the largest tip y, in L, falls below this number, and is extrapolated to a Hopf
+    point."""
     min_sine_at_resonance: float = 0.2
     """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
     the angle between multiplier and real axis is below this number at the last point."""
@@ -69,7 +64,7 @@ class CurveEndSettings:
 END_SETTINGS = CurveEndSettings()
 
 ALONG_BRANCH = np.array([1.0, 0.0])
-"""Direction along the branch, (2,), in components (along the branch, along the rows' axis)."""
+"""Direction along the branch, (2,), in components (along the branch, row coordinate)."""
 EDGE_COUNT = 4
 """Number of edges of the parameter plane; their distances are the first `SpecialCurveProblem.margins`."""
 ROW_EDGES = (2, 3)
@@ -81,8 +76,8 @@ END_BY_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
     """Continuation problem for curves of folds or torus points in a parameter plane. line: axis of the
-    parameter that varies along a row. rows: axis of the parameter that differs between rows. side: sign, 1 or
-    -1, of the first step in the rows' parameter."""
+    parameter that varies along a row. rows: axis of the row parameter. side: sign, 1 or -1, of the first step
+    in the row parameter. workspace: memory of Newton's matrices."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -92,7 +87,7 @@ class SpecialCurveProblem:
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
-        curve); raises Unsolvable. row: value of the rows' parameter at `special`."""
+        curve); raises Unsolvable. row: value of the row parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEPS, self._report)
         return with_larger_errors(curve.solutions), self._why_ended(curve)
@@ -112,7 +107,8 @@ class SpecialCurveProblem:
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The point one step beyond the last point, with the prediction error and the cosine of the angle
-        between the last two steps; raises Unsolvable. behind: points so far, in order along the curve."""
+        between the last two steps; raises Unsolvable. behind: points so far, in order along the curve.
+        length: arc length of the step; on the first step, change of the row coordinate."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -141,12 +137,13 @@ class SpecialCurveProblem:
         return CycleFamily.near_point(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
-        """(orbit, position on the rows' axis) predicted a step beyond the last point; raises Unsolvable."""
+        """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
         return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
-        """The step length `step`, shortened so that the predicted rod keeps half of the crushing margin."""
+        """The arc length `step`, shortened so that the rod predicted beyond `points` keeps half of the
+        crushing margin; unchanged if the last point has less than half of this margin."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         known = points[-CURVE_IDENTITY.max_interpolated_points :]
@@ -167,7 +164,8 @@ class SpecialCurveProblem:
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit, place on the rows' axis): sums of `points` with weights, (points,); raises Unsolvable."""
+        """(orbit on the mesh `mesh`, row coordinate): sums of `points` with weights, (points,); raises
+        Unsolvable."""
         values = np.dot(weights, [mesh.interpolate(point.orbit).values for point in points])
         at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
@@ -188,8 +186,8 @@ class SpecialCurveProblem:
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
-        """The point between `behind[-1]` and `outer` at which the margin number `margin` is 0; None if no
-        such point is found. For the margin of the amplitude: `outer`."""
+        """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
+        this point is not found or is `behind[-1]` itself. For the margin of the amplitude: `outer`."""
         inner = behind[-1]
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
@@ -218,7 +216,8 @@ class SpecialCurveProblem:
         return found[zero_along_step(left, ends, 1.0, END_SETTINGS.edge_bracket, END_SETTINGS.edge_bracket)]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether the step from `behind[-1]` to `point` passes the first point of the curve."""
+        """Whether the step from `behind[-1]` to `point` passes the first point of the curve, and the curve
+        has more than `min_loop_points` points."""
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(behind[0])
@@ -228,13 +227,13 @@ class SpecialCurveProblem:
         return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """Point of the curve near the fraction `share` from `one` to `other`; raises Unsolvable."""
+        """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
         start, at_row = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.normal(other.step_from(one))
         return self._family(other).correct(start, at_row, across, other.normal_derivatives)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
-        """The point of the curve between two points, at `at_row` on the rows' axis; raises Unsolvable."""
+        """Point of the curve between `one` and `other` at the row coordinate `place`; raises Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
         share = (at_row - one.row_coordinate) / length if length else 0.0
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))

@@ -32,7 +32,8 @@ class CurveIdentitySettings:
     max_period_difference: float = 1e-4
     """Largest relative difference between the periods of two solutions for the same cycle."""
     max_end_distance: float = 1e-4
-    """Largest distance between the ends of two identical curves; each axis has length 1."""
+    """Two curves are identical if the coordinates of their ends differ by at most this number; each axis has
+    length 1."""
     max_last_chord_distance: float = 1e-3
     """Between the last cycle of a curve and the Hopf point where the cycles vanish, a special point lies on
     the curve if its distance, along the row, from the chord is at most this fraction of the length of a
@@ -44,8 +45,8 @@ class CurveIdentitySettings:
     """Safety factor on the error of an extrapolated Hopf point. The errors of the points do not include the
     displacement of the Hopf point along the curve that is caused by the mesh."""
     max_hopf_distance: float = 0.01
-    """An extrapolated Hopf point is identical to a generalised Hopf point of a Hopf curve if their distance
-    is at most this number; each axis has length 1."""
+    """An extrapolated Hopf point is identical to a generalised Hopf point of a Hopf curve if their two
+    coordinates differ by at most this number; each axis has length 1."""
 
 
 CURVE_IDENTITY = CurveIdentitySettings()
@@ -56,8 +57,12 @@ Arrays = dict[str, Array]
 
 
 class CurveEnd(IntEnum):
-    """Reason for the end of a curve of special points, stored by value in the result file. none: the point is
-    not an end."""
+    """Reason for the end of a curve of special points, stored by value in the result file.
+
+    none: the point is not an end. edge: edge of the parameter plane. crushed: F is near the crushing force.
+    hopf: the cycles vanish at a Hopf point. left_the_model: h1 = 0. resonance: the complex pair of
+    multipliers becomes real. closed: first point of a closed curve. not_followed: no further point was found.
+    """
 
     none = 0
     edge = 1
@@ -73,8 +78,8 @@ class CurveEnd(IntEnum):
 class VanishingPoint:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. period: period of the vanishing cycles, in tau2.
+    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
+    period: period of the vanishing cycles, in tau2.
     """
 
     at: float
@@ -87,9 +92,8 @@ class VanishingPoint:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the rows'
-    parameter. row_coordinate: position of `row` on its axis, from 0 to 1. period: in tau2. tip_y_max:
-    largest tip y, in L.
+    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
+    place: row coordinate, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
     at: float
@@ -130,8 +134,9 @@ class TracedHalfCurve:
     distances: dict[int, float] = field(default_factory=dict)
 
     def arrays(self) -> Arrays:
-        """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,); distances
-        (near, 2), index and distance of each nearby special point."""
+        """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
+        the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby special
+        point."""
         points = [] if self.half is None else [_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),

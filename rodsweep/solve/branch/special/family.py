@@ -1,10 +1,10 @@
 """Correction of a predicted point of a curve of folds or torus points over two parameters.
 
-Cycles near a special point form a two-parameter family: arc length along the branch (`bordered`), and
-position on the rows' axis. In the plane of these two variables the special points form a smooth curve, the
-zeros of a test function, also at a cusp, where both parameters turn back. The secant method across the curve
-finds a zero. All cycles and their test functions are corrected with the matrix factors of one cycle
-(`augmented`). The first derivatives across the curve come from the previous point. The error is the
+Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
+row coordinate. In the plane of these variables the special points form a smooth curve, the zeros of a test
+function; the curve is smooth also at a cusp, where both parameters turn back. The secant method finds a zero
+in a direction across the curve. All cycles and their test functions are corrected with the matrix factors of
+one cycle (`augmented`). The first derivatives across the curve come from the previous point. The error is the
 difference between two meshes, measured at about every third point.
 """
 
@@ -32,8 +32,9 @@ from .point import SpecialKind
 
 
 class _SecantIterate(NamedTuple):
-    """A cycle solved by the secant method. at: distance from the predicted point in the direction across the
-    curve. vectors: tangent or eigenvector of the test function. test: value of the test function."""
+    """A cycle solved by the secant method. vectors: tangent, (N + 1,), or eigenvector, (2, N + 1), of the
+    test function. test: value of the test function. distance: distance from the predicted point, in the
+    direction across the curve."""
 
     orbit: Orbit
     vectors: Array
@@ -45,9 +46,9 @@ class _SecantIterate(NamedTuple):
 class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
-    kind: fold or torus. rows: axis of the rows' parameter. border: direction of the branch in components
-    (deflection, log period, parameter), (3,). small: whether the fold test function is divided by the
-    deflection, because a Hopf point is near. workspace: memory of Newton's matrices.
+    kind: fold or torus. rows: axis of the row parameter. scale: units of arc length. border: direction of the
+    branch in components (deflection, log period, parameter), (3,). small: whether the fold test function is
+    divided by the deflection, because a Hopf point is near. workspace: memory of Newton's matrices.
     """
 
     kind: SpecialKind
@@ -61,13 +62,13 @@ class CycleFamily:
     def near_point(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of cycles near `point` on a curve of special points. Other arguments: see the class."""
+        """The family of the cycles near the point `point` of a curve of special points. kind, rows,
+        workspace: as in the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
-        """The orbit with unchanged values, for the rod at the position `row_coordinate` on the rows' axis;
-        raises Unsolvable."""
+        """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
     def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
@@ -87,9 +88,10 @@ class CycleFamily:
         """The point of the curve near the orbit `start`, found by the secant method across the curve; raises
         Unsolvable.
 
-        row_coordinate: position of `start` on the rows' axis, from 0 to 1. normal: direction of the search,
-        (2,), in components (along the branch, along the rows' axis). derivatives: approximate derivatives
-        along the normal. is_other_mesh: whether they were computed at the same point on another mesh.
+        row_coordinate: row coordinate of `start`, from 0 to 1. normal: direction of the search, (2,), in
+        components (along the branch, row coordinate). derivatives: derivatives from an earlier search, used
+        if their direction is close to `normal`. is_other_mesh: whether `derivatives` were computed at the
+        same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
         usable = derivatives and derivatives.direction @ normal >= CURVE_SECANT.min_cosine
@@ -140,8 +142,8 @@ class CycleFamily:
 
 
 class _SecantState:
-    """State of the secant method across a curve. All cycles are corrected with the matrix factors of the
-    first cycle."""
+    """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
+    cycle. start, place: predicted orbit, its row coordinate. direction: `normal` of `CycleFamily.correct`."""
 
     def __init__(
         self,
@@ -161,12 +163,12 @@ class _SecantState:
         self.previous: _SecantIterate | None = None
         self.length = float(family.border @ family.scale.components(start))
         self.max_last_step = CURVE_SECANT.max_linear_step if is_other_mesh else CURVE_SECANT.max_carried_step
-        """Largest length of the last secant step, as long as `derivatives` are not from this search."""
+        """Longest last secant step, used if the present step gives no derivatives."""
         contraction = derivatives.contraction if derivatives and not family.small else inf
         self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
 
     def next(self) -> SolvedPoint | None:
-        """Makes one secant step and returns the point of the curve, or None if more steps are needed; raises
+        """Makes one secant step. Returns the point of the curve after the last step, otherwise None. Raises
         Unsolvable."""
         present = self._solve_at_distance()
         enough = self.max_last_step

@@ -51,7 +51,8 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
-    the solved time interval, (rank,). Raises Unsolvable for torus points if all multipliers are real."""
+    the solved time interval, (multipliers,). Raises Unsolvable for torus points if all multipliers are real.
+    """
     real = np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
@@ -76,9 +77,10 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 
 def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
-    """The special point of a kind between two cycles, to a relative accuracy; its error exceeds the accuracy
-    if no allowed mesh suffices. If the point cannot be located, its message gives the reason, and its error
-    is the parameter difference of the two cycles."""
+    """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
+    and `SPECIAL_POINT.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. If the point
+    cannot be located, its message gives the reason, and its error is the parameter difference of the two
+    cycles."""
     aim = min(accuracy, SPECIAL_POINT.accuracy)
     try:
         segment = BranchSegment(start, end)
@@ -124,8 +126,9 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor. The errors of period and largest tip y include the error of the last secant step, which is
-    proportional to their difference between `start` and `end`, the cycles before and after the point."""
+    safety factor. The errors of period and largest tip y include the error of the last secant step: a
+    fraction of the difference of period and largest tip y between `start` and `end`, the cycles before and
+    after the point."""
     parameter_error = (
         SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
     )

@@ -38,8 +38,8 @@ class CurveSecantSettings:
     the step is the last: no further cycle is solved, and the last cycle is moved linearly. The test function
     then has an error of about 1e-8."""
     max_linear_step: float = 1e-6
-    """Longest last secant step if the derivatives were computed at the same point on another mesh; their
-    relative error is then 1e-3."""
+    """Longest last secant step if the derivatives were computed at the same point on another mesh, or at an
+    earlier step of the same search; their relative error is then 1e-3."""
     max_carried_step: float = 1e-7
     """Longest last secant step if the derivatives were computed at the previous point of the curve; their
     relative error is then 0.1."""
@@ -56,7 +56,7 @@ class CurveSecantSettings:
     more_orders: int = 2
     """Increase of the order of the elements on the next finer mesh."""
     more_intervals: float = 1.2
-    """Ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
+    """Ratio of the number of time intervals of the next finer mesh to the number of the present mesh."""
     max_finer_meshes: int = 5
     """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
 
@@ -69,7 +69,7 @@ class NormalDerivatives:
     """Derivatives of cycles near a curve of special points with respect to the distance from the curve."""
 
     direction: Array
-    """Unit direction across the curve, (2,): components along the branch and along the axis of the rows."""
+    """Unit direction across the curve, (2,), in components (along the branch, row coordinate)."""
     test: float
     """Derivative of the test function, which is 0 on the curve."""
     orbit: Array
@@ -106,14 +106,15 @@ class CurveErrors:
     age: int = 0
 
     def error_at(self, point: "SolvedPoint") -> float:
-        """Absolute error of the parameter along a row at a neighbouring point with the same mesh."""
+        """Absolute error of the parameter along a row at a neighbouring point with the same mesh: the
+        measured relative error, increased by the squared growth of the tails, times the parameter."""
         # Errors are of second order in the tails.
         growth = float((smooth_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.parameter)
 
     def apply_at(self, point: "SolvedPoint") -> bool:
-        """Whether the measured error may be used at a later point of the curve: the measurement is recent,
-        the mesh is the same, and the scaled error is within the accuracy."""
+        """Whether the measured error may be used at the later point `point` of the curve: the measurement is
+        recent, the mesh is the same, and the scaled error is within the accuracy."""
         recent = self.age < CURVE_SECANT.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
         return recent and self.error_at(point) <= CURVE_SECANT.accuracy * abs(point.parameter)
 
@@ -133,13 +134,13 @@ class SolvedPoint:
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
     row_coordinate: float
-    """Position on the axis of the rows' parameter, from 0 to 1."""
+    """Position on the axis of the row parameter, from 0 to 1."""
     parameter: float
     """Value of the parameter along a row."""
     row_parameter: float
-    """Value of the rows' parameter."""
+    """Value of the row parameter."""
     error: float = nan
-    """Absolute error of `at`."""
+    """Absolute error of `parameter`; NaN before `with_larger_errors` sets it."""
     errors: CurveErrors | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
     normal_derivatives: NormalDerivatives | None = None
@@ -152,21 +153,23 @@ class SolvedPoint:
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
-        along a row, position on the rows' axis)."""
+        along a row, row coordinate)."""
         moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.row_coordinate - other.row_coordinate)
 
     def normal(self, step: Array) -> Array:
-        """Unit normal of the curve, (2,), in components (along the branch, along the rows' axis);
-        perpendicular to `step`, (4,), a step along the curve."""
+        """Unit normal of the curve, (2,), in components (along the branch, row coordinate); perpendicular to
+        `step`, (4,), a step along the curve."""
         way = np.array([float(self.ahead @ step[:3]), step[3]])
         # Rotated by a right angle, so that the correction does not move along the curve.
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
 def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
-    """The points of a curve, in order, with the field `error` set: the error at a measured point; at a point
-    between, the larger of the errors from the previous and, if on the same mesh, the next measurement."""
+    """The points of a curve, in order, with the field `error` set. A measured point has its measured error. A
+    point between two measured points has the larger of the errors scaled from these points; the later
+    measured point is used only if it has the same mesh. Raises ValueError if a point has no error estimate.
+    """
     found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
     # In reverse order, so that the next measurement after each point is known.
@@ -198,8 +201,7 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
 
 
 def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
-    """Arc lengths, (points,), of the points of a curve: 0 at the last point, negative at the points
-    before."""
+    """Arc lengths, (points,), of the points of a curve: 0 at the last point, negative at earlier points."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
     # Zero at the last point, so that predictions have positive lengths.
     lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
@@ -207,7 +209,7 @@ def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
 
 
 def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
-    """Slope of the chord between two points of a curve: difference of `at`, divided by the difference of
-    `place`; 0 if the places are equal."""
+    """Slope of the chord between two points of a curve: difference of `parameter`, divided by the difference
+    of `row_coordinate`; 0 if the row coordinates are equal."""
     apart = other.row_coordinate - one.row_coordinate
     return (other.parameter - one.parameter) / apart if apart else 0.0

@@ -56,11 +56,13 @@ class SpecialPointSettings:
     """Largest increase of the order of the elements on the next finer mesh."""
     space_decay: float = 0.8
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by
-    one, measured at a torus point."""
+    1, measured at a torus point."""
     min_interval_ratio: float = 1.2
-    """Smallest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
+    """Smallest ratio of the number of time intervals of the next finer mesh to the number of the present
+    mesh."""
     max_interval_ratio: float = 2.0
-    """Largest ratio of the numbers of time intervals on the next finer mesh and on the present mesh."""
+    """Largest ratio of the number of time intervals of the next finer mesh to the number of the present mesh.
+    """
     time_order_by_stages: float = 1.5
     """Order in time assumed for the error of a special point, divided by the number of stages; the orders
     measured are larger than assumed."""
@@ -80,7 +82,8 @@ SPECIAL_POINT = SpecialPointSettings()
 
 
 class SpecialKind(IntEnum):
-    """Kind of a special point of a branch; the result file stores the value."""
+    """Kind of a special point of a branch; the result file stores the value. left_the_model: h1 = 0 at a
+    position on the rod. end: end of the branch."""
 
     hopf = 1
     fold = 2
@@ -92,8 +95,9 @@ class SpecialKind(IntEnum):
 
 
 class EndReason(IntEnum):
-    """Reason for the end of a branch. range_end and crushed are true ends; no_cycle_found and list_full are
-    failures."""
+    """Reason for the end of a branch at a special point of kind `end`. range_end (end of the parameter range)
+    and crushed (the force nearly crushes the rod) are true ends; no_cycle_found and list_full (maximum number
+    of cycles) are failures."""
 
     range_end = 1
     crushed = 2

@@ -27,8 +27,8 @@ def unstable_multiplier_count(point: ArcPoint) -> int:
 
 
 def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
-    """(kinds of the special points between two cycles, whether these kinds explain the change of the number
-    of multipliers outside the unit circle)."""
+    """(kinds of the special points between the cycles `start` and `end`, whether these kinds explain the
+    change of the number of multipliers outside the unit circle)."""
     found = []
     if start.parameter_rate * end.parameter_rate < 0:
         found.append(SpecialKind.fold)

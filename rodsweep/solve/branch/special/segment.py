@@ -30,7 +30,7 @@ class BranchSegment:
         return self.end.predicted(-self._back * (1 - length / self.length))
 
     def start_on(self, mesh: OrbitMesh) -> None:
-        """Sets the mesh on which `at` solves cycles. The first cycle on this mesh is predicted by the
+        """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted by the
         cubic."""
         self.mesh = mesh
         self._known = None
@@ -57,12 +57,13 @@ class BranchSegment:
     @property
     def last_solved_cycle(self) -> tuple[float, Orbit, Array]:
         """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate with respect
-        to arc length, (N + 1,)) of the last cycle that `at` solved; raises ValueError if there is none."""
+        to arc length, (N + 1,)) of the last cycle that `cycle_at` solved; raises ValueError if no cycle was
+        solved."""
         if self._known is None:
             raise ValueError("no cycle was solved on this segment and mesh yet")
         return self._known
 
     def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length, at the last cycle that
-        `at` solved."""
+        `cycle_at` solved."""
         return float(self.last_solved_cycle[2][-1]) / self.start.scale.coordinate_unit

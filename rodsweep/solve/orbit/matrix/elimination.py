@@ -29,11 +29,12 @@ from .workspace import Factors
 def eliminate(
     points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
 ) -> Array:
-    """Eliminates Newton's matrix at `points`, (1 + K s, n), writes it into `factors`, and returns the changes
-    that the right-hand sides cause at the end of the last interval for a fixed start, (columns, n).
+    """Eliminates Newton's matrix of an orbit and writes it into `factors`. Returns the changes that the
+    right-hand sides cause at the end of the last interval for a fixed start, (k, n).
 
-    V: velocities of the stages, (K, s, 3, nodes + 1). duration: total length of the intervals, in tau2.
-    columns: right-hand sides, (K, s, columns, n), which are reduced in place.
+    points: states at the start and at all stages, (1 + K s, n): K intervals, s stages, n unknowns of a state.
+    V: velocities of the stages, (K, s, 3, nodes + 1). duration: total length of the intervals, in tau2. p:
+    equations of the orbit. columns: k right-hand sides, (K, s, k, n), which are reduced in place.
     """
     K = columns.shape[0]
     s = columns.shape[1]
@@ -74,7 +75,7 @@ def eliminate(
 
 @compiled_for_vectors
 def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """Eliminates the blocks B of one interval, (s, s, n, n), whose diagonal blocks are given.
+    """Eliminates the blocks B of one interval, (s, s, n, n), whose diagonal blocks are given. p: equations.
 
     right: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand side of the
     stage when it multiplies M x_0, x_0: state at the start. parts: work array, (5, n, n).
@@ -109,10 +110,11 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
 @compiled_for_vectors
 def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
-    """Eliminates the first two stages: computes the blocks B and the matrices `right` (see
-    `_eliminate_interval`) of all later stages.
+    """Eliminates the first two stages: computes the blocks of all later stages in B, (s, s, n, n), and their
+    matrices in `right` (see `_eliminate_interval`). p: equations.
 
-    parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the rest is computed.
+    parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the remaining products are
+    computed.
     """
     s = B.shape[0]
     n = B.shape[2]

@@ -26,8 +26,7 @@ NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
 
 
 class Linearisation:
-    """Newton's matrix at an orbit. The matrix can correct nearby orbits until another matrix is assembled in
-    its workspace.
+    """Newton's matrix at an orbit. `correction` works until another matrix is assembled in its workspace.
 
     step: Newton's step at the orbit, (N,). tangent: derivative of the orbit values with respect to the
     coordinate of the parameter `parameter`, (N,); None if no parameter was given.
@@ -50,8 +49,7 @@ class Linearisation:
         self.tangent = None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
-        """Newton's step at the nearby orbit `orbit`, (N,); raises RuntimeError if the factors were
-        overwritten."""
+        """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._memory.factors)
         return step
 
@@ -68,13 +66,13 @@ def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
 
 
 def over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers, by descending modulus. partial: multipliers over the solved part, (rank,)."""
+    """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
     values: Complex = partial**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
 def change_along(form: StressForm, name: str) -> ParameterDerivatives:
-    """Derivatives of a rod and of its mass, (n,), with respect to the coordinate of the parameter `name`."""
+    """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of parameter `name`."""
     change = form.parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_of(change))
 
@@ -87,7 +85,7 @@ def linearise(
 
     Returns (steps, by_period). steps: Newton's step and, if count = 3, the derivative of the orbit values
     along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals with
-    respect to the period, (K, s, n). count: 2 or 3.
+    respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
     """
     K = factors.blocks.shape[0]
     s = factors.blocks.shape[1]
@@ -133,9 +131,9 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Changes of the orbit values, (columns, N). rights: right-hand sides of the closing and phase
-    conditions, (columns, n + 1). by_period: reduced derivative of the stage residuals with respect to the
-    period, (K, s, n). columns: reduced right-hand sides of the stages, (K, s, columns, n)."""
+    """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
+    rights: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand sides of
+    the stages, (K, s, k, n). by_period: reduced period derivative of the stage residuals, (K, s, n)."""
     K, s, count, n = columns.shape
     found = np.zeros((count, n + 1))
     for m in range(count):
@@ -168,8 +166,8 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 def reduced_residuals(
     points: Array, duration: float, rod: Semidiscrete, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """Residuals of `points`, (1 + K s, n), for the rod `rod`, reduced by the factors of a matrix of the
-    nearby rod `p`.
+    """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
+    duration: total length of the intervals, in tau2.
 
     Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
     fixed start, (1, n).
@@ -195,10 +193,11 @@ def reduced_variations(
     p: Semidiscrete,
     factors: Factors,
 ) -> tuple[Array, Array]:
-    """`variation_sides` for the rod `rod`, reduced by the factors of a matrix of the nearby rod `p`.
+    """The right-hand sides of `variation_sides` with the equations `rod`, reduced by a matrix of a nearby rod
+    `p`.
 
-    Returns (columns, ends): reduced right-hand sides, (K, s, m, n), and changes of the end of the last
-    interval for a fixed start, (m, n).
+    Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
+    of the last interval for a fixed start, (m, n).
     """
     K = factors.blocks.shape[0]
     s = factors.blocks.shape[1]
@@ -231,7 +230,8 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
 @compiled_for_vectors
 def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
     """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
-    divided by the largest modulus of this quantity; inf if the step is not finite."""
+    divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:
+    length of a state. nodes: number of nodes without the tip."""
     largest = abs(step[-1]) / abs(values[-1])
     for change in step:
         # NaN would be lost in the comparisons below.

@@ -98,8 +98,8 @@ def compressed(A: Array, negligible: float) -> Array:
 
 @compiled_for_vectors
 def _without(column: Array, q: Array, r: Array, j: int) -> float:
-    """Subtracts from `column`, in place, its component along q, stores this component in r[j], and returns
-    the norm of the remaining column."""
+    """Subtracts from `column`, (n,), in place, its component along the unit vector q, (n,), stores this
+    component in r[j], and returns the norm of the remaining column. j: index of the column."""
     along = 0.0
     left = 0.0
     for i in range(len(q)):

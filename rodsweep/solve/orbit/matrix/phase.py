@@ -17,7 +17,8 @@ from ....model.compiled.compilation import compiled_for_vectors
 @compiled_for_vectors
 def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
     """Minus the derivative of the phase condition along a change of the parameters, at the state `start` at t
-    = 0, (n,): the right-hand side of the phase equation."""
+    = 0, (n,): the right-hand side of the phase equation. change: derivatives of the nodal values c of the
+    rod. m: matrices of the mesh."""
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     changes = np.empty((3, *c.drag.shape))
@@ -33,7 +34,7 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 @compiled_for_vectors
 def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
     """Residual of the phase condition: lateral velocity dy/dt of the tip, computed from the reaction at the
-    tip. start: state at t = 0, (n,)."""
+    tip. start: state at t = 0, (n,). c: nodal values of the rod. m: matrices of the mesh."""
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     balance(start, V, G, c, m)
@@ -51,7 +52,8 @@ def lateral_velocity(G: Array, theta: float) -> float:
 
 @compiled_for_vectors
 def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
-    """Angle theta of the tip. x: state, (n,). compliance: compliances at all nodes, (3, nodes + 1)."""
+    """Angle theta of the tip. x: state, (n,). compliance: compliances at all nodes, (3, nodes + 1). m:
+    matrices of the mesh."""
     theta = 0.0
     nodes = len(m.weights) - 1
     for i in range(nodes):
@@ -61,7 +63,8 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
-    """Writes the derivative of `phase` with respect to the state `start`, (n,), into `row`, (n,)."""
+    """Writes the derivative of `phase` with respect to the state `start`, (n,), into `row`, (n,). c, m: as in
+    `phase`."""
     n = len(start)
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)

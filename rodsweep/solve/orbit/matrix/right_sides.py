@@ -26,7 +26,7 @@ class ParameterDerivatives(NamedTuple):
 @compiled_for_vectors
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
     """Writes the right-hand side of M dx/dt = F(x), (n,), into F, and the velocities and strain rates at the
-    state x into V and G, (3, nodes + 1)."""
+    state x, (n,), into V and G, (3, nodes + 1). p: equations of the orbit."""
     balance(x, V, G, p.rod, p.matrices)
     _store_stresses(G, F)
     if len(p.rod.unknown_velocities):
@@ -47,7 +47,8 @@ def _store_stresses(G: Array, F: Array) -> None:
 def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: Semidiscrete) -> None:
     """Writes the derivative of F(x) of `equations` along a change of the parameters into F, (n,).
 
-    x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1).
+    x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1). change:
+    derivatives of the arrays of the rod. p: equations of the orbit.
     """
     balance_change(x, V, out, change, p.rod, p.matrices)
     _store_stresses(out[2], F)
@@ -63,8 +64,8 @@ def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChan
 def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> None:
     """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
-    points: state at the start and states of all stages, in order, (1 + K s, n). duration: total length of the
-    intervals, in tau2.
+    points: states x_j at the start and at all stages, in order, (1 + K s, n). duration: total length of the
+    intervals, in tau2. p: equations F, differentiation matrix d and mass matrix M.
     """
     K, s, n = out.shape
     size = len(p.matrices.weights)
@@ -84,11 +85,12 @@ def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> No
 def right_sides(
     points: Array, duration: float, p: Semidiscrete, along: ParameterDerivatives, V: Array, columns: Array
 ) -> None:
-    """Writes the right-hand sides of Newton's system into `columns`, (K, s, columns, n), and the velocities
-    of the stages into V, (K, s, 3, nodes + 1).
+    """Writes k right-hand sides of Newton's system into `columns`, (K, s, k, n), and the velocities of the
+    stages into V, (K, s, 3, nodes + 1).
 
     Column 0: derivative of the residuals with respect to the period. Column 1: the `residuals`. Column 2, if
-    present: derivative of the residuals along the parameter of `along`. points, duration: as in `residuals`.
+    present: derivative of the residuals along the parameter of `along`. points, duration, p: as in
+    `residuals`.
     """
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
@@ -116,11 +118,10 @@ def right_sides(
 def variation_sides(
     values: Array, p: Semidiscrete, along: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
-    """Writes the derivatives of the `residuals` of an orbit along variations into `columns`, (K, s, columns,
-    n).
+    """Writes the derivatives of the `residuals` of an orbit along k variations into `columns`, (K, s, k, n).
 
-    values: values of the orbit, (N,). variations: changes of the values and of the parameter of `along`,
-    (columns, N + 1).
+    values: values of the orbit, (N,). p: equations of the orbit. variations: changes of the values and of the
+    parameter of `along`, (k, N + 1).
     """
     K, s, count, n = columns.shape
     points = values[:-1].reshape(1 + K * s, n)

@@ -1,4 +1,4 @@
-"""Legs of a strongly unstable orbit: the shooting intervals of multiple shooting, each of several time
+"""Shooting intervals of a strongly unstable orbit, for multiple shooting; each consists of several time
 intervals.
 
 The map P over all time intervals multiplies rounding errors by the growth of perturbations. This growth is
@@ -47,11 +47,12 @@ class ShootingIntervals:
     maps: Array
 
     def ends(self, factors: Factors, columns: Array, whole: Array, p: Semidiscrete) -> Array:
-        """Changes that right-hand sides cause at the ends of all shooting intervals, for fixed starts of the
-        shooting intervals, (m, columns, n).
+        """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
+        the shooting intervals, (m, k, n).
 
-        columns: reduced right-hand sides, (K, s, columns, n). whole: changes of the end of the last time
-        interval for a fixed start of the first time interval, (columns, n).
+        columns: reduced right-hand sides, (K, s, k, n). whole: changes of the end of the last time interval
+        for a fixed start of the first time interval, (k, n). factors: eliminated matrix. p: equations of the
+        orbit.
         """
         ends = np.zeros((len(self.maps), *whole.shape))
         if len(ends) == 1:
@@ -64,7 +65,8 @@ class ShootingIntervals:
 
     def substituted(self, factors: Factors, starts: Array, columns: Array, p: Semidiscrete) -> Array:
         """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
-        n). columns: reduced right-hand sides, (K, s, 1, n)."""
+        n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated matrix. p: equations of the
+        orbit."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
             part = factors._replace(blocks=factors.blocks[first:last])
@@ -101,9 +103,9 @@ class ShootingIntervals:
 
 
 def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
-    """The shooting intervals of an orbit, from its eliminated matrix. Time intervals are joined to a shooting
-    interval as long as the norm of the map of the shooting interval is at most
-    `SHOOTING_INTERVAL_SETTINGS.max_growth`. mass: diagonal of M, (n,)."""
+    """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval if the norm
+    of P is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the present
+    shooting interval if the norm of the joined map is at most this number. mass: diagonal of M, (n,)."""
     blocks = factors.blocks
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])

@@ -15,9 +15,9 @@ from .workspace import Factors
 
 @compiled_for_vectors
 def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
-    """Reduces the right-hand sides of one interval, (s, columns, n), in place. The right-hand sides of the
+    """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
     first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
-    end for a fixed start."""
+    end for a fixed start. B: eliminated blocks of the interval, (s, s, n, n). p: equations."""
     s, count, n = columns.shape
     d = p.differentiation
     mass = p.mass
@@ -38,8 +38,9 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 @compiled_for_vectors
 def map_start_to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
-    """Replaces `ends`, the changes of the start of an interval, (columns, n), by the changes of its end.
-    columns: reduced right-hand sides of its stages, (s, columns, n)."""
+    """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
+    interval. B: eliminated blocks of the interval, (s, s, n, n). columns: reduced right-hand sides of the
+    stages, (s, k, n). p: equations."""
     # The map of an interval acts on M x_0, as in `eliminate`.
     scaled = ends * p.mass
     ends[:] = columns[-1]
@@ -48,8 +49,9 @@ def map_start_to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> 
 
 @compiled_for_vectors
 def _first_two_stages(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
-    """Writes the changes of the first two stages into t and u, (columns, n). y: right-hand sides, of which
-    only the first two stages are used, (s, columns, n); the changes of later stages are taken as 0."""
+    """Writes the changes of the first two stages into t and u, (k, n). B: eliminated blocks, (s, s, n, n). y:
+    right-hand sides, of which only the first two stages are used, (s, k, n). The changes of later stages are
+    taken as 0."""
     d = p.differentiation
     mass = p.mass
     (count, n) = t.shape
@@ -70,7 +72,7 @@ def _first_two_stages(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -
 
 @compiled_for_vectors
 def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
-    """Adds `factor` A x to y, in place, for several columns; x, y: (columns, n), A: (n, n)."""
+    """Adds `factor` A x to y, in place, for k columns x; x, y: (k, n), A: (n, n)."""
     count, n = x.shape
     # Two columns at a time, so that each entry of A is loaded once for both: memory access limits the speed.
     for m in range(0, count - 1, 2):
@@ -92,8 +94,8 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 @compiled_for_vectors
 def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
-    """Writes the changes of all stages into `out`, (K, s, columns, n). start: changes of the start, (columns,
-    n). columns: reduced right-hand sides, (K, s, columns, n)."""
+    """Writes the changes of all stages into `out`, (K, s, k, n). start: changes of the start, (k, n).
+    columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""
     K, s, count, n = columns.shape
     y = np.empty((2, count, n))
     first = start.copy()
@@ -120,9 +122,9 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
 
 @compiled_for_vectors
 def _substitute_stage(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
-    """Writes the changes of stage a >= 2 into out[a]. columns: reduced right-hand sides, (s, columns, n).
-    scaled: M times the changes of the start, (columns, n). out: changes of all stages, (s, columns, n), in
-    which later stages are known."""
+    """Writes the changes of stage a >= 2 into out[a]. B: eliminated blocks, (s, s, n, n). columns: reduced
+    right-hand sides, (s, k, n). scaled: M times the changes of the start, (k, n). out: changes of all stages,
+    (s, k, n), in which the changes of later stages are known."""
     s = len(B)
     out[a] = 0.0
     # `reduce` has solved the last stage for a fixed start; the effect of the start is added.

@@ -58,8 +58,9 @@ AUGMENTED_SETTINGS = AugmentedSettings()
 
 class FoldFunction:
     """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
-    the direction `border`, (3,). small: whether the derivative is divided by the deflection; without this
-    division the derivative vanishes at a Hopf point too."""
+    the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. small: whether the
+    derivative is divided by the deflection; without this division the derivative vanishes at a Hopf point
+    too."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
         self.matrix = matrix
@@ -99,7 +100,8 @@ class FoldFunction:
 
 class TorusFunction:
     """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
-    corrected together with its eigenvector. Raises Unsolvable if all multipliers are real."""
+    corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used. Raises
+    Unsolvable if all multipliers of this cycle are real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix

@@ -42,8 +42,9 @@ class NearbyCycleSolver:
     factorised."""
 
     def __init__(self, family: CycleFamilyInterface, start: Orbit, contraction: float) -> None:
-        """start: orbit at which the first matrix is assembled. contraction: initial value of the attribute
-        `contraction`, measured at earlier cycles of the family; inf if unknown."""
+        """family: family of the cycles. start: orbit at which the first matrix is assembled. contraction:
+        initial value of the attribute `contraction`, measured at earlier cycles of the family; inf if
+        unknown."""
         self.scale = family.scale
         self.border = family.border
         self._family = family
@@ -54,8 +55,8 @@ class NearbyCycleSolver:
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
-        """Assembles and factorises a new matrix at an orbit, and sets `distance`, the relative distance of
-        the present cycle from this orbit, to 0."""
+        """Assembles and factorises a new matrix at an orbit, with a new test function. Sets `distance`, the
+        relative distance of the present cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
         self.distance = 0.0
         self.function = self._family.function(self.matrix)
@@ -71,7 +72,7 @@ class NearbyCycleSolver:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. enough: relative
-        tolerance of cycle and test function.
+        tolerance of cycle and test function; far from the curve `AUGMENTED.tolerance_share` allows more.
         """
         last = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
