@@ -53,7 +53,8 @@ class MultiplierListSettings:
 
 MULTIPLIER_LIST = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Entry of the list for a missing multiplier, or a modulus below `MULTIPLIER_LIST.min_modulus`."""
+"""Entry of the list for a missing multiplier, or for a multiplier whose modulus is less than
+`MULTIPLIER_LIST.min_modulus`."""
 
 
 def solve_cycle(
@@ -158,7 +159,9 @@ def _with_chain_state(
     stability: StraightRod,
 ) -> Cycle:
     """The outcome `cycle` with the data of the solved cycle `found` from which the next rod of a chain
-    starts; unchanged outside a chain (`along` is None). before: data of the previous rod."""
+    starts; unchanged outside a chain (`along` is None). before: data of the previous rod, or None. along:
+    parameter that varies along the chain. accuracy: requested relative accuracy. stability: leading
+    eigenvalue of the straight rod."""
     if along is None:
         return cycle
     eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
@@ -166,8 +169,8 @@ def _with_chain_state(
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The outcome `cycle`, with the status `not_settled` instead of `straight` unless the spectrum proves the
-    straight rod stable."""
+    """The outcome `cycle`, with the status `not_settled` and a reason instead of the status `straight` unless
+    the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability)
@@ -209,7 +212,7 @@ def _from_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
-    of the neighbour's cycle."""
+    of the neighbour's cycle; a quasiperiodic motion is recognised."""
     beam = transient.beam
     if request.tip is not None:
         start = equilibrium_at_tip(beam, *request.tip)

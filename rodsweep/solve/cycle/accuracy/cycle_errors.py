@@ -30,9 +30,9 @@ CYCLE_ERRORS = CycleErrorSettings()
 class CycleErrors:
     """Error estimates of a cycle.
 
-    period_error: relative, of the period. amplitude_error: relative, of the tip's largest y. extrema_error:
-    largest error of the tip's other extrema, divided by the largest y. multiplier_error: absolute, of the
-    largest nontrivial multiplier.
+    period_error, amplitude_error: relative errors of the period and of the tip's largest y. extrema_error:
+    largest error of the tip's other extrema, divided by the largest y. multiplier_error: absolute error of
+    the largest nontrivial multiplier.
     """
 
     period_error: float

@@ -37,7 +37,7 @@ class RefinedCycle:
 
     @property
     def largest_multiplier(self) -> float:
-        """Largest modulus of the nontrivial multipliers."""
+        """Largest modulus of the nontrivial multipliers; 0 if there is no nontrivial multiplier."""
         return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
 
     @property
