@@ -13,11 +13,11 @@ class AnchorSettings:
     """Settings of the anchors of a path of rods and of the interpolation between two anchors."""
 
     min_known_modes: int = 4
-    """Minimum number of leading eigenvalues computed at a place of a path of arms (`arm.axis_modes`); at
-    least two more than the number of unstable modes are computed."""
+    """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
+    more than the number of unstable modes are computed."""
     place_accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues at a place of a path of arms, before the refinement by Newton's
-    method on D."""
+    """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
+    D."""
     explained: float = 0.25
     """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
     smaller end value, so that no zero is missed. The difference of the end values must agree, within this

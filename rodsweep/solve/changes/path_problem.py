@@ -38,8 +38,8 @@ class PathProblem(ABC):
 
     @abstractmethod
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue near w = x at a path variable within `reach` of p; nan if it is not
-        found."""
+        """The double real eigenvalue near w = x at a path variable within `reach` of p; its path variable is
+        nan if no double eigenvalue is found."""
 
     @abstractmethod
     def count(self, line: float, p: float) -> EigenvalueCount:

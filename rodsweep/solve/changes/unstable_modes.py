@@ -123,8 +123,8 @@ class ModeCounter:
         return -1
 
     def count_at_start(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
-        """Number of unstable modes at `start`, or, if that count is undecided, at a position before the first
-        crossing (`hopfs`), the first of `gaps` and `stop`; -1 if undecided."""
+        """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
+        crossings `hopfs`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, until)
@@ -134,8 +134,8 @@ class ModeCounter:
     ) -> tuple[tuple[Crossing, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
-        the end. ordered: thresholds by increasing parameter. unstable: number of unstable modes at the start.
-        Resets `doubts`.
+        the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
+        unstable: number of unstable modes at the start. Resets `doubts`.
         """
         self.doubts = []
         out: list[Crossing] = []
