@@ -114,7 +114,8 @@ class UniformProblem(TransverseProblem):
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh for the largest wave number of `waves`, (modes,), and finer than `mesh`."""
+        """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
+        least the next finer mesh after `mesh`."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 

@@ -162,7 +162,8 @@ class ShiftInvertSolver(ABC):
 
     @abstractmethod
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        """Fills PETSc's matrices A - shift B and B with the values for `rod`."""
+        """Fills PETSc's matrices A - shift B and B with the values for `rod`, and returns data of the pencil.
+        shift: in 1/tau2."""
 
     @abstractmethod
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
@@ -173,8 +174,8 @@ class ShiftInvertSolver(ABC):
         """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if
         enough eigenvalues converge.
 
-        tight: whether the eigenvalues converge to rounding error on the mesh, instead of the few digits that
-        Newton's method on D needs. Raises PETSc.Error.
+        shift: in 1/tau2. tight: whether the eigenvalues converge to rounding error on the mesh, instead of
+        the few digits that Newton's method on D needs. Raises PETSc.Error.
         """
         report()
         self.loaded = self.load(rod, shift)
