@@ -45,7 +45,7 @@ class MultiplierListSettings:
     """Settings for the list of stored Floquet multipliers of a cycle."""
 
     length: int = 6
-    """Number of multipliers per cycle in a result file."""
+    """Number of nontrivial Floquet multipliers per cycle in a result file."""
     min_modulus: float = 1e-6
     """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
     period."""

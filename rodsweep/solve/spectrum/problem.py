@@ -120,7 +120,7 @@ class UniformProblem(TransverseProblem):
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
+        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
@@ -153,7 +153,8 @@ class ArmProblem(TransverseProblem):
         return finer_arm_mesh(self.rod, mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
+        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`; if a proof is
+        requested, only from the eigenvalues that the proof needs."""
         wanted, largest = self._of_proof(raw)
         return roots_of_arm(np.where(wanted, raw, np.inf), self._determinant, self._hull, most_waves, largest)
 

@@ -84,7 +84,7 @@ class Search:
         self.disagreement: CountComparison | None = None
         """The comparison of the last count that disagrees with the eigenvalues found."""
         self.unresolved = False
-        """Whether on the last mesh neither the eigenvalues nor a count showed which eigenvalue leads."""
+        """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
         self.why = f"no mesh of at most {RESOLUTION.max_unknowns} unknowns resolves the requested modes"
 
     def outcome(self) -> Spectrum:

@@ -106,8 +106,8 @@ class _MeshEigenvalues(NamedTuple):
 
 
 def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
-    """Sorted eigenvalues of a mesh. The requested number is doubled until the leading `modes` no longer
-    change.
+    """Sorted eigenvalues of a mesh. The requested number is doubled until the `modes` leading eigenvalues no
+    longer change.
 
     The result is empty if the mesh is too coarse for a doubled request.
     """

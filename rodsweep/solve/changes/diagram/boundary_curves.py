@@ -96,7 +96,7 @@ def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, Bo
                 fold = _fold(curve, passed[i], passed[i + 1], axis)
                 if fold is not None:
                     folds.append(fold)
-    # One by one: the rounding of NumPy's exp of an array depends on the place of an element in memory.
+    # One by one: the rounding of NumPy's exp of an array depends on the position of an element in memory.
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])

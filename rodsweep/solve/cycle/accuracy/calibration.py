@@ -22,11 +22,11 @@ from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERRORS, CycleErrors, largest_error
 
 MULTIPLIER = 4
-"""Index of the error of the largest multiplier in the error arrays of a calibration; the smaller indices are
-the indices of `path_differences`."""
+"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
+indices are the indices of `path_differences`."""
 ERROR_COUNT = 5
 """Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
-largest multiplier."""
+largest nontrivial multiplier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Calibration:
     """Measured errors of a mesh at an orbit, with convergence rates.
 
     space, time: errors due to the elements and to the time intervals, (5,) each. The first four are relative,
-    as in `path_differences`; the last is the absolute error of the largest multiplier.
+    as in `path_differences`; the last is the absolute error of the largest nontrivial multiplier.
     """
 
     mesh: OrbitMesh
@@ -203,9 +203,9 @@ def calibration_of(
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
 
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. Errors on two orders give a
-    new rate in space, errors on two numbers of intervals a new order in time; otherwise those of `before` are
-    used. If `before` is None, both come from the coefficients of `orbit` and the number of stages.
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If its mesh has another
+    order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
+    in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
     """
     tails = _tails(orbit)
     if before is None:

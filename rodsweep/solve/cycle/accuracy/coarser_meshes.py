@@ -34,10 +34,10 @@ class CoarserMeshSettings:
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
     min_space_decay: float = 1.5
     """The difference of the orders is chosen, up to `max_fewer_orders`, so that ln(error) in space is
-    expected to decrease by at least this number from the coarse mesh to the fine mesh. Where coefficients decay slowly, errors oscillate with
-    the order, and meshes of nearly the same order may agree by coincidence. With a difference of 2 orders, 16
-    of 112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this decrease no error
-    exceeded 0.4 times its estimate."""
+    expected to decrease by at least this number from the coarse mesh to the fine mesh. Where coefficients
+    decay slowly, errors oscillate with the order, and meshes of nearly the same order may agree by
+    coincidence. With a difference of 2 orders, 16 of 112 errors of slender cones exceeded their estimates, by
+    factors up to 2.2. With this decrease no error exceeded 0.4 times its estimate."""
     more_intervals: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""

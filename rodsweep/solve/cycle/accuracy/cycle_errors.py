@@ -1,5 +1,5 @@
 """Error estimates of a cycle: of the period, of the largest y and other extrema of the tip, and of the
-largest multiplier."""
+largest nontrivial Floquet multiplier."""
 
 from dataclasses import dataclass
 from math import nan

@@ -82,6 +82,6 @@ class ComparedCycle:
 
     def difference(self, fine: "ComparedCycle") -> Array:
         """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four
-        differences of `path_differences`, and the error of the largest multiplier."""
+        differences of `path_differences`, and `multiplier_change` of the nontrivial multipliers."""
         change = multiplier_change(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.path, fine.path), change)

@@ -41,8 +41,8 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
 
 
 def _multiplier_per_exponent(multipliers: Complex) -> float:
-    """Change of the largest multiplier mu per relative change of its exponent ln |mu|: |mu ln |mu||; 0 if
-    there is no multiplier. multipliers: (m,), by descending modulus.
+    """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
+    |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
 
     The exponent has the relative error of the amplitude, even if the multiplier agrees on two meshes by
     coincidence.
@@ -169,7 +169,7 @@ def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
     if not REFINEMENT.min_size_ratio * size < found.orbit.size < REFINEMENT.max_size_ratio * size:
-        raise Unsolvable("Newton's method converged to an orbit of a very different size than its start")
+        raise Unsolvable("the orbit found by Newton's method is far larger or smaller than its start")
     return found
 
 
