@@ -61,13 +61,13 @@ class UniformSolver(ShiftInvertSolver):
         return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, deflection_ratio)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
-        k)."""
+        """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
+        (unknowns, k)."""
         return fields_of_vectors(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
+    """Returns (equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
     deflection_ratio^2; y of `rod` = y of the equivalent rod * deflection_ratio.
 
     A partial beam (k2 = inf, gamma3 = 0) is equivalent to the filament under the force F nu, with times

@@ -149,7 +149,7 @@ class ArmProblem(TransverseProblem):
         return arm_mesh(self.rod, modes, accuracy)
 
     def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
-        """The next finer mesh; the wave numbers `waves`, (modes,), are ignored."""
+        """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:

@@ -167,8 +167,8 @@ class ShiftInvertSolver(ABC):
 
     @abstractmethod
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
-        k)."""
+        """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
+        (unknowns, k). rod: the rod that was solved."""
 
     def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
         """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `wanted` if

@@ -42,9 +42,9 @@ class AxisModes:
     unstable: int
 
     def nearest_pair(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the imaginary axis, derivative of this distance with respect to p) of the pair
-        nearest to the axis, among the growing pairs if `growing`, otherwise among the decaying pairs; None if
-        no such pair is known."""
+        """Returns (distance from the imaginary axis, derivative of this distance with respect to p) of the
+        pair nearest to the axis, among the growing pairs if `growing`, otherwise among the decaying pairs;
+        None if no such pair is known."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
         if not pairs:
             return None

@@ -78,7 +78,7 @@ class _ChangeBoundaries:
         return left[0]
 
     def missing_units(self, seed: int) -> list[int]:
-        """No work items: a curve is traced in milliseconds, at once."""
+        """No work items for the threshold with index `seed`: its curve is traced at once, in milliseconds."""
         return []
 
     def curve(self, seed: int) -> BoundaryCurve | None:

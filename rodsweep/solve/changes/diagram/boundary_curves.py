@@ -56,8 +56,8 @@ class BoundaryCurve:
 
 
 def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> BoundaryCurve | None:
-    """The boundary curve with `sign` through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no
-    point of a curve is found there.
+    """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
+    curve is found there. sign: as in `BoundaryCurve`.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.

@@ -59,7 +59,8 @@ CRUSHED_MARGIN = 4
 
 
 class BoundaryEnd(IntEnum):
-    """Reasons for the end of a boundary curve."""
+    """Reasons for the end of a boundary curve. edge: edge of the plane. crushed: crushed rod. closed: the
+    curve returns to its first point. list_full: maximum number of points."""
 
     none = 0
     edge = 1

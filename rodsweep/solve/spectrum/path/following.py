@@ -133,8 +133,8 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _iterate_to_convergence(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until `converged_error`
-    is finite.
+    """Returns (last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until
+    `converged_error` is finite.
 
     first: result of the first step. crowding, exact: as in `converged_error`. rod: coefficients of the rod.
     direction: d(F, nu, c2, gamma3)/dp. The error is inf without convergence.
