@@ -10,11 +10,11 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
-from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.path.stretch import Stretch, follow_stretch
+from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
+from rodsweep.sweep.points.stretches import STRETCH_POINTS
 
-LONGEST = 64
 LARGEST = 400
 """Unknowns up to which whole matrices are solved."""
 FEWEST_MODES = 8
@@ -31,7 +31,10 @@ def line(name: str, values, **others: float) -> Stretch:
 
 def parts(whole: Stretch) -> list[Stretch]:
     """A line cut as a sweep cuts it."""
-    return [Stretch(whole.path, whole.values[at : at + LONGEST]) for at in range(0, len(whole), LONGEST)]
+    return [
+        Stretch(whole.path, whole.values[at : at + STRETCH_POINTS])
+        for at in range(0, len(whole), STRETCH_POINTS)
+    ]
 
 
 def random_line(rng: np.random.Generator) -> Stretch:
@@ -39,7 +42,7 @@ def random_line(rng: np.random.Generator) -> Stretch:
     k1, k2 = (10 ** rng.uniform(0, 6) if rng.random() < 0.8 else np.inf for _ in range(2))
     gamma3 = 10 ** rng.uniform(-8, 1) if rng.random() < 0.7 else 0.0
     F = min(0.999 * k1, 10 ** rng.uniform(0, 3)) * (1 if rng.random() < 0.9 else -1)
-    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, LONGEST + 1))
+    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, STRETCH_POINTS + 1))
     if name == "F":
         values = np.linspace(F * rng.uniform(-0.1, 0.9), F, n)
     else:
@@ -76,6 +79,25 @@ def dense_count(rod: Rod) -> int | None:
             return None
         count = int((inside & (w.real > 0)).sum())
     return count
+
+
+def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
+    """Spectra of all rods of a stretch: followed, or else alone, as in a sweep."""
+    followed = follow_stretch(stretch, request)
+    for i in np.flatnonzero(~followed.solved).tolist():
+        alone = solve_spectrum(stretch.rod(i), request)
+        for name in (
+            "eigenvalues",
+            "error_estimate",
+            "unstable_count",
+            "certified",
+            "elements",
+            "order",
+            "status",
+            "message",
+        ):
+            getattr(followed.spectra, name)[i] = getattr(alone, name)
+    return followed.spectra
 
 
 @dataclass

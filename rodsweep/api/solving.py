@@ -16,6 +16,7 @@ from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.exclusive import exclusive_solve
+from ..sweep.points.stretches import SolveStretch, Stretches
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import JointVariables, NamedArrays, Solver
@@ -105,28 +106,40 @@ def _solve_points(
     count = job.points.count
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
-    if solver.stretched is not None:
-        stretches, solve_stretch = solver.stretched
-        for indices in map(stretches.indices, range(stretches.count)):
-            found = solve_stretch(indices)
-            reasons.add(indices, found)
-            for name, array in flat.items():
-                array[indices] = found.values[name]
-            shown(int(indices[-1]) + 1)
-    else:
-        for done, (index, outcome) in enumerate(_outcomes(count, solver, shown), 1):
-            record = solver.record(index, outcome)
-            for name, array in flat.items():
-                array[index] = record[name]
-            messages[index] = outcome.message
-            reasons.add(index, outcome)
-            shown(done)
+    left = range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, flat, shown)
+    for done, (index, outcome) in enumerate(_outcomes(left, count, solver, shown), count - len(left) + 1):
+        record = solver.record(index, outcome)
+        for name, array in flat.items():
+            array[index] = record[name]
+        messages[index] = outcome.message
+        reasons.add(index, outcome)
+        shown(done)
     shape = job.points.shape
     return (
         {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()},
         messages,
         [*reasons.examples.values()],
     )
+
+
+def _solve_stretches(
+    stretches: Stretches, solve_stretch: SolveStretch, flat: dict[str, np.ndarray], shown: Display
+) -> Sequence[int]:
+    """Fills the variables of all points that are solved together; returns the flat indices of the others.
+
+    flat: variables by name, (points, ...). shown: progress display.
+    """
+    left: list[int] = []
+    done = 0
+    for indices in map(stretches.indices, range(stretches.count)):
+        found = solve_stretch(indices)
+        here = np.flatnonzero(found.solved)
+        for name, column in found.at(here).values.items():
+            flat[name][indices[here]] = column
+        left += indices[~found.solved].tolist()
+        done += len(here)
+        shown(done)
+    return left
 
 
 def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
@@ -142,11 +155,13 @@ def _solve_joint_variables(together: JointVariables, view: View, shown: Display)
     return together.variables(view, units, results)
 
 
-def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
-    """Solves all points; yields (flat index, outcome) of each point. Along a chain, each point starts from
-    the solution of the previous point.
+def _outcomes(left: Sequence[int], count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
+    """Solves the points with flat indices `left`; yields (flat index, outcome) of each point. Along a chain,
+    each point starts from the solution of the previous point.
+
+    count: number of all points. shown: progress display.
     """
-    done = 0
+    done = count - len(left)
 
     @contextmanager
     def point_progress() -> Iterator[None]:
@@ -159,10 +174,11 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
             yield
 
     if solver.chained is None:
-        for done in range(count):
+        for index in left:
             with point_progress():
-                outcome = solver.solve(done)
-            yield done, outcome
+                outcome = solver.solve(index)
+            done += 1
+            yield index, outcome
         return
     chains = solver.chained.chains
     solve_from = solver.chained.solve_from

@@ -160,24 +160,18 @@ class SpectrumTask(CertifiedTask):
         )
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
-        """Results for the points of a stretch, along which eigenvalues are followed. indices: flat indices,
+        """Results for the points of a stretch to which eigenvalues are followed. indices: flat indices,
         (n,).
         """
         from ..determinant.parameter_path import Path
-        from ..solve.spectrum.path.stretch import Stretch, solve_stretch
-        from ..solve.spectrum.status import SpectrumStatus
+        from ..solve.spectrum.path.stretch import Stretch, follow_stretch
 
         stretches = self.stretches
         assert stretches is not None
         varied = self.points.varying_parameters[stretches.axis]
         path = Path(self.points.rod(int(indices[0])), varied)
-        found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
-        words = {status.value: status.name for status in SpectrumStatus}
-        return StretchResult(
-            values=spectrum_values(found),
-            succeeded=found.status == SpectrumStatus.ok,
-            message=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
-        )
+        found = follow_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
+        return StretchResult(spectrum_values(found.spectra), found.solved)
 
 
 def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:

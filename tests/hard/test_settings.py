@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from followed_lines import solve_stretch
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import NullCache
 from numba.core.ccallback import CFunc
@@ -62,7 +63,7 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
-from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
+from rodsweep.solve.spectrum.path.stretch import Stretch
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -235,18 +236,34 @@ def spectra(accuracy: float) -> Answer:
     return answer
 
 
-def followed(accuracy: float) -> Answer:
-    """Spectra of neighbours through flutter, and the leader of one from that of the other."""
-    forces = np.linspace(40.0, 170.0, 12)
-    path = Path(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), "F")
-    found = solve_stretch(Stretch(path, forces), SpectrumRequest(3, accuracy, certify=True))
+def followed_cones(accuracy: float) -> Answer:
+    """Cones beyond flutter, where counts are carried from cone to cone."""
+    path = Path(Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F")
+    return spectra_along(path, np.linspace(40.0, 42.0, 40), SpectrumRequest(4, accuracy, certify=True))
+
+
+def spectra_along(path: Path, forces: np.ndarray, request: SpectrumRequest) -> dict[str, Any] | None:
+    found = solve_stretch(Stretch(path, forces), request)
     if found.status.any():
         return None
     answer = {}
     for i, F in enumerate(forces):
         here = replace(found, eigenvalues=found.eigenvalues[i], error_estimate=found.error_estimate[i])
         answer |= eigenvalues_of(here, f"F = {F}")
-    near = complex(found.eigenvalues[0, 0])
+        answer[f"growing modes at F = {F}"] = float(found.unstable_count[i]), 0.1
+    return answer
+
+
+def followed(accuracy: float) -> Answer:
+    """Spectra of neighbours through flutter, and the leader of one from that of the other."""
+    forces = np.linspace(40.0, 170.0, 12)
+    path = Path(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), "F")
+    answer = spectra_along(path, forces, SpectrumRequest(3, accuracy, certify=True))
+    if answer is None:
+        return None
+    near = complex(
+        solve_spectrum(path.rod_at(forces[0]), SpectrumRequest(3, accuracy, certify=True)).eigenvalues[0]
+    )
     leader = follow_leading_eigenvalue(
         path.rod_at(forces[0] + 0.1), np.array([complex(near.real, abs(near.imag))]), 1e-10
     )
@@ -471,6 +488,7 @@ MESH = Case(on_mesh, 1.0, 1.0)
 SMALL_DRAG = Case(small_drag, 1e-6, 1e-8)
 LONGITUDINAL = Case(longitudinal, 1.0, 1.0)
 HELD = Case(held_tip, 1.0, 1.0)
+CONES = Case(followed_cones, 1e-8, 1e-10)
 SEGMENTS = Case(segments, 1e-8, 1e-10)
 BETWEEN = Case(changes_between, 1.0, 1.0)
 SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
@@ -562,6 +580,8 @@ CASES = {
     "NEAR_AXIS": SLENDER_CONE,
     "ARM_STRETCH": CONE,
     "ARM_FAMILY": CONE,
+    "NO_CROSSING": CONES,
+    "CARRIED_ARM_COUNT": CONES,
     "ARM_DOUBLE_EIGENVALUES": CONE,
     "LONGITUDINAL_MODES": LONGITUDINAL,
     "CHANGE_BOUNDARIES": CHANGES,

@@ -71,7 +71,7 @@ def break_it():
     def broken(*words):
         raise IndexError("a bug")
 
-    stretch.solve_stretch, stretch.warm_up = broken, lambda: None
+    stretch.follow_stretch, stretch.warm_up = broken, lambda: None
 """
 
 

@@ -73,20 +73,26 @@ def test_stretches_to_do_are_those_that_miss_a_point(shape):
 
 
 def test_of_a_stretch_only_missing_points_are_kept():
-    """All are solved, as what is missing starts from the others; what the file has is not written again."""
+    """All are followed, as what is missing starts from the others; points that are left are solved alone, one
+    after the other, if they are missing."""
     asked = []
 
-    def solve(indices):
+    def follow(indices):
         asked.append(indices.tolist())
-        values = {"growth_rate": 10.0 * indices}
-        return StretchResult(values, indices % 2 == 0, lambda i: f"told {indices[i]}")
+        return StretchResult({"growth_rate": 10.0 * indices}, indices % 4 == 0)
 
-    solver = StretchSolver(Stretches((10, 2), 0), solve, IndexSet([(4, 7)]))
-    ((index, kept),) = solver(0)
+    def solve(index):
+        asked.append(index)
+        return f"told {index}"
+
+    solver = StretchSolver(Stretches((10, 2), 0), follow, solve, IndexSet([(4, 11)]))
+    results = solver(0)
+    index, kept = next(results)
+    assert index.tolist() == [4, 8]
+    assert kept.values["growth_rate"].tolist() == [40.0, 80.0]
     assert asked == [list(range(0, 20, 2))]
-    assert index.tolist() == [4, 6]
-    assert kept.values["growth_rate"].tolist() == [40.0, 60.0]
-    assert kept.message(1) == "told 6"
+    assert list(results) == [(6, "told 6"), (10, "told 10")]
+    assert asked[1:] == [6, 10]
 
 
 def test_any_number_of_ranks_gives_the_same_spectra(command):
@@ -127,6 +133,23 @@ def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     assert again.returncode == 0, again.stderr
     assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(path), content(command.directory / "whole.h5"))
+
+
+def test_points_of_a_stretch_that_are_solved_alone_are_kept_one_by_one(command):
+    """A pull without drag: no eigenvalue is followed, because nothing can be proved."""
+    alone = (
+        "task: spectrum\nparameters: {F: {start: -60, stop: -30, num: 20}, k1: 1.0e4, k2: 20, gamma3: 0}\n"
+    )
+    command.write("c.yaml", alone)
+    path = command.directory / "c.h5"
+    process = command.started("run", "c.yaml", patch=slowly(FOR_EVER, 7))
+    pause_until_journalled(process, path, 7)
+    process.kill()
+    process.communicate(timeout=PATIENCE)
+    again = command("run", "c.yaml")
+    assert "13 of 20 points to do, 7 kept" in again.stdout
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == again.returncode
     assert same(content(path), content(command.directory / "whole.h5"))
 
 

@@ -112,7 +112,7 @@ class PointWork:
         """
         solver = self.solver
         if solver.stretched:
-            return StretchSolver(*solver.stretched, missing)
+            return StretchSolver(*solver.stretched, solver.solve, missing)
         if solver.chained:
             kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_of)
             return ChainSolver(solver.chained, missing, kept, self.stop)

@@ -145,8 +145,9 @@ def _real_swept(
 
 
 @compiled
-def chain_size(w: complex, W: float, polynomials: Array) -> float:
-    """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
+def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
+    """(D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements, terms,
+    PADDED)."""
     powers = powers_of(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
     here = np.zeros((2, MINORS))
@@ -161,8 +162,14 @@ def chain_size(w: complex, W: float, polynomials: Array) -> float:
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
-    size = math.hypot(here[0, SM], here[1, SM])
-    return S + math.log(size) if size > 0 else -math.inf
+    return complex(here[0, SM], here[1, SM]), S
+
+
+@compiled
+def chain_size(w: complex, W: float, polynomials: Array) -> float:
+    """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
+    D, S = chain_value(w, W, polynomials)
+    return S + math.log(abs(D)) if D != 0 else -math.inf
 
 
 @compiled

@@ -1,7 +1,8 @@
 """Stretches: neighbouring points on a grid line of a sweep that are solved together.
 
 The division of grid lines into stretches depends only on the grid. Results therefore depend neither on the
-number of ranks nor on points of an earlier run: a stretch with any missing point is solved again completely.
+number of ranks nor on points of an earlier run: along a stretch with any missing point eigenvalues are
+followed again completely.
 """
 
 import math
@@ -28,18 +29,17 @@ STRETCHES_PER_BLOCK = 1 << 12
 class StretchResult:
     """Result of a stretch of n points solved together.
 
-    values: every variable of the result file at the points, (n, ...), by name. succeeded: whether the solve
-    of each point succeeded, (n,). message: function from the position of a failed point in the stretch to a
-    text with its status and message.
+    values: every variable of the result file at the points, (n, ...), by name. solved: for which points,
+    (n,); the others must be solved one by one.
     """
 
     values: dict[str, NDArray]
-    succeeded: NDArray[np.bool_]
-    message: Callable[[int], str]
+    solved: NDArray[np.bool_]
 
-    def at(self, places: NDArray[np.int64]) -> dict[str, NDArray]:
-        """Variables of the points at the positions `places` in the stretch, (m,), as arrays (m, ...)."""
-        return {name: column[places] for name, column in self.values.items()}
+    def at(self, places: NDArray[np.int64]) -> "StretchResult":
+        """Result at the positions `places` in the stretch, (m,)."""
+        values = {name: column[places] for name, column in self.values.items()}
+        return StretchResult(values, self.solved[places])
 
 
 SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
@@ -119,18 +119,27 @@ def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
-    """Function from the number of a stretch to the result of its missing points."""
+    """Function from the number of a stretch to the results of its missing points.
+
+    solve: function from a flat index to the outcome of a point that is not solved with the others.
+    """
 
     stretches: Stretches
     solve_stretch: SolveStretch
+    solve: Callable[[int], Any]
     missing: IndexSet
 
-    def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64], Any]]:
-        """Solves a stretch; yields once (flat indices of its missing points, (n,), their `StretchResult`)."""
+    def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
+        """Solves a stretch; yields (flat indices, (m,), `StretchResult`) of all missing points that are
+        solved together, then (flat index, outcome) of each further missing point.
+
+        A run that ends between two points has lost none of the points before.
+        """
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)
-        places = np.flatnonzero(self.missing[indices])
-        missing = StretchResult(
-            result.at(places), result.succeeded[places], lambda i: result.message(int(places[i]))
-        )
-        yield indices[places], missing
+        missing = self.missing[indices]
+        together = np.flatnonzero(missing & result.solved)
+        if len(together):
+            yield indices[together], result.at(together)
+        for index in indices[missing & ~result.solved].tolist():
+            yield index, self.solve(index)

@@ -189,14 +189,7 @@ class SkippingSolver:
         found = self.inner.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column
-        succeeded = coverage != FLUTTER_UNKNOWN
+        solved = coverage != FLUTTER_UNKNOWN
         if found:
-            succeeded[places] = found.succeeded
-
-        def message(i: int) -> str:
-            if coverage[i] != SLENDER:
-                index = int(indices[i])
-                return f"{self._status(index).name} {self.failures.get(index, '')}"
-            return found.message(int(np.searchsorted(places, i))) if found else ""
-
-        return StretchResult(values, succeeded, message)
+            solved[places] = found.solved
+        return StretchResult(values, solved)

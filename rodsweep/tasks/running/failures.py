@@ -1,10 +1,8 @@
 """Reasons why points failed, each with one example, for the last lines of a run and for the result file."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
-
-import numpy as np
 
 from ...results.file.provenance import MAX_FAILURE_REASONS, reason_of
 from ...sweep.loop import Indices
@@ -28,25 +26,19 @@ class FailureReasons:
     examples: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: Indices, result: Any) -> list[str]:
-        """Adds the reasons of failed points; returns the examples of reasons that are new.
+        """Adds the reason why a point failed, if the reason is new; returns a list with this example, or an
+        empty list.
 
-        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a stretch.
+        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a stretch, of
+        which no point failed.
         """
-        new = []
-        for at, outcome in _failed(index, result):
-            if len(self.examples) >= MAX_FAILURE_REASONS:
-                break
-            line = " ".join(f"{self.where(at)}: {outcome}".split())
-            if reason_of(line) not in self.examples:
-                self.examples[reason_of(line)] = line
-                new.append(line)
-        return new
-
-
-def _failed(index: Indices, result: Any) -> Iterable[tuple[int, str]]:
-    """Yields (flat index, text with status and message) of each failed point of a result."""
-    if isinstance(result, StretchResult):
-        for i in np.flatnonzero(~result.succeeded):
-            yield int(np.asarray(index)[i]), result.message(int(i))
-    elif not result.status.succeeded:
-        yield int(index), f"{result.status.name} {result.message}"
+        if isinstance(result, StretchResult) or result.status.succeeded:
+            return []
+        if len(self.examples) >= MAX_FAILURE_REASONS:
+            return []
+        where = self.where(int(index))
+        line = " ".join(f"{where}: {result.status.name} {result.message}".split())
+        if reason_of(line) in self.examples:
+            return []
+        self.examples[reason_of(line)] = line
+        return [line]

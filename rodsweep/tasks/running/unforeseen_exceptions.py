@@ -98,6 +98,7 @@ class _Guard:
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
     def _together(self, indices: NDArray[np.int64]) -> StretchResult:
+        """Result of a stretch; after an unforeseen exception every point is left to be solved alone."""
         assert self.inner.stretched is not None
         try:
             return self.inner.stretched[1](indices)
@@ -106,18 +107,10 @@ class _Guard:
         except Exception as error:
             destroy_pooled_solvers()
             self.note_exception(indices.tolist(), error)
-            return self._one_by_one(indices)
-
-    def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Result of a stretch from separate solves of its points. indices: flat indices, (n,)."""
-        solve = self.solver().solve
-        outcomes = [solve(index) for index in indices.tolist()]
-        names = [variable.name for variable in self.layout.variables]
-        return StretchResult(
-            values={name: np.stack([outcome.values[name] for outcome in outcomes]) for name in names},
-            succeeded=np.array([outcome.status.succeeded for outcome in outcomes]),
-            message=lambda i: f"{outcomes[i].status.name} {outcomes[i].message}",
-        )
+            empty = {
+                name: np.stack([value] * len(indices)) for name, value in self.layout.empty_point.items()
+            }
+            return StretchResult(empty, np.zeros(len(indices), np.bool_))
 
 
 def describe_exception(error: Exception) -> str:

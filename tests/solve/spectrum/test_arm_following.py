@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from followed_lines import solve_stretch
 from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
@@ -9,10 +10,11 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path import arm_spectra
+from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_count
+from rodsweep.solve.spectrum.path.arm_count import count_at
 from rodsweep.solve.spectrum.path.arm_spectra import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
-from rodsweep.solve.spectrum.path.stretch import Stretch, solve_stretch
+from rodsweep.solve.spectrum.path.stretch import Stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)
@@ -65,21 +67,37 @@ def test_a_cone_is_followed_and_proved_without_single_points():
     assert reached.accepted.all()
 
 
-def test_points_that_are_followed_again_with_more_modes_have_their_own_spectra(monkeypatch):
-    """Beyond F = 12 four modes and few more do not prove the cone; more modes do, up to F = 34."""
+def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
+    """Beyond F = 20 D'/D no longer proves the cone: a few counts serve all points up to F = 60."""
     counted = []
-    count = arm_spectra.count_at
-    monkeypatch.setattr(arm_spectra, "count_at", lambda *words: counted.append(words[2]) or count(*words))
-    path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(0, 25, 160)
-    followed = follow_stretch_of_arms(path, values, REQUEST)
-    assert len(followed.accepted) == len(values)
-    assert len(counted) < len(values) / 4
-    for i in range(0, len(values), 20):
+    count = arm_count.count_right_of
+    monkeypatch.setattr(arm_count, "count_right_of", lambda *words: counted.append(words[0]) or count(*words))
+    path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(20, 60, 160)
+    followed = [follow_stretch_of_arms(path, part, REQUEST) for part in np.split(values, 2)]
+    accepted, unstable = (
+        np.concatenate([getattr(part, name) for part in followed]) for name in ("accepted", "unstable_count")
+    )
+    assert accepted.all()
+    assert len(counted) < len(values) / 8
+    for i in range(0, len(values), 10):
         alone = solve_spectrum(path.rod_at(float(values[i])), REQUEST)
-        assert followed.accepted[i]
-        assert followed.unstable_count[i] == alone.unstable_count
-        error = 10 * (followed.error[i] + alone.error_estimate) + 1e-15 * np.abs(alone.eigenvalues)
-        np.testing.assert_array_less(np.abs(followed.w[i] - alone.eigenvalues), error)
+        assert unstable[i] == alone.unstable_count
+
+
+def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch):
+    """Single counts then decide at every point."""
+    path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(40, 42, 40)
+    confirmed = carried_arm_count.confirmed_line
+    monkeypatch.setattr(
+        carried_arm_count,
+        "confirmed_line",
+        lambda path, found, p, *rest: None if p > 40.5 else confirmed(path, found, p, *rest),
+    )
+    single = []
+    monkeypatch.setattr(arm_spectra, "count_at", lambda *words: single.append(words[2]) or count_at(*words))
+    followed = follow_stretch_of_arms(path, values, REQUEST)
+    assert followed.accepted.all()
+    assert len(single) == len(values)
 
 
 @pytest.mark.parametrize("seed", range(RODS // 10 or 2))

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from followed_lines import Comparison, line, random_line
+from followed_lines import Comparison, line, random_line, solve_stretch
 from surveyed import RODS
 
 from rodsweep.determinant import moving_line
@@ -16,7 +16,6 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import stretch as stretch_of
 from rodsweep.solve.spectrum.path.prediction import extrapolate_hermite
-from rodsweep.solve.spectrum.path.stretch import solve_stretch
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 

@@ -20,21 +20,19 @@ from ....determinant.arm.completeness import (
     points_right_of_hull,
     prove_complete,
 )
-from ....determinant.arm.count.count import count_right_of
-from ....determinant.arm.determinant import ArmDeterminant, arm_determinant
-from ....determinant.arm.family import ArmFamily, interpolated_family, is_smooth, propagators_in_family
+from ....determinant.arm.determinant import arm_determinant
+from ....determinant.arm.family import ArmFamily, interpolated_family, is_smooth
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
 from ....determinant.roots.roots import Roots
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point import FAILURES
-from ..candidates import line_for_proof, lines_for_count
+from ..candidates import line_for_proof
 from ..search import Search
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_stretch_settings import ARM_STRETCH
-from .carried_count import leading_eigenvalues
 from .prediction import Track, slice_track, start_track
 
 
@@ -60,20 +58,27 @@ class ArmInterval(NamedTuple):
 
 
 def follow_interval(
-    path: Path, p: Array, request: SpectrumRequest, before: ArmInterval | None = None
+    path: Path,
+    p: Array,
+    request: SpectrumRequest,
+    before: ArmInterval | None = None,
+    counts_follow: bool = False,
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
 
-    If too few points are proved complete, more eigenvalues are followed. before: the previous interval of the
-    path, whose family is used again if it contains enough of the points p.
+    If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
+    proved complete, unless counts follow at these points. before: the previous interval of the path, whose
+    family is used again if it contains enough of the points p.
     """
     best: ArmInterval | None = None
     for further in (
         number for number in ARM_STRETCH.further_modes if before is None or number >= before.further_modes
     ):
-        if best is not None and not (_too_few(best) or _proves_more(path, best, request, further)):
+        if best is not None and not (
+            _too_few(best) or (not counts_follow and _proves_more(path, best, request, further))
+        ):
             break
-        found = follow_with(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
+        found = _follow_with(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
         enough = best is not None and best.proved_points(
@@ -103,10 +108,10 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
     """Whether following `further` additional modes would prove completeness at the middle point among the
     points without a proof."""
     left = np.flatnonzero(found.proved_modes < request.modes)
-    return proves_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
+    return _proves_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
 
 
-def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int) -> bool:
+def _proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int) -> bool:
     """Whether the wanted modes at path variable p, inside the interval `found`, would be proved complete if
     `further` modes were followed in addition."""
     roots = _roots(path, p, request, further)
@@ -120,7 +125,7 @@ def proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequ
         return False
 
 
-def follow_with(
+def _follow_with(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `further` modes
@@ -222,22 +227,3 @@ def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Root
         destroy_pooled_solvers()
         return None
     return None if search.best is None else search.best.candidates.roots
-
-
-def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
-    """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
-    right of a line; 0 if no count confirms this.
-
-    found: an interval that contains p. here: a track with the eigenvalues at p only.
-    """
-    w, error = leading_eigenvalues(here, here.w.shape[1])
-    if w[0, -1].real > 0:  # more modes grow, and the count would include them
-        return 0
-    determinant = ArmDeterminant(path.rod_at(p), propagators_in_family(found.family, p))
-    hull = hull_at(found.hulls, p)
-    for line in lines_for_count(w[0].tolist(), modes):
-        number = count_right_of(line, determinant, hull, w[0], error[0]).number
-        if number is not None:
-            clear = (np.abs(w[0].real - line) > 2 * error[0]).all()
-            return number if clear and number == (w[0].real > line).sum() else 0
-    return 0

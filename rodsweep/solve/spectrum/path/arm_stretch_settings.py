@@ -16,15 +16,8 @@ class ArmStretchSettings:
     min_proved_fraction: float = 0.5
     """More modes are followed if the fraction of the points that are proved complete is below this, provided
     that more modes prove a further point."""
-    further_modes_for_unproved: tuple[int, ...] = (9, 20)
-    """Numbers of modes, in addition to the wanted modes, that are tried one after the other at points without
-    a proof."""
     min_unproved_points: int = 64
-    """Minimum number of points without a proof for which more modes are followed; fewer points are counted
-    one by one, which costs less than a new family."""
-    unproved_parts: int = 16
-    """Bisection for the points that more modes prove ends at an interval of 1/`unproved_parts` of the points
-    without a proof."""
+    """Minimum number of points without a proof for which hulls are computed at more arms."""
     hull_arms_for_unproved: int = 49
     """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
     proof."""

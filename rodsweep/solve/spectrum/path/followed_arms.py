@@ -11,8 +11,9 @@ from ....determinant.arm.family import ArmFamily
 from ....determinant.parameter_path import Path
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
+from .arm_count import count_at
 from .arm_following import follow_eigenvalues_of_arms
-from .arm_stretch import ArmInterval, count_at, follow_interval
+from .arm_stretch import ArmInterval, follow_interval
 from .arm_stretch_settings import ARM_STRETCH
 from .carried_count import assess_points, leading_eigenvalues
 from .prediction import KnownRoots, Track, slice_track, start_track

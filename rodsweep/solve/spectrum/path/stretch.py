@@ -1,8 +1,8 @@
 """Spectra of rods at neighbouring values of one parameter: followed eigenvalues, and one count for many rods.
 
 Krylov-Schur solves the first rod for a few modes more than requested, and solves again at a rod where
-following stops or a count disagrees. Rods without a proof or with lost digits are solved one by one. The
-outcome depends only on the given rods.
+following stops or a count disagrees. Rods without a proof or with lost digits are left to be solved one by
+one. The outcome depends only on the given rods.
 """
 
 import time
@@ -18,7 +18,7 @@ from ....determinant.parameter_path import Path
 from ....model.rod import Rod, coefficients_of
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point import FAILURES
-from ..search import Search, SpectrumRequest, solve_spectrum
+from ..search import Search, SpectrumRequest
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
@@ -71,34 +71,43 @@ class Stretch:
         return table
 
 
-def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of every rod, with certificates. A failure is returned as the
-    status of the rod, never raised.
+@dataclass(frozen=True, slots=True)
+class FollowedStretch:
+    """Spectra of the rods of a stretch. solved: for which rods, (n,); the other rods must be solved one by
+    one.
+    """
+
+    spectra: Spectrum
+    solved: NDArray[np.bool_]
+
+
+def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretch:
+    """The leading `request.modes` eigenvalues, with certificates, of the rods to which eigenvalues are
+    followed and proved complete.
     """
     began = time.perf_counter()
     n = len(stretch)
-    modes = request.modes
-    columns = _unsolved(n, modes)
+    columns = _unsolved(n, request.modes)
+    solved = np.zeros(n, np.bool_)
     place = 0
     patience = 1
     while place < n:
         found = _followed(stretch, place, request)
-        end = place + (len(found.accepted) if found else min(patience, n - place))
-        # If no proof succeeds, for example without a bound, following is tried less and less often.
-        patience = 1 if found else 2 * patience
-        if found:
-            here = slice(place, end)
-            columns["eigenvalues"][here] = found.w
-            columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
-            columns["unstable_count"][here] = found.unstable_count
-            columns["certified"][here] = True
-        for i in range(place, end):
-            if not (found and found.accepted[i - place]):
-                alone = solve_spectrum(stretch.rod(i), request)
-                for name, column in columns.items():
-                    column[i] = getattr(alone, name)
-        place = end
-    return Spectrum(seconds=np.full(n, (time.perf_counter() - began) / n), **columns)
+        if found is None:
+            # If no proof succeeds, for example without a bound, following is tried less and less often.
+            place += patience
+            patience *= 2
+            continue
+        here = slice(place, place + len(found.accepted))
+        columns["eigenvalues"][here] = found.w
+        columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
+        columns["unstable_count"][here] = found.unstable_count
+        columns["certified"][here] = True
+        solved[here] = found.accepted
+        place = here.stop
+        patience = 1
+    seconds = np.full(n, (time.perf_counter() - began) / max(1, int(solved.sum())))
+    return FollowedStretch(Spectrum(seconds=seconds, **columns), solved)
 
 
 def _unsolved(n: int, modes: int) -> dict[str, Any]:
@@ -197,4 +206,4 @@ def warm_up() -> None:
     """Loads compiled code and creates the solver objects, so that the first sweep takes no extra time."""
     warm_up_search()
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
-    solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))
+    follow_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))

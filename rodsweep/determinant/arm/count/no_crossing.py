@@ -1,0 +1,206 @@
+"""Whether no unknown eigenvalue of the arms of an interval lies on a vertical line.
+
+If all eigenvalues right of the line are known at one arm of the interval, and no unknown eigenvalue lies on
+the line for any arm, then all eigenvalues right of the line are known at every arm. The upper half of the
+line inside the hull of the spectrum suffices, because eigenvalues come in conjugate pairs.
+
+Discs about nodes w0 cover the line. On the circle of a disc, with the known eigenvalues w_n(p) near the disc
+divided out,
+
+    f(v, p) = D(v, p)/prod (v - w_n(p)) exp(-h(v, p)),
+
+h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm, is compared with f(w0, q)
+of the middle arm q. If |f(v, p) - f(w0, q)| < |f(w0, q)| on the circle, f has no zero in the disc, by the
+maximum principle. This is an estimate: f is evaluated at `ARM_COUNT.circle_points` points of the circle and
+at a few arms, with one safety factor for values between the points and one for the arms between these arms.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array, Complex
+from ....model.compiled.compilation import compiled
+from ....model.rod import Rod
+from ..completeness import has_conjugate
+from ..determinant import ArmDeterminant, elements_for, samples_of
+from ..elements.propagators import element_propagators
+from ..family import ArmFamily, propagators_in_family
+from ..hull.region import Hull, PathHulls
+from ..local_waves import ArmSamples, scales_at
+from ..value import chain_value, determinant_along_chain
+from .dominant_wave import dominant_wave, slope_of_wave
+from .settings import ARM_COUNT, NO_CROSSING
+
+
+class ArmsOfInterval(NamedTuple):
+    """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
+
+    known, error: known eigenvalues, followed from arm to arm, and their errors, (n, m) each. squares,
+    weights: as in `ArmSamples`, (n, 4, points) and (points,). W, propagators: propagators of the arms, valid
+    for |w| <= W, (n, elements, terms, PADDED).
+    """
+
+    known: Complex
+    error: Array
+    squares: Array
+    weights: Array
+    W: float
+    propagators: Array
+
+
+class LineNode(NamedTuple):
+    """The node w0 of a disc, with values of the middle arm.
+
+    D: times exp(-S). L: D'/D, with the eigenvalues divided out. divided: indices of the known eigenvalues
+    that are divided out, (k,). wave: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0).
+    """
+
+    w: complex
+    D: complex
+    S: float
+    L: complex
+    divided: NDArray[np.int64]
+    wave: tuple[complex, complex]
+
+
+def sampled_points(first: int, last: int) -> list[int]:
+    """Indices of the `NO_CROSSING.arms` points, of the points `first` to `last`, at which D is evaluated: the
+    middle, the ends, and further points."""
+    steps = NO_CROSSING.arms - 1
+    between = [first + (last - first) * k // steps for k in range(1, steps)]
+    middle = between.pop(steps // 2 - 1)
+    return [middle, first, last, *between]
+
+
+def proves_no_crossing(
+    line: float, rods: list[Rod], p: Array, known: tuple[Complex, Array], family: ArmFamily, hulls: PathHulls
+) -> bool:
+    """Whether no unknown eigenvalue lies on the line Re w = `line` for any arm of an interval.
+
+    rods: arms of the interval in the order of `sampled_points`; p: their path variables, (n,). known: their
+    known eigenvalues, followed from arm to arm, and the errors, (n, m) each. family, hulls: as of the whole
+    path.
+    """
+    w, error = known
+    top = _height_of_hulls(line, p, hulls)
+    if not math.isfinite(top) or not all(has_conjugate(here).all() for here in w):
+        return False
+    samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
+    squares = np.array([one.squares for one in samples])
+    levels = [propagators_in_family(family, here)[1] for here in p.tolist()]
+    arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.W, np.array(levels))
+    unit = scales_at(complex(line, 0.0), samples[0])[1]
+    height, radius = covered_height(
+        line, 0.0, top, (ARM_COUNT.first_radius * unit, NO_CROSSING.min_radius * unit), arms
+    )
+    if height < top and radius > 0:
+        try:
+            arms = _with_larger_w(arms, rods, NO_CROSSING.headroom * abs(complex(line, top)))
+        except FloatingPointError:
+            return False
+        height, _ = covered_height(line, height, top, (radius, NO_CROSSING.min_radius * unit), arms)
+    return height >= top
+
+
+def _height_of_hulls(line: float, p: Array, hulls: PathHulls) -> float:
+    """Largest |Im w| at Re w >= `line` in the hulls of all arms between the smallest and the largest p."""
+    inside = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
+    pieces = zip(hulls.a[inside].tolist(), hulls.c[inside].tolist(), strict=True)
+    return max(Hull(a, c).box(max(-line, 0.0))[1] for a, c in pieces)
+
+
+def _with_larger_w(arms: ArmsOfInterval, rods: list[Rod], W: float) -> ArmsOfInterval:
+    """The arms with propagators for |w| <= W."""
+    found = elements_for(rods, samples_of(rods), W)
+    propagators = element_propagators([rod.F for rod in rods], found.local, found.lengths, W)
+    return arms._replace(W=W, propagators=propagators)
+
+
+@compiled
+def covered_height(
+    line: float, start: float, top: float, radii: tuple[float, float], arms: ArmsOfInterval
+) -> tuple[float, float]:
+    """Returns (height, radius). height: no unknown eigenvalue lies on the line between Im w = `start` and
+    `height`, at any arm; at least `top` if discs cover the line up to `top`. radius: of the next disc; 0 if a
+    disc failed.
+
+    radii: radius of the first disc, and radius below which a disc fails.
+    """
+    height = start
+    radius, smallest = radii
+    while height < top:
+        fitting = (arms.W - abs(complex(line, height))) / 2
+        if fitting < NO_CROSSING.smallest_fitting * radius:
+            return height, radius
+        radius = min(radius, fitting)
+        w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING.overlap * radius)
+        if _is_zero_free(w0, radius, arms):
+            height = w0.imag + NO_CROSSING.overlap * radius
+            radius *= NO_CROSSING.growth
+        else:
+            radius /= NO_CROSSING.shrinkage
+            if not radius > smallest:
+                return height, 0.0
+    return height, radius
+
+
+@compiled
+def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
+    """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
+    the module docstring."""
+    value = determinant_along_chain(w0, arms.W, arms.propagators[0])
+    if not abs(value.D) > ARM_COUNT.rounding_over_noise * value.noise:
+        return False
+    divided = np.flatnonzero(np.abs(arms.known[0] - w0) < NO_CROSSING.divided_distance * radius)
+    L = value.D_w / value.D
+    for n in divided:
+        if _is_close(w0, arms.known[0, n], arms.error[0, n]):
+            return False
+        L -= 1 / (w0 - arms.known[0, n])
+    wave = (0j, 0j)
+    if radius <= ARM_COUNT.max_wave_radius * w0.imag:
+        samples = ArmSamples(arms.squares[0], arms.weights)
+        wave = (dominant_wave(w0, samples), slope_of_wave(w0, samples))
+    node = LineNode(w0, value.D, value.S, L, divided, wave)
+    number = len(arms.known)
+    is_free = True
+    for k in range(1, number + 1):  # the ends before the middle arm, because f changes most at the ends
+        is_free = is_free and _changes_little(node, radius, k % number, arms)
+    return is_free
+
+
+@compiled
+def _is_close(v: complex, w: complex, error: float) -> bool:
+    """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
+    return not abs(v - w) > max(NO_CROSSING.min_known_distance * abs(v), NO_CROSSING.known_errors * error)
+
+
+@compiled
+def _changes_little(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
+    """Whether |f(v, p)/f(w0, q) - 1| is below 1, divided by the safety factors, at the points of the circle
+    and for arm number `arm`; False if a point is too close to a known eigenvalue."""
+    samples = ArmSamples(arms.squares[arm], arms.weights)
+    growth = 0.0
+    if node.wave[0] == 0:
+        # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
+        above = complex(node.w.real, radius / ARM_COUNT.max_wave_radius)
+        of_middle = dominant_wave(above, ArmSamples(arms.squares[0], arms.weights))
+        growth = (dominant_wave(above, samples) - of_middle).real
+    for direction in ARM_COUNT.directions:
+        v = node.w + radius * direction
+        D, S = chain_value(v, arms.W, arms.propagators[arm])
+        h = (node.L - node.wave[1]) * (v - node.w) + growth
+        if node.wave[0] != 0:
+            h += dominant_wave(v, samples) - node.wave[0]
+        ratio = D / node.D * cmath.exp(S - node.S - h)
+        for n in node.divided:
+            if _is_close(v, arms.known[arm, n], arms.error[arm, n]):
+                return False
+            ratio *= (node.w - arms.known[0, n]) / (v - arms.known[arm, n])
+        if not abs(ratio - 1) <= NO_CROSSING.max_change:
+            return False
+    return True

@@ -1,0 +1,55 @@
+"""Counts that confirm, at one arm of an interval, that all eigenvalues right of a line are followed."""
+
+import math
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ....determinant.arm.count.count import count_right_of
+from ....determinant.arm.determinant import ArmDeterminant
+from ....determinant.arm.family import propagators_in_family
+from ....determinant.arm.hull.region import hull_at
+from ....determinant.parameter_path import Path
+from ..candidates import lines_for_count
+from .arm_stretch import ArmInterval
+from .carried_count import leading_eigenvalues
+from .prediction import Track
+
+
+def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
+    """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
+    right of a line; 0 if no count confirms this.
+
+    found: an interval that contains p. here: a track with the eigenvalues at p only.
+    """
+    w, error = leading_eigenvalues(here, here.w.shape[1])
+    line = confirmed_line(path, found, p, (w[0], error[0]), modes)
+    return 0 if line is None else int((w[0].real > line).sum())
+
+
+def confirmed_line(
+    path: Path,
+    found: ArmInterval,
+    p: float,
+    followed: tuple[Complex, Array],
+    modes: int,
+    rightmost: float = math.inf,
+) -> float | None:
+    """Real part, at most `rightmost`, of a line for which a count at path variable p confirms that all
+    eigenvalues to its right are followed; None if no count confirms this.
+
+    found: an interval that contains p. followed: eigenvalues at p by descending real part, and their errors,
+    (m,) each. modes: number of requested modes, which lie to the right of the line.
+    """
+    w, error = followed
+    if w[-1].real > 0:  # more modes grow, and the count would include them
+        return None
+    determinant = ArmDeterminant(path.rod_at(p), propagators_in_family(found.family, p))
+    hull = hull_at(found.hulls, p)
+    lines = [line for line in lines_for_count(w.tolist(), modes) if line <= rightmost]
+    for line in [*lines, rightmost] if rightmost < math.inf else lines:
+        number = count_right_of(line, determinant, hull, w, error).number
+        if number is not None:
+            clear = (np.abs(w.real - line) > 2 * error).all()
+            return line if clear and number == (w.real > line).sum() else None
+    return None

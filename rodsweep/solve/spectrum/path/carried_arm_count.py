@@ -1,0 +1,139 @@
+"""Counts of eigenvalues right of a line, carried along the arms of an interval.
+
+A count at one arm confirms that all eigenvalues right of a line are followed eigenvalues. They remain all, at
+all further arms, as long as no unknown eigenvalue lies on the line
+(`rodsweep.determinant.arm.count.no_crossing`). A second count, at the last arm, must confirm the result.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
+from ....determinant.arm.count.settings import NO_CROSSING
+from ....determinant.parameter_path import Path
+from .arm_count import confirmed_line
+from .arm_stretch import ArmInterval
+from .carried_count import leading_eigenvalues
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarriedArmCountSettings:
+    """Settings for counts that are carried along the arms of an interval."""
+
+    line_distance: float = 0.05
+    """Distance of the line to the left of the last requested eigenvalue w, or of the imaginary axis if w
+    grows, divided by |w|."""
+
+
+CARRIED_ARM_COUNT = CarriedArmCountSettings()
+
+
+class Eigenvalues(NamedTuple):
+    """Followed eigenvalues of an interval by descending real part, and their errors, (points, m) each.
+
+    lines: real part of the rightmost line that lies left of all requested eigenvalues, (points,).
+    """
+
+    w: Complex
+    error: Array
+    lines: Array
+
+
+class Chain(NamedTuple):
+    """Successive points of an interval, by index, between which no unknown eigenvalue crosses a line:
+    `lines[k]` between `points[k]` and `points[k + 1]`.
+    """
+
+    points: list[int]
+    lines: list[float]
+
+
+def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
+    """Fills `found.proved_modes` at points without a proof, wherever a count can be carried to them.
+
+    modes: number of requested modes.
+    """
+    w, error = leading_eigenvalues(found.track, found.track.w.shape[1])
+    last = w[:, modes - 1]
+    lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT.line_distance * np.abs(last)
+    followed = Eigenvalues(w, error, lines)
+    # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
+    left = np.flatnonzero((found.proved_modes < modes) & (w[:, -1].real <= 0))
+    for run in np.split(left, np.flatnonzero(np.diff(left) > 1) + 1):
+        first = int(run[0]) if len(run) else 0
+        end = first + len(run)
+        patience = 1
+        while end - first >= NO_CROSSING.arms:
+            chain = _chain(path, found, followed, (first, end - 1), modes)
+            if not chain.lines:
+                # Further points often fail, too, so every further failure skips twice as many points.
+                first += patience
+                patience *= 2
+                continue
+            end_of_chain = chain.points[-1], chain.lines[-1]
+            if _confirmed(path, found, followed, end_of_chain, modes) is not None:
+                _store(found, followed, chain)
+            first = chain.points[-1] + 1
+            patience = 1
+
+
+def _chain(path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[int, int], modes: int) -> Chain:
+    """The longest chain of points found from the first to the last index in `ends`; without lines if no count
+    can be carried from the first point."""
+    here, last = ends
+    shortest = NO_CROSSING.arms - 1
+    chain = Chain([here], [])
+    counted = None
+    ahead = last - here
+    while last - here >= shortest:
+        there = min(here + ahead, last)
+        if last - there < shortest:
+            there = last
+        line = float(followed.lines[here : there + 1].min())
+        if counted is None or counted > line:
+            counted = _confirmed(path, found, followed, (here, line), modes)
+            if counted is None:
+                break
+        if _is_free(path, found, line, (here, there)):
+            chain.points.append(there)
+            chain.lines.append(line)
+            counted = line
+            here = there
+            ahead *= 2
+        elif there - here < 2 * shortest:
+            break
+        else:
+            ahead = (there - here) // 2
+    return chain
+
+
+def _confirmed(
+    path: Path, found: ArmInterval, followed: Eigenvalues, at: tuple[int, float], modes: int
+) -> float | None:
+    """`confirmed_line` at a point, for the line at most. at: (index of the point, real part of the line)."""
+    i, line = at
+    here = followed.w[i], followed.error[i]
+    return confirmed_line(path, found, float(found.p[i]), here, modes, line)
+
+
+def _is_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
+    """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
+    points = sampled_points(*ends)
+    known = found.track.w[points], found.track.error[points]
+    p = found.p[points]
+    rods = [path.rod_at(value) for value in p.tolist()]
+    return proves_no_crossing(line, rods, p, known, found.family, found.hulls)
+
+
+def _store(found: ArmInterval, followed: Eigenvalues, chain: Chain) -> None:
+    """Fills `found.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
+    line."""
+    for (first, last), line in zip(pairwise(chain.points), chain.lines, strict=True):
+        w = followed.w[first : last + 1]
+        clear = (np.abs(w.real - line) > 2 * followed.error[first : last + 1]).all(axis=1)
+        right = (w.real > line).sum(axis=1)
+        found.proved_modes[first : last + 1] = np.where(clear, right, found.proved_modes[first : last + 1])
