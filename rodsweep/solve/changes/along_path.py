@@ -127,7 +127,7 @@ def transitions(
         near = [(p + side * TRANSITIONS.anchor_distance * (high - low)) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
-        counts.doubts.append("the leading eigenvalue is not the pair that crosses the imaginary axis")
+        counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
     if certify and not tracer.proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _counted(counts, unstable, crossings, at_end)

@@ -73,8 +73,8 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class FollowedStretch:
-    """Spectra of the rods of a stretch. solved: for which rods, (n,); the other rods must be solved one by
-    one.
+    """Spectra of the rods of a stretch. solved: whether the spectrum of each rod is known, (n,); the
+    remaining rods must be solved one by one.
     """
 
     spectra: Spectrum
