@@ -25,7 +25,7 @@ class ChangeCountSettings:
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
     meets_crushing: float = 1e-12
     """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
-    of F and k1 they may differ by rounding alone."""
+    of F and k1 the two forces may differ by rounding alone."""
     places: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""

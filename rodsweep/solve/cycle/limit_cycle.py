@@ -194,7 +194,7 @@ def _from_hopf(
     """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
 
     straight: outcome to which the quantities of the cycle are added, or only a status and a message if no
-    cycle is found.
+    cycle is found. stability: stability of the straight rod, for the status if there is no Hopf point.
     """
     try:
         hopf = hopf_point_below(form.rod)
