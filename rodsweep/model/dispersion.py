@@ -8,6 +8,7 @@ The largest growth rate is used as a start of the search for eigenvalues of the 
 for the choice of the mesh. Both numbers are estimates only.
 """
 
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -90,6 +91,16 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
     largest = rates.max(axis=-1)
     wave = np.where(largest > 0, np.sqrt(top * K_FRACTIONS[rates.argmax(axis=-1)]), 0.0)
     return largest / (gamma2 * c3), wave
+
+
+def expected_growing(rod: Rod) -> float:
+    """Estimate of the number of unstable modes of an arm: the integral over the arm of the largest wave
+    number that grows by the local dispersion relation, divided by pi.
+
+    For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
+    """
+    _, weights, local = sampled(rod)
+    return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
 
 
 def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:

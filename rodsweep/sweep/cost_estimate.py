@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..discretization.elements.resolution import RESOLUTION, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import most_amplified_wave
+from ..model.dispersion import expected_growing, most_amplified_wave
 from ..model.rod import Rod
 from .points.points import Points
 from .points.stretches import Stretches
@@ -37,15 +37,19 @@ CERTIFICATE_MS = 0.15
 ARM_SPECTRUM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
 arms."""
+GROWING_MS = 0.08
+"""Time to find all unstable modes of an arm that is not uniform, divided by the squared number of these
+modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
+2.8 times as long."""
+MOST_FOLLOWED_GROWING = 9
+"""Unstable modes in addition to the requested modes up to which the eigenvalues of an arm are followed."""
 FIRST_POINT_COST = 2.0
 """Time of the first point of a stretch, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
 """Time per point of a stretch, in which eigenvalues are continued from a neighbouring point, in ms."""
-FOLLOWED_ARM_MS = 0.25
-
-"""Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 24
+FOLLOWED_ARM_MS = 0.15
+"""Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 30
 random arms."""
-
 SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
 four times as long."""
@@ -163,15 +167,17 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
-def estimate_followed(alone: Estimate, stretches: Stretches, standard: bool) -> Estimate:
-    """Estimated cost of spectra followed along stretches, from the cost `alone` of solving every point alone.
-
-    standard: whether all rods are uniform and of linear material.
+def estimate_followed(alone: Estimate, stretches: Stretches, points: Points, modes: int) -> Estimate:
+    """Estimated cost of the spectra of `points` followed along stretches. alone: cost of solving every point
+    alone. modes: number of eigenvalues.
     """
-    points = math.prod(stretches.shape)
-    share = FIRST_POINT_COST * stretches.count / points
-    each = FOLLOWED_MS if standard else FOLLOWED_ARM_MS
-    return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * each)
+    share = FIRST_POINT_COST * stretches.count / points.count
+    rods = [points.rod(int(index)) for index in sampled(points)]
+    each = FOLLOWED_ARM_MS if any(not rod.standard for rod in rods) else FOLLOWED_MS
+    growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
+    left_alone = np.where(growing > modes + MOST_FOLLOWED_GROWING, GROWING_MS * growing**2, 0.0)
+    each += float(left_alone.mean()) if rods else 0.0
+    return replace(alone, seconds=alone.seconds * min(1.0, share) + points.count * 1e-3 * each)
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
@@ -195,7 +201,8 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION.max_unknowns)
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
-    each += varied * ARM_SPECTRUM_MS
+    growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
+    each += varied * ARM_SPECTRUM_MS + GROWING_MS * growing**2
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION.max_unknowns).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)

@@ -137,7 +137,7 @@ class SpectrumTask(CertifiedTask):
         alone = estimate_spectra(self.points, options.modes, accuracy, self.config.certifies)
         if self.stretches is None:
             return alone
-        return estimate_followed(alone, self.stretches, self.config.standard)
+        return estimate_followed(alone, self.stretches, self.points, options.modes)
 
     def solver(self) -> Solver:
         from ..solve.spectrum.path.stretch import warm_up as warm_up_following

@@ -1,7 +1,6 @@
 """The transverse eigenvalue problem along a path of nonuniform arms, and the choice of the problem for any
 path."""
 
-import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -16,7 +15,7 @@ from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import Path
 from ....determinant.roots.newton import LocatedZero
-from ....model.dispersion import sampled
+from ....model.dispersion import expected_growing
 from ...spectrum.path.followed_arms import FollowedArms
 from ...spectrum.path.prediction import KnownRoots
 from ...spectrum.problem import ArmProblem
@@ -97,14 +96,8 @@ class ArmPath(PathProblem):
         return edges.tolist()
 
     def expected_growing(self, p: float) -> float:
-        """Estimate of the number of unstable modes at p: the integral over the arm of the largest wave number
-        that grows by the local dispersion relation, divided by pi.
-
-        For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
-        """
-        rod = self.path.rod_at(p)
-        _, weights, local = sampled(rod)
-        return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
+        """Estimate of the number of unstable modes at p."""
+        return expected_growing(self.path.rod_at(p))
 
     def followed(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
