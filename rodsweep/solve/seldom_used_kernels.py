@@ -52,7 +52,7 @@ def warm_up() -> None:
 
 
 def warm_up_arms() -> None:
-    """Solves spectra along a stretch of a sweep, thresholds and a cycle of arms that vary along their
+    """Solves spectra of neighbouring rods of a sweep, thresholds and a cycle, for arms that vary along their
     length."""
     path = Path(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)

@@ -24,7 +24,7 @@ def require_solvers() -> None:
 
     if numba.config.DISABLE_JIT:
         raise InputError(
-            "NUMBA_DISABLE_JIT is set: PETSc calls compiled formulas, which Python cannot replace; unset it"
+            "NUMBA_DISABLE_JIT is set; unset this variable, because PETSc calls only compiled formulas"
         )
     require_directory()
     add_debian_modules()

@@ -47,7 +47,7 @@ class Transitions:
     ended_early: bool = False
     """Whether the searched interval is shorter than the requested interval; the reason is in `why_not`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval that contains all possible further crossings; (nan, nan) if none are possible."""
+    """Smallest interval that contains all possible further crossings; (nan, nan) without such crossings."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
@@ -71,10 +71,7 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. reach: end of the search.
-
-    boxes: number of evaluations of the determinant D in the covering.
-    """
+    crossings. reach: end of the search. boxes: number of evaluations of the determinant D in the covering."""
 
     path: Path
     crossings: list[Crossing]
@@ -130,7 +127,7 @@ def transitions(
         near = [p + side * THRESHOLD_SETTINGS.anchor_shift * (high - low) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
-        counts.doubts.append("the leading eigenvalue is not the pair that crosses the imaginary axis")
+        counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
     if certify and not tracer.proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _counted(counts, unstable, crossings, at_end)
@@ -144,8 +141,8 @@ def pair_crossings(
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
     exchanges of the leading eigenvalue; takes half the time of `transitions`.
 
-    `proved` then means that the covering is complete and every count agrees. The search ends early, and
-    Unsolvable is raised, under the same conditions as in `transitions`.
+    `proved` then means that the covering is complete and every count agrees. certify, most: as in
+    `transitions`, as are the conditions under which the search ends early or raises Unsolvable.
     """
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
@@ -159,7 +156,8 @@ def pair_crossings(
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of counted thresholds. unstable, at_end: numbers of unstable modes at the two ends."""
+    """`Transitions` of the thresholds `crossings`, whose unstable modes are counted. counts: the gaps and
+    doubts of the search. unstable, at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
@@ -187,7 +185,8 @@ def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, 
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings between path variables `ends`, by the covering, for arms by counts; most: maximum number."""
+    """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, which
+    `certify` proves. most: number of crossings after which the search of a nonuniform arm ends."""
     if not isinstance(problem, ArmPath):
         return _covered(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -198,7 +197,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
 
 
 def _covered(path: Path, low: float, high: float) -> AxisCrossings:
-    """Crossings for path variables `low` to `high` by the covering; raises Unsolvable if no bound applies."""
+    """Crossings between the path variables `low` and `high`, by the covering; Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")

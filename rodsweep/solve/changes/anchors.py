@@ -13,11 +13,11 @@ class AnchorSettings:
     """Settings of the anchors of a path of rods and of the interpolation between two anchors."""
 
     min_known_modes: int = 4
-    """Minimum number of leading eigenvalues computed at a place of a path of arms (`arm.axis_modes`); at
-    least two more than the number of unstable modes are computed."""
+    """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
+    more than the number of unstable modes are computed."""
     place_accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues at a place of a path of arms, before the refinement by Newton's
-    method on D."""
+    """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
+    D."""
     explained: float = 0.25
     """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
     smaller end value, so that no zero is missed. The difference of the end values must agree, within this
@@ -48,8 +48,8 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def squared_pair_difference(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2 time^2, derivative of this product with respect to p) for the two leading eigenvalues
-        w1, w2; None if w1 is real and w2 is not."""
+        """Returns ((w1 - w2)^2 time^2, derivative of this product with respect to p) for the two leading
+        eigenvalues w1, w2; None if w1 is real and w2 is complex."""
         if self.oscillates:
             gap, slope = self._in_units_of_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
@@ -62,23 +62,23 @@ class Anchor:
         return gap**2, 2 * gap * slope
 
     def leading_growth_gap(self) -> tuple[float, float] | None:
-        """(Re(w1 - w) time, derivative of this product with respect to p). w1: leading eigenvalue. w: first
-        complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex; None if there is no such w
-        at this anchor."""
+        """Returns (Re(w1 - w) time, derivative of this product with respect to p). w1: leading eigenvalue. w:
+        first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex; None if there is no
+        such w at this anchor."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
                 return self._in_units_of_time((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
 
     def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
-        """(value time, derivative of this product with respect to p) for a quantity `value` with derivative
-        `slope`; the factor `time` preserves zeros and signs."""
+        """Returns (value time, derivative of this product with respect to p) for a quantity `value` with
+        derivative `slope`; the factor `time` preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
 def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
-    """(minimum on [0, 1], its argument) of the cubic with values `a`, `b` and slopes `slope_a`, `slope_b` at
-    0 and 1; the argument is 0.5 if the minimum is at an end."""
+    """Returns (minimum on [0, 1], argument of the minimum) for the cubic with values `a`, `b` and slopes
+    `slope_a`, `slope_b` at 0 and 1; the argument is 0.5 if the minimum is at an end."""
     # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
     square = 3 * (b - a) - 2 * slope_a - slope_b
     cube = slope_a + slope_b - 2 * (b - a)

@@ -66,8 +66,8 @@ LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
 
 class LeaderExchange(NamedTuple):
     """Exchange of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a
-    real eigenvalue and a pair with equal real parts. error: error of p. growth_rate, frequency: Re w of both
-    and Im w of the pair, in 1/tau2."""
+    real eigenvalue and a pair with equal real parts. error: error of p. growth_rate: the common real part.
+    frequency: Im w of the pair. All in 1/tau2, except for p and its error."""
 
     p: float
     error: float

@@ -34,12 +34,12 @@ class PathProblem(ABC):
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """(eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
+        """Returns (eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
 
     @abstractmethod
     def double(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue near w = x at a path variable within `reach` of p; nan if it is not
-        found."""
+        """The double real eigenvalue near w = x at a path variable within `reach` of p; its path variable is
+        nan if no double eigenvalue is found."""
 
     @abstractmethod
     def count(self, line: float, p: float) -> EigenvalueCount:
@@ -53,8 +53,8 @@ class PathProblem(ABC):
 
     @abstractmethod
     def relaxation(self, p: float) -> tuple[float, float]:
-        """(relaxation time of the rod at p, derivative of this time with respect to p); the time is smooth
-        in p."""
+        """Returns (relaxation time of the rod at p, derivative of this time with respect to p); the time is
+        smooth in p."""
 
 
 class UniformPath(PathProblem):

@@ -48,8 +48,8 @@ class ThresholdStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsRequest:
-    """Request for each rod. F_max: largest force, in k3/L^2. accuracy: relative accuracy of each threshold.
-    certify: whether the list must be proved complete."""
+    """Request of the task thresholds, the same for each rod. F_max: largest force, in k3/L^2. accuracy:
+    relative accuracy of each threshold. certify: whether the list must be proved complete."""
 
     F_max: float
     accuracy: float
@@ -88,7 +88,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
-    value at the end of the search."""
+    value at the end of the search. message: reason for a failure."""
     found = Transitions(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, transitions=found, end=end, message=message)
 

@@ -25,7 +25,7 @@ class UnstableModeCountSettings:
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
     meets_crushing: float = 1e-12
     """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
-    of F and k1 they may differ by rounding alone."""
+    of F and k1 the two forces may differ by rounding alone."""
     places: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
@@ -123,8 +123,8 @@ class ModeCounter:
         return -1
 
     def count_at_start(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
-        """Number of unstable modes at `start`, or, if that count is undecided, at a position before the first
-        crossing (`hopfs`), the first of `gaps` and `stop`; -1 if undecided."""
+        """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
+        crossings `hopfs`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, until)
@@ -134,8 +134,8 @@ class ModeCounter:
     ) -> tuple[tuple[Crossing, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
-        the end. ordered: thresholds by increasing parameter. unstable: number of unstable modes at the start.
-        Resets `doubts`.
+        the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
+        unstable: number of unstable modes at the start. Resets `doubts`.
         """
         self.doubts = []
         out: list[Crossing] = []

@@ -50,7 +50,7 @@ class BoundarySearch(Generic[Curve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
-    each seed point from the nearest curve so far, by index. missing_units: numbers of the units of work whose
+    each seed point from the nearest curve so far, by index. missing_items: numbers of the work items whose
     missing results stopped the search. open_seeds: indices of the seed points that lie on no curve so far and
     were not tried, without the seed point at which the search stopped.
     """
@@ -63,7 +63,7 @@ class BoundarySearch(Generic[Curve]):
 
     @property
     def boundaries(self) -> Boundaries[Curve]:
-        """All curves, with the agreement and the number of untraced seed points; valid if `missing_units` is
+        """All curves, with the agreement and the number of untraced seed points; valid if `missing_items` is
         empty."""
         found = [distance for distance in self.distances.values() if distance <= self.tolerance]
         return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))

@@ -126,13 +126,13 @@ def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
 
 def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:
     """The predictor at the orbit `found`, which was solved with its tangent. before: predictor at the
-    previous orbit, or None. name: the varied parameter. Raises ValueError if the orbit has no tangent.
+    previous orbit, or None; unused if its orbit has the same parameter value. name: the varied parameter.
+    Raises ValueError if the orbit has no tangent.
 
     A tangent is as inaccurate as the prediction of its orbit; the values of an orbit are far more accurate.
     With CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent or more earlier orbits, a second tangent
     makes the prediction worse. Between two meshes, the values of an orbit differ more than the tangent, so
-    only tangents are used after a change of mesh.
-    """
+    only tangents are used after a change of mesh."""
     orbit = found.orbit
     if found.matrix.tangent is None:
         raise ValueError("the orbit was solved without its tangent")

@@ -116,7 +116,7 @@ class _MarchedMotion:
         return Beam(self.rod, self.mesh)
 
     def _refined(self, settled: _SettledMotion) -> _SettledMotion:
-        """Continues the motion `settled` on a finer mesh, with a smaller tolerance, until settled again."""
+        """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)

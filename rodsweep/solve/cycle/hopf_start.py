@@ -33,7 +33,7 @@ from .transient.motion_mesh import coarse_mesh
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfStartSettings:
-    """Settings for the search for the Hopf point below a force, and for Newton's method from there."""
+    """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
 
     scan_step: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
@@ -42,7 +42,7 @@ class HopfStartSettings:
     because F nu (nu + F c2) must exceed the order of pi^2; nu: stretch, c2 = 1/k2."""
     hopf_tolerance: float = 1e-6
     """A Hopf point is accepted if |Re w| and |Im w - frequency| <= hopf_tolerance |w|; w: leading eigenvalue
-    at its force. Bisection ends at this relative width of the interval of the force."""
+    at this point. Bisection ends at this relative width of the interval of the force."""
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
     converged_growth: float = 4.0
@@ -87,7 +87,7 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
     """The leading eigenvalue of the straight rod, in 1/tau2 with Im >= 0; raises Unsolvable if the spectrum
     fails.
 
-    near: leading eigenvalue of a similar rod, which is followed to this rod.
+    near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search.
     """
     found = straight_rod(rod, None if near is None else np.array([near]), certify=False)
     if isnan(found.error):
@@ -96,8 +96,8 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
-    """The nearest Hopf point of the leading mode below the force of the rod; None if no Hopf point is found.
-    Raises Unsolvable."""
+    """The nearest Hopf point below the force of the rod at which the leading mode becomes unstable; None if
+    no such Hopf point is found. Raises Unsolvable."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START.min_force < F:

@@ -45,7 +45,7 @@ class MultiplierListSettings:
     """Settings for the list of stored Floquet multipliers of a cycle."""
 
     length: int = 6
-    """Number of multipliers per cycle in a result file."""
+    """Number of nontrivial Floquet multipliers per cycle in a result file."""
     min_modulus: float = 1e-6
     """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
     period."""
@@ -53,7 +53,9 @@ class MultiplierListSettings:
 
 MULTIPLIER_LIST_SETTINGS = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-"""Entry of the list for a missing multiplier, or a modulus below `MULTIPLIER_LIST_SETTINGS.min_modulus`."""
+
+"""Entry of the list for a missing multiplier, or for a multiplier whose modulus is less than
+`MULTIPLIER_LIST_SETTINGS.min_modulus`."""
 
 
 def solve_cycle(
@@ -158,7 +160,9 @@ def _with_chain_state(
     stability: StraightRod,
 ) -> Cycle:
     """The outcome `cycle` with the data of the solved cycle `found` from which the next rod of a chain
-    starts; unchanged outside a chain (`along` is None). before: data of the previous rod."""
+    starts; unchanged outside a chain (`along` is None). before: data of the previous rod, or None. along:
+    parameter that varies along the chain. accuracy: requested relative accuracy. stability: leading
+    eigenvalue of the straight rod."""
     if along is None:
         return cycle
     eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
@@ -166,8 +170,8 @@ def _with_chain_state(
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
-    """The outcome `cycle`, with the status `not_settled` instead of `straight` unless the spectrum proves the
-    straight rod stable."""
+    """The outcome `cycle`, with the status `not_settled` and a reason instead of the status `straight` unless
+    the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
     return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability)
@@ -191,7 +195,7 @@ def _from_hopf(
     """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
 
     straight: outcome to which the quantities of the cycle are added, or only a status and a message if no
-    cycle is found.
+    cycle is found. stability: stability of the straight rod, for the status if there is no Hopf point.
     """
     try:
         hopf = hopf_point_below(form.rod)
@@ -209,7 +213,7 @@ def _from_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
-    of the neighbour's cycle."""
+    of the neighbour's cycle; a quasiperiodic motion is recognised."""
     beam = transient.beam
     if request.tip is not None:
         start = equilibrium_at_tip(beam, *request.tip)

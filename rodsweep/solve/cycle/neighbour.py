@@ -45,7 +45,8 @@ class NextMeshSettings:
     """A mesh is sufficient for the next cycle if the error of the present cycle is at most this fraction of
     the accuracy."""
     max_new_mesh_cost: float = 0.8
-    """A sufficient mesh is replaced by a new mesh that costs at most this fraction of the sufficient mesh."""
+    """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
+    at most this."""
     max_new_mesh_cost_when_calibrated: float = 0.5
     """This limit replaces `max_new_mesh_cost` if the errors were measured at the present cycle: measuring the
     errors of a new mesh costs as much as three cycles."""
@@ -89,8 +90,8 @@ class Neighbour:
         return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
 
     def arrays(self) -> Arrays:
-        """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), places and orders (m,),
-        eigenvalues (n,), meshes, rod and calibration; N, m: as in `CyclePredictor`."""
+        """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
+        orders (m,), eigenvalues (n,), meshes, rod and calibration; N, m: as in `CyclePredictor`."""
         branch = self.predictor
         orbit = branch.orbit
         return {
@@ -125,7 +126,8 @@ def _next_mesh(
     found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
     """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
-    must be measured again at the next cycle. before: data of the previous rod."""
+    must be measured again at the next cycle. before: data of the previous rod, or None. name: varied
+    parameter. accuracy: requested relative accuracy."""
     present = mesh_of(found.orbit)
     known = found.calibration
     fits = found.errors.largest <= NEXT_MESH_SETTINGS.max_error_of_same_mesh * accuracy
@@ -141,7 +143,7 @@ def _next_mesh(
 
 def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
     """Largest cost of a new mesh divided by the cost of the present, sufficient mesh; 0 if the present mesh
-    remains in use."""
+    remains in use. before: data of the previous rod, or None. name: varied parameter."""
     if before is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEXT_MESH_SETTINGS.max_new_mesh_cost
@@ -158,7 +160,7 @@ def cycle_from_neighbour(
     """The cycle of a rod that differs from the neighbour's rod in the parameter `name` only; raises
     Unsolvable.
 
-    form: the rod, on any mesh. workspace: memory of Newton's matrices.
+    form: the rod, on any mesh. accuracy: requested relative accuracy. workspace: memory of Newton's matrices.
     """
     if form.rod.build != neighbour.predictor.orbit.form.rod.build:
         raise Unsolvable("the neighbouring rod has another constitutive law or another profile along the rod")
@@ -180,8 +182,8 @@ def cycle_from_neighbour(
 def _converged(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
-    """The cycle of the rod in `form` on the neighbour's `next_mesh`, with a matrix for tangent and
-    multipliers; raises Unsolvable."""
+    """The cycle of the rod in `form` on the neighbour's `next_mesh`, with a matrix for multipliers and for
+    the tangent along the parameter `name`; raises Unsolvable. accuracy: requested relative accuracy."""
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:

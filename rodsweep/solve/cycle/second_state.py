@@ -16,7 +16,8 @@ from .status import CycleStatus
 
 
 class SecondState(IntEnum):
-    """Second stable state of a rod, as far as known; the result file stores the value."""
+    """Second stable state of a rod, as far as known; the result file stores the value. straight: the straight
+    rod. cycle_possible: a cycle may exist, because a subcritical Hopf point is near."""
 
     not_known = -1
     none_known = 0

@@ -38,7 +38,7 @@ def stable_cycle_near_hopf(
     form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
     """The stable small cycle near a Hopf point to which the motion from the requested start converges; None
-    if no such cycle is found.
+    if no such cycle is found, or if the modulus of its largest nontrivial multiplier is close to 1.
 
     form: the discretized rod. w: leading eigenvalue of the straight rod. along: parameter along which the
     tangent of the cycle is computed, or None. workspace: memory of Newton's matrices.

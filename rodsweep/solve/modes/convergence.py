@@ -51,9 +51,10 @@ def vector_accuracy(accuracy: float) -> float:
 def converged_vectors(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> ModeVectors | None:
-    """Modes of `eigenvalues` at `points`, (n,), from the mesh with the smallest error estimate. wave: wave
-    number that the mesh must resolve. None if even the second mesh has more than
-    `ModeMeshSettings.max_unknowns` unknowns."""
+    """Modes of `eigenvalues`, (modes,), at `points` in [0, 1], (n,), from the mesh with the smallest error
+    estimate. wave: wave number that the mesh must resolve. accuracy: requested relative accuracy, at which
+    the refinement ends. None if even the second mesh has more than `ModeMeshSettings.max_unknowns`
+    unknowns."""
     mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
     gaps = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
@@ -81,8 +82,9 @@ def converged_vectors(
 
 
 def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
-    """The modes `fine` with their differences from the modes `coarse` as errors. gaps: distance from each
-    eigenvalue to the nearest other eigenvalue, (modes,)."""
+    """The modes `fine` with their differences from the modes `coarse` as errors; a rounding error is added to
+    the errors of the condition numbers. gaps: distance from each eigenvalue to the nearest other eigenvalue,
+    (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))
     for old, new in pairs:

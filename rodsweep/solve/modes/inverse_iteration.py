@@ -25,8 +25,8 @@ class ModeIterationSettings:
     iterations: int = 4
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
     conjugate: float = 1e-12
-    """An eigenvalue is the complex conjugate of its predecessor in the list if their relative distance is at
-    most this."""
+    """An eigenvalue w is the complex conjugate v* of its predecessor v in the list if |w - v*|/|w| is at most
+    this."""
 
 
 MODE_ITERATION = ModeIterationSettings()
@@ -54,7 +54,8 @@ class ModeVectors:
     an eigenvalue to the Gamma norm of a perturbation of the operator; inf where two eigenvalues merge. For
     gamma3 = 0 the state contains no theta, and the norm is the norm of y."""
     rounding: Array
-    """Rounding error of an eigenvalue of the mesh, from (A - w B) x, in 1/tau2, (modes,)."""
+    """Rounding errors of the eigenvalues w of the mesh, estimated from the rounding of (A - w B) x for the
+    right mode x, in 1/tau2, (modes,)."""
     mode_error: Array
     """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each divided by the largest value of the same field,
     (modes,)."""
@@ -106,8 +107,8 @@ def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVect
 
 
 def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
-    """Right and left eigenvectors, (unknowns, modes) each, with tip deflection 1, and the rounding error of
-    each eigenvalue, (modes,)."""
+    """Returns (right eigenvectors, left eigenvectors, rounding errors of `eigenvalues`), (unknowns, modes),
+    (unknowns, modes) and (modes,). The eigenvectors have the tip deflection 1."""
     A = form.A
     B = form.B
     m = len(eigenvalues)
@@ -127,8 +128,8 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
-    """Right and left null vector of A - w diag(B), (unknowns,) each, with largest entry 1; real for real
-    w."""
+    """Right and left null vector of A - w diag(B), (unknowns,) each, with largest entry 1; real for real w.
+    A: (unknowns, unknowns). B: (unknowns,)."""
     # The matrix is singular to rounding, but the error of the inverse lies along the null vector.
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
     return _iterated(inverse, B), _iterated(inverse.T, B)
@@ -136,7 +137,7 @@ def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
 
 def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
     """Null vector of a nearly singular matrix by inverse iteration, (unknowns,), with largest entry 1.
-    inverse: inverse of the matrix.
+    inverse: inverse of the matrix, (unknowns, unknowns). B: as in `null_vectors`.
 
     A larger growth in an iteration means a smaller residual of the result. At a double eigenvalue the inverse
     almost annihilates its last result, and the next iteration gives rounding errors: of the last two results,

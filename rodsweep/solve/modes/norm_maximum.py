@@ -93,8 +93,8 @@ def largest_norm(
 
 
 def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
-    """(|exp(L t)|^2, curvature bound c) at `times`, (times,) each, evaluated in batches to limit the
-    memory."""
+    """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, evaluated in batches to
+    limit the memory."""
     parts = [
         propagator.squares(part)
         for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.batch + 1)
@@ -104,15 +104,15 @@ def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
 
 def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
     """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at the `left` and `right` ends
-    and the curvature bound c (`bend`) at the left ends; all (intervals,)."""
+    and the curvature bound c (`bend`) at the left ends; all (intervals,). abscissa: as in `largest_norm`."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
 
 def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
-    """(|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by the
-    Illinois regula falsi; the better end if the signs of the derivative show no maximum between."""
+    """Returns (|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by
+    the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between."""
     at_low, rate_low = propagator.norm(low)
     at_high, rate_high = propagator.norm(high)
     if rate_low <= 0 or rate_high >= 0:

@@ -34,7 +34,7 @@ NUMERICAL_ABSCISSA_SETTINGS = NumericalAbscissaSettings()
 
 def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     """sup Re (xi, L xi)/(xi, xi) over the domain of the operator L, in 1/tau2: the largest growth rate at t =
-    0+.
+    0+, on the mesh of `pencil`.
 
     The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from above.
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and

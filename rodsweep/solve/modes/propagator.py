@@ -35,11 +35,12 @@ PROPAGATOR_SETTINGS = PropagatorSettings()
 
 
 def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
-    """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns with a time derivative, (n, n).
+    """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns with a time derivative, (n, n). A: (unknowns, unknowns).
+    B: diagonal matrix, as (unknowns,); 0 for an unknown without time derivative.
 
-    For shift = 0 this matrix is G, the inverse of L in coordinates with a Euclidean Gamma norm. G exists in
-    every limit; its zero eigenvalues are the infinite eigenvalues of L. For gamma3 = 0 state and norm contain
-    y alone.
+    For shift = 0 this matrix is G, the inverse of L in coordinates with a Euclidean Gamma norm. G exists for
+    every rod, also for c2 = 0 or gamma3 = 0; its zero eigenvalues are the infinite eigenvalues of L. For
+    gamma3 = 0 state and norm contain y alone.
     """
     moving = B > 0
     root = np.sqrt(B[moving])
@@ -95,13 +96,13 @@ class Propagator:
         return exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
 
     def norm(self, time: float) -> tuple[float, float]:
-        """(norm |exp(L t)|, derivative of its logarithm) at `time`."""
+        """Returns (norm |exp(L t)|, derivative of its logarithm) at `time`, in tau2."""
         # d|E|/dt = u . dE/dt v = |E| u . L u, with u the left singular vector.
         u, sizes, _ = np.linalg.svd(self.at(np.array([time]))[0])
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
     def squares(self, times: Array) -> tuple[Array, Array]:
-        """(N^2, c) at each of `times`, each of shape (times,).
+        """Returns (N^2, c), (times,) each, at each of `times`, in tau2.
 
         N = |exp(L t)|. c bounds a curvature: f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1.
         """
@@ -120,8 +121,8 @@ class Propagator:
 
 
 def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
-    """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w with eigenvectors
-    `vectors`; the first columns span the subspaces of the first eigenvalues."""
+    """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w, (k,), with eigenvectors
+    `vectors`, (n, k); the first columns span the subspaces of the first eigenvalues."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
     column = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
     return np.linalg.qr(columns[:, np.argsort(column)])[0]

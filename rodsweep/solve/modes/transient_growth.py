@@ -60,8 +60,8 @@ class Growth:
     """Largest growth sup_t |exp(L t)| in the Gamma norm. For an unstable rod `transient_growth` and
     `transient_time` are inf; if stability is undecided they are NaN."""
     transient_time: float = nan
-    """Time of the largest growth, in tau2; inaccurate if the maximum is flat. 0 if the growth exceeds 1 by at
-    most `growth_error`; the growth is then stated as 1."""
+    """Time of the largest growth, in tau2; inaccurate if the maximum is flat. 0 if no norm above 1 is found;
+    the growth, which exceeds 1 by at most `growth_error`, is then stated as 1."""
     growth_error: float = nan
     """Relative error of `transient_growth`."""
     numerical_abscissa: float = nan
@@ -88,8 +88,8 @@ UNKNOWN_GROWTH = Growth(growth_error=inf)
 
 
 def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> Growth:
-    """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. rate: modulus of the
-    leading eigenvalue.
+    """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. accuracy: requested
+    relative accuracy. rate: modulus of the leading eigenvalue, in 1/tau2.
 
     stable: whether the rod is stable, None if undecided. The growth is inf for an unstable rod, NaN if
     undecided.
@@ -140,7 +140,8 @@ def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
 
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
     """Largest growth from the propagator `fine`; the error is estimated with the propagator `coarse` of a
-    coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa."""
+    coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa. accuracy: requested relative
+    accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN or the mesh has an eigenvalue with Re w >= 0."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNKNOWN_GROWTH
     patience = log(1 / accuracy) + GROWTH_SETTINGS.truncation_margin
@@ -177,7 +178,8 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
-    relative amount by which a later norm may nevertheless exceed these values. first: earliest end.
+    relative amount by which a later norm may nevertheless exceed these values. first: earliest end, in tau2.
+    patience: the other modes are negligible once they are exp(-patience) times the leading modes.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every

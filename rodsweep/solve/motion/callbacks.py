@@ -45,7 +45,8 @@ _object_state = petsc_function("PetscObjectStateGet")
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
-    """PETSc's implicit function R = Udot - f(U), or R = Udot if `without_rate` is set in the context."""
+    """PETSc's implicit function R = Udot - f(U), or R = Udot if `without_rate` is set in the context. U,
+    Udot, R: handles of vectors. context: address of the context record."""
     c = record_at(context, CONTEXT)
     n = c.unknowns
     at = context + OUTPUTS
@@ -87,7 +88,7 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
 def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     ts: int, t: float, U: int, Udot: int, shift: float, A: int, B: int, context: int
 ) -> int:
-    """PETSc's matrix B = shift - J, with J = df/dU at the state selected by `matrix_due` in the context.
+    """PETSc's matrix B = shift I - J, with J = df/dU at the state selected by `matrix_due` in the context.
     PETSc keeps the LU factors of an unchanged B."""
     c = record_at(context, CONTEXT)
     n = c.unknowns
@@ -169,7 +170,8 @@ class Workspace:
         self._arrays["points"][:] = points_of(variant)
 
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
-        """Registers the callbacks in `ts`, whose options must already be set."""
+        """Registers the callbacks in `ts`, whose options must already be set. matrix: the matrix in which
+        PETSc stores the Jacobian of a stage."""
         context = self.context.ctypes.data
         B = matrix.handle
         snes = ts.getSNES()

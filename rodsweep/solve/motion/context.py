@@ -77,7 +77,8 @@ OUTPUTS, MATRIX_STATE = (CONTEXT_FIELDS[name][1] for name in ("outputs", "matrix
 """Offsets, in bytes, of the fields of `CONTEXT` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new matrix is due, or the state at which the new matrix must be evaluated."""
+"""Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the present
+iterate of Newton's method."""
 
 
 def arrays_of(beam: Beam) -> dict[str, Array]:

@@ -90,8 +90,8 @@ class _Bending:
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
         self.angles = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
-        """Matrix from Pi to theta, both at all nodes; at a jump of the material it uses the mean of both
-        values of Pi."""
+        """Matrix from Pi to theta, both at all nodes; at a jump of the material the mean of both values of Pi
+        is used."""
 
     def tip(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""
@@ -103,8 +103,8 @@ class _Bending:
         return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
     def placed(self, Pi: Array, force: Array, target: Array) -> tuple[Array, Array] | None:
-        """(curvatures Pi, (nodes + 1,); force, (2,)) for which the tip is at `target`, (2,), by Newton's
-        method from `Pi` and `force`; None if Newton's method fails."""
+        """Returns (Pi, force), (nodes + 1,) and (2,): the curvatures and the force for which the tip is at
+        the point `target`, (2,), by Newton's method from `Pi` and `force`; None if Newton's method fails."""
         size = len(Pi)
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
@@ -126,8 +126,8 @@ class _Bending:
         return None
 
     def _derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
-        """(d(x, y)/dPi, (2, nodes + 1); d^2(f . (x, y))/dPi^2, (nodes + 1, nodes + 1)) for the force f, by
-        quadrature."""
+        """Returns (d(x, y)/dPi, d^2(f . (x, y))/dPi^2), (2, nodes + 1) and (nodes + 1, nodes + 1), by
+        quadrature. (x, y): the tip. Pi: curvatures at all nodes, (nodes + 1,). force: f, (2,)."""
         A = self.angles
         w = self.mesh.quadrature
         c = np.cos(A @ Pi)

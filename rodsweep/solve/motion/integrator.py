@@ -62,7 +62,8 @@ RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance,
 
 
 class RunEnding(IntEnum):
-    """Reason why a run of the time integration ended."""
+    """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
+    `RunLimit.reached`. too_many_steps: `RunLimit.max_steps`."""
 
     reached = 0
     stopped = 1
@@ -147,7 +148,8 @@ class Integrator:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
         returned as a `RunEnding`, never raised.
 
-        step: the first time step, or every time step of a scheme with equal steps; 0 for the default.
+        step: the first time step, or every time step of a scheme with equal steps, in tau2; 0 for the
+        default.
         Tolerances are relative to the largest component of z, so that small and large motions are integrated
         with the same relative accuracy.
         """
@@ -221,8 +223,8 @@ def forget_integrators() -> None:
 
 
 def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
-    """The state, (unknowns,), a thousandth of `period` after the state z, when the fast components of z have
-    decayed.
+    """The state, (unknowns,), a thousandth of `period` after the state z, (unknowns,), when the fast
+    components of z have decayed.
 
     A scaled or interpolated state has rates of 1e10/tau2 in the components with the fast relaxation due to
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step

@@ -98,7 +98,7 @@ def begin_step(ts: int) -> int:
 @compiled
 def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float, out: Array) -> None:
     """Writes into `out`, (unknowns,), the value at time t of the Lagrange polynomial through `states[points]`
-    at `times[points]`."""
+    at `times[points]`. points: indices, (k,). times: (m,). states: (m, unknowns)."""
     out[:] = 0.0
     for i in points:
         weight = 1.0
@@ -112,7 +112,7 @@ def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float
 @compiled
 def predict(c: Any, guess: Array) -> None:
     """Writes the predicted stage at time `c.time` into `guess`, (unknowns,); `guess` is unchanged if no
-    extrapolation is possible."""
+    extrapolation is possible. c: context record (`CONTEXT`)."""
     if c.stages >= MAX_STAGES or not c.steps:
         return
     points = integers(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[c.stages]
@@ -129,7 +129,8 @@ def predict(c: Any, guess: Array) -> None:
 
 @compiled
 def store_stage(c: Any, stage: Array) -> None:
-    """Stores the solved `stage`, (unknowns,), and its time `c.time`, for later extrapolation."""
+    """Stores the solved `stage`, (unknowns,), and its time `c.time` in the context record `c`, for later
+    extrapolation; nothing is stored beyond MAX_STAGES stages."""
     if c.stages < MAX_STAGES:
         at = c.current * MAX_STAGES + c.stages
         times_of(c)[at] = c.time

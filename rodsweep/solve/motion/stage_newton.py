@@ -80,7 +80,7 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 @compiled
 def linearise_at_start(c: Any) -> None:
     """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
-    of the step.
+    of the step. c: context record (`CONTEXT`).
 
     The last matrix may belong to a diverged iterate and have entries that are not finite; with such a matrix
     all shorter steps would fail.
@@ -92,7 +92,8 @@ def linearise_at_start(c: Any) -> None:
 @compiled
 def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     """SNESConvergedReason after a Newton step of 2-norm `dx`. The error estimate is contraction * dx (Hairer
-    & Wanner II, IV.8).
+    & Wanner II, IV.8). Updates the contraction in the context record `c`, and requests a new matrix if the
+    contraction is slow or the stage has failed. iteration: counted from 1.
 
     The contraction is stored from stage to stage, so that after a good prediction a single iteration is
     enough. The contraction is measured from the second iteration on, and reset at each new step of a method
@@ -126,7 +127,9 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
 def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
     snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
 ) -> int:
-    """Stopping test for PETSc's Newton method, called after every iteration."""
+    """Stopping test for PETSc's Newton method, called after every iteration: writes the SNESConvergedReason
+    to the address `reason`. iteration: number of iterations made. dx, size: 2-norms of the Newton step and of
+    the residual."""
     c = record_at(context, CONTEXT)
     answer = numba.carray(pointer(reason), (1,), np.int32)
     answer[0] = ITERATING
@@ -141,7 +144,8 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
 @compiled
 def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores it in
-    the context `c`. at: address for outputs.
+    the context record `c`. at: address for outputs. snes: handle of the stage's solver. X: handle of a vector
+    with any value of x.
 
     In every time scheme the slope dx/dt is affine in x. The residual without f at any x and the shift, which
     PETSc passes with the matrix, therefore determine the equation.
@@ -181,8 +185,8 @@ def norm(x: Array) -> float:
 
 @compiled
 def newton_step(c: Any, at: int, X: int) -> float:
-    """Makes one Newton step from the stage X and writes the result to X; returns the 2-norm of the step. at:
-    address for outputs."""
+    """Makes one Newton step from the stage X and writes the result to X; returns the 2-norm of the step. c:
+    context record. at: address for outputs. X: handle of the stage's vector."""
     n = c.unknowns
     outputs = integers(at, 3)
     constant = floats(c.constant, n)

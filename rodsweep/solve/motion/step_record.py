@@ -43,7 +43,8 @@ CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 @compiled
 def store_step(c: Any, at: int, ts: int) -> int:
     """Stores time and state of `ts` as a row of the record, and returns PETSc's error code; ends the run if
-    h1 <= 0 at a node, where the model is not valid. at: address for outputs."""
+    h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT`). at: address for
+    outputs."""
     n = c.unknowns
     outputs = integers(at, 3)
     if c.stored == c.capacity:

@@ -41,8 +41,8 @@ class TipPath(NamedTuple):
     strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with respect to
     t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). coefficients: the `count` Fourier
     coefficients of (x, y, theta) of the tip, (count, 3). samples: (x, y, theta) at equidistant times of the
-    period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y, theta), (3,).
-    """
+    period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y,
+    theta), (3,)."""
 
     strains: Array
     coefficients: Complex

@@ -64,8 +64,8 @@ def tails_of(orbit: Orbit) -> Tails:
 @compiled_for_vectors
 def _decay(c: Array) -> float:
     """Decay of coefficients: minus the slope, per order, of the natural logarithm of their envelope, fitted
-    over the upper half of the orders and limited to `COEFFICIENT_TAIL_SETTINGS.min_decay` ... `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the
-    coefficients of orders 0 to p, (fields, p + 1)."""
+    over the upper half of the orders and limited to `COEFFICIENT_TAIL_SETTINGS.min_decay` ...
+    `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the coefficients of orders 0 to p, (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
     highest = COEFFICIENT_TAIL_SETTINGS.rounding
@@ -128,8 +128,8 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
 
 def smooth_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
-    smoothly along a branch, because the tail in space is the norm of `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients:
-    a single coefficient may vanish."""
+    smoothly along a branch, because the tail in space is the norm of
+    `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
         fields = _by_elements(orbit, orbit.points)

@@ -43,9 +43,8 @@ class ArmSolver(ShiftInvertSolver):
         return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was solved
-        last, (unknowns, k).
-        """
+        """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was
+        solved last, (unknowns, k)."""
         return fields_of_vectors(vectors, self.matrices.scale)
 
 

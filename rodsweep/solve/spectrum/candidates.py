@@ -123,7 +123,7 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
     """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with the
     eigenvalues found.
 
-    The line lies to the left of the leading `modes` and of all unstable eigenvalues.
+    The line lies to the left of the `modes` leading eigenvalues and of all unstable eigenvalues.
     """
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
@@ -155,14 +155,14 @@ def line_for_proof(last: complex, error: float) -> float:
 
 def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
     """Returns (number, clear). number: number of eigenvalues w to the right of `line`. clear: whether the
-    distance of each w from the line is more than twice its error."""
+    distance of each w from the line is more than twice its error. errors: absolute errors of w."""
     clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
     return sum(value.real > line for value in w), clear
 
 
 def lines_for_count(w: list[complex], modes: int) -> list[float]:
     """Real parts of up to `max_lines` vertical lines to the right of which eigenvalues are counted, best
-    first: middles of the widest gaps to the left of the leading `modes` and of all unstable eigenvalues.
+    first: middles of the widest gaps to the left of the `modes` leading and of all unstable eigenvalues.
 
     w: eigenvalues found, by descending real part. Gaps wider than `wide_gap` (unstable rod:
     `wide_gap_of_flutter`) are equally good; the rightmost comes first. The last line lies to the left of all

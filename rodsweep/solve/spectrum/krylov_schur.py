@@ -17,7 +17,8 @@ from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
 
 @compiled
 def _fill(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
-    """A = sum_i coefficients[i] terms[i] - diag(shift), written into the transpose of PETSc's array of A."""
+    """A = sum_i coefficients[i] terms[i] - diag(shift), written into `A`, the transpose of PETSc's array,
+    (n, n). coefficients: (m,). terms: matrices stored by columns, (m, n^2). shift: (n,)."""
     flat = A.reshape(-1)
     flat[:] = 0.0
     for i in range(len(coefficients)):
@@ -60,17 +61,18 @@ class UniformSolver(ShiftInvertSolver):
         return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, deflection_ratio)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
-        k)."""
+        """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
+        (unknowns, k)."""
         return fields_of_vectors(vectors, self.pencil.scale(rod))
 
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
-    """(equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
+    """Returns (equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
     deflection_ratio^2; y of `rod` = y of the equivalent rod * deflection_ratio.
 
     A partial beam (k2 = inf, gamma3 = 0) is equivalent to the filament under the force F nu, with times
-    scaled by nu^2. Near crushing the matrices of the beam are too badly scaled.
+    scaled by nu^2. Near crushing the matrices of the beam are too badly scaled. Another rod is returned
+    unchanged, with the ratio 1.
     """
     if rod.c2 == 0 and rod.rotational_drag == 0 and rod.nu != 1:
         return Rod(F=rod.F * rod.nu, k1=math.inf, k2=math.inf, gamma3=0.0), rod.nu

@@ -114,12 +114,13 @@ class UniformProblem(TransverseProblem):
         return resolution_for(expected_wave_number(modes, self._wave), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
-        """The mesh for the largest wave number of `waves`, (modes,), and finer than `mesh`."""
+        """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
+        least the next finer mesh after `mesh`."""
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
+        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`."""
         return roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
@@ -148,11 +149,12 @@ class ArmProblem(TransverseProblem):
         return arm_mesh(self.rod, modes, accuracy)
 
     def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
-        """The next finer mesh; the wave numbers `waves`, (modes,), are ignored."""
+        """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,)."""
+        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`; if a proof is
+        requested, only from the eigenvalues that the proof needs."""
         in_proof, largest = self._of_proof(raw)
         return roots_of_arm(
             np.where(in_proof, raw, np.inf), self._determinant, self._hull, most_waves, largest

@@ -29,7 +29,7 @@ class CheckedCandidates:
     candidates: Candidates
     comparison: CountComparison | None
     error_over_limit: float
-    """Largest ratio of an error to the allowed error; accepted if at most `SEARCH.max_error_over_limit`."""
+    """Largest ratio of an error to the allowed error; `SEARCH.max_error_over_limit` ends the search."""
 
     @property
     def sort_key(self) -> tuple[bool, float]:
@@ -84,7 +84,7 @@ class Search:
         self.disagreement: CountComparison | None = None
         """The comparison of the last count that disagrees with the eigenvalues found."""
         self.unresolved = False
-        """Whether on the last mesh neither the eigenvalues nor a count showed which eigenvalue leads."""
+        """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
         self.why = (
             f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns resolves the requested modes"
         )
@@ -111,8 +111,8 @@ class Search:
         return self.conclude()
 
     def judge(self, found: Candidates) -> CheckedCandidates | None:
-        """The candidates if no eigenvalue is missing; else None, after a finer mesh or more eigenvalues were
-        chosen for the next attempt."""
+        """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
+        more eigenvalues were chosen for the next attempt."""
         if len(found.roots.w) < self.modes:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failures += bool(found.failure)
@@ -165,15 +165,15 @@ class Search:
         self.request_more(more)
 
     def needs_beyond_axis(self, found: Candidates) -> bool:
-        """Whether eigenvalues with Re w <= 0 are needed in addition to `found`, for a count or for a list
-        without a proof."""
+        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed for a count or, up to
+        SEARCH.max_unproved_modes, for a list without a proof."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH.max_unproved_modes or self.problem.is_countable
 
     def request_beyond_axis(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
-        decaying modes.
+        decaying modes; refines the mesh if fewer eigenvalues were found than requested.
         """
         self.unresolved = True
         if number < self.requested:

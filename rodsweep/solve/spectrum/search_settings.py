@@ -15,8 +15,8 @@ class SearchSettings:
     """If all modes found grow and no count is possible, more modes are requested only while fewer than this
     number are found: each doubling takes several times as long, and nothing is proved in the end."""
     min_resolved_fraction: float = 0.5
-    """If the roots of D from a mesh are at least this fraction of the requested modes, but too few, the next
-    attempt requests more eigenvalues; with fewer roots the next attempt only refines the mesh."""
+    """If a mesh gives too few roots of D, but at least this fraction of the number of requested modes, the
+    next attempt requests more eigenvalues and refines the mesh; otherwise it only refines the mesh."""
     max_meshes: int = 16
     """Maximum number of attempts, each on one mesh. Only pulled rods with little rotational drag need most of
     these attempts."""

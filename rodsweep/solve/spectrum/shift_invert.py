@@ -164,19 +164,20 @@ class ShiftInvertSolver(ABC):
 
     @abstractmethod
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        """Fills PETSc's matrices A - shift B and B with the values for `rod`."""
+        """Fills PETSc's matrices A - shift B and B with the values for `rod`, and returns data of the pencil.
+        shift: in 1/tau2."""
 
     @abstractmethod
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
-        """(y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve, (unknowns,
-        k)."""
+        """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
+        (unknowns, k). rod: the rod that was solved."""
 
     def solve(self, rod: Rod, shift: float, requested: int, tight: bool = False) -> Complex:
         """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `requested` if
         enough eigenvalues converge.
 
-        tight: whether the eigenvalues converge to rounding error on the mesh, instead of the few digits that
-        Newton's method on D needs. Raises PETSc.Error.
+        shift: in 1/tau2. tight: whether the eigenvalues converge to rounding error on the mesh, instead of
+        the few digits that Newton's method on D needs. Raises PETSc.Error.
         """
         report()
         self.loaded = self.load(rod, shift)

@@ -51,8 +51,8 @@ NumberPerRod = Any
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """Leading transverse eigenvalues of one rod, or of n rods; for n rods every array has a first axis
-    (n,)."""
+    """Leading transverse eigenvalues of one rod, or of n rods; for n rods every array has an additional first
+    axis of length n."""
 
     status: NumberPerRod
     """A `SpectrumStatus`, or an array of n integer values of `SpectrumStatus`, (n,)."""

@@ -106,8 +106,8 @@ class _MeshEigenvalues(NamedTuple):
 
 
 def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
-    """Sorted eigenvalues of a mesh. The requested number is doubled until the leading `modes` no longer
-    change.
+    """Sorted eigenvalues of a mesh. The requested number is doubled until the `modes` leading eigenvalues no
+    longer change.
 
     The result is empty if the mesh is too coarse for a doubled request.
     """
@@ -139,9 +139,9 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
     coarser mesh.
 
-    scale: result of `_scale`. Two meshes may agree on one eigenvalue by chance. Each eigenvalue therefore
-    gets the largest relative difference among itself and its two neighbours. Near a double eigenvalue the
-    stated rounding errors are larger than elsewhere.
+    scale: result of `_scale`. Two meshes may agree on one eigenvalue by chance. The relative error of an
+    eigenvalue is therefore the largest of three differences: of the eigenvalue and of its two neighbours.
+    Near a double eigenvalue the stated rounding errors are larger than elsewhere.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)

@@ -1,7 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
 `changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a unit of work, independent of all other half curves.
+special point of a row. Each half curve is a work item, independent of all other half curves.
 """
 
 import math
@@ -39,7 +39,7 @@ class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
     line, rows: axes of the parameter along a row and of the row parameter. special: points of all rows. Half
-    curve (unit) 2 i leads from special point i to larger values of the row parameter, 2 i + 1 to smaller
+    curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1 to smaller
     values.
     """
 
@@ -77,7 +77,8 @@ class SpecialBoundaries:
     ) -> Arrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # A unit's number is twice the index of its special point, plus 1 for the half to smaller values.
+        # The number of an item is twice the index of its special point, plus 1 for the half to smaller
+        # values.
 
         index, behind = divmod(item, 2)
         one = self.special[index]

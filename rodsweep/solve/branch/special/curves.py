@@ -233,7 +233,7 @@ class SpecialCurveProblem:
         return self._family(other).correct(start, at_row, across, other.normal_derivatives)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
-        """Point of the curve between `one` and `other` at the row coordinate `place`; raises Unsolvable."""
+        """Point of the curve between `one` and `other` at the row coordinate `at_row`; raises Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
         share = (at_row - one.row_coordinate) / length if length else 0.0
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))

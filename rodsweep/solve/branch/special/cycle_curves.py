@@ -93,7 +93,7 @@ class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
     at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
-    place: row coordinate, from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
+    row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
     at: float

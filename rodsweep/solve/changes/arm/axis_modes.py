@@ -1,5 +1,5 @@
-"""Eigenvalues near the imaginary axis at selected arms of a path (places), and the test whether a pair may
-cross the axis twice between two places."""
+"""Eigenvalues near the imaginary axis of selected arms of a path, and the test whether a pair may cross the
+axis twice between two of these arms."""
 
 import math
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ from .path import ArmPath
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisModeSettings:
-    """Settings of the places of a search for crossings."""
+    """Settings of the eigenvalues that are computed for selected arms during a search for crossings."""
 
     many_modes: float = 16.0
-    """If more modes than this are expected to grow at a place, only the modes near the imaginary axis are
-    computed."""
+    """If a certificate is requested and more modes of an arm than this are expected to grow, only the modes
+    near the imaginary axis are computed."""
     max_known_modes: int = 200
-    """Maximum number of leading eigenvalues computed at a place."""
+    """Maximum number of leading eigenvalues computed for one arm."""
 
 
 AXIS_MODE_SETTINGS = AxisModeSettings()
@@ -30,8 +30,8 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 @dataclass(frozen=True)
 class AxisModes:
-    """The place at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the number of
-    unstable modes.
+    """Modes of the arm at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the
+    number of unstable modes.
 
     The eigenvalues are the leading eigenvalues, or the eigenvalues near the imaginary axis, one of each pair.
     """
@@ -42,9 +42,9 @@ class AxisModes:
     unstable: int
 
     def nearest_pair(self, growing: bool) -> tuple[float, float] | None:
-        """(distance from the imaginary axis, derivative of this distance with respect to p) of the pair
-        nearest to the axis, on its right if `growing`, otherwise on its left; None if no pair is known
-        there."""
+        """Returns (distance from the imaginary axis, derivative of this distance with respect to p) of the
+        pair nearest to the axis, among the growing pairs if `growing`, otherwise among the decaying pairs;
+        None if no such pair is known."""
         pairs = [i for i, w in enumerate(self.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
         if not pairs:
             return None
@@ -54,12 +54,13 @@ class AxisModes:
 
     @property
     def largest_modulus(self) -> float:
-        """Largest |w| at this place; 0 if no eigenvalues are known."""
+        """Largest modulus of the eigenvalues w; 0 if no eigenvalues are known."""
         return float(np.abs(self.w).max(initial=0.0))
 
 
 class AxisModesOfPath:
-    """The places of a path at which eigenvalues have been computed. known: the places, by path variable p."""
+    """The modes of the arms of a path, computed when needed. known: the modes computed so far, by path
+    variable p."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
@@ -72,7 +73,7 @@ class AxisModesOfPath:
         return self.certify and self.problem.expected_growing(p) > AXIS_MODE_SETTINGS.many_modes
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
-        """The place at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
+        """The modes at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
@@ -96,8 +97,8 @@ class AxisModesOfPath:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 
     def _modes_near_axis(self, p: float, beside: Complex | None) -> AxisModes | None:
-        """The place at p from a count and the modes near the imaginary axis; None if the count is undecided.
-        beside: approximations of these modes, if available."""
+        """The modes near the imaginary axis at path variable p, and a count of the unstable modes; None if
+        the count is undecided. beside: approximate eigenvalues of these modes, (n,), if available."""
         guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES) if beside is None else beside
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
         w = np.array([one[0] for one in refined], complex)
@@ -106,8 +107,8 @@ class AxisModesOfPath:
         return None if number is None else AxisModes(p, w, slopes, number)
 
     def _leading_modes(self, p: float, growing: int) -> AxisModes:
-        """The place at p from the leading modes, at least two more than the unstable modes. growing: expected
-        number of unstable modes."""
+        """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
+        if the count fails or too many modes grow. growing: expected number of unstable modes."""
         modes = max(ANCHOR_SETTINGS.min_known_modes, 2 + growing)
         found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHOR_SETTINGS.place_accuracy, self.certify))
         while modes < _needed_modes(found) <= AXIS_MODE_SETTINGS.max_known_modes:
@@ -131,14 +132,14 @@ class AxisModesOfPath:
 
 
 def _needed_modes(found: Spectrum) -> int:
-    """Number of modes to be computed: two more than the number of unstable modes counted or the number of
-    growing modes found, whichever is larger."""
+    """Number of modes to be computed: two more than the larger of two numbers, the counted unstable modes and
+    the growing modes found."""
     growing = int((found.eigenvalues.real > 0).sum())
     return 2 + max(found.unstable_count, growing)
 
 
 def next_count_position(left: AxisModes, right: AxisModes) -> float:
-    """Position of the next count as a fraction of the interval from `left` to `right`; 0 if no count is
+    """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
     needed, because no pair can touch the imaginary axis in the interval."""
     h = right.p - left.p
     for growing in (False, True):

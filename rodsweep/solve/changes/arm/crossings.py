@@ -1,8 +1,8 @@
 """Crossings of the imaginary axis along a path of arms. No covering proves that the list is complete.
 
-The unstable modes are counted at places along the path. Between two places whose counts differ by one pair,
-Newton's method on the determinant D finds the crossing. Between two places with equal counts, the slopes of
-the pairs nearest to the axis must exclude two crossings; otherwise a place is added between the two places.
+The unstable modes of selected arms of the path are counted. Between two arms whose counts differ by one pair,
+Newton's method on the determinant D finds the crossing. Between two arms with equal counts, the slopes of the
+pairs nearest to the axis must exclude two crossings; otherwise the modes of an arm between them are counted.
 """
 
 import math
@@ -27,10 +27,11 @@ class ArmCrossingSettings:
     exceeds `beyond_the_list` times the maximum number of crossings, unless the interval is shorter than
     `smallest_first` times the path."""
     most_at_once: int = 6
-    """Where many modes grow, all crossings between two places are searched at once if the counts differ by at
-    most this many pairs."""
+    """Where many modes grow, all crossings between two counted arms are searched at once if their counts
+    differ by at most this many pairs."""
     higher: float = 4.0
-    """Modes near the axis at a crossing are searched up to this multiple of the largest known |w|."""
+    """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest known
+    |w|."""
     same_errors: float = 10.0
     same_frequency: float = 1e-6
     """Two crossings are equal if their parameter values differ by less than `same_errors` times the sum of
@@ -99,8 +100,8 @@ class CrossingSearch:
         return self.places.has_many_modes(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
-        """Searches the interval (a, b): stores the crossings found, or divides the interval, or stores an
-        interval that is too short to be divided as a gap; raises Unsolvable."""
+        """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
+        the interval as a gap if it is too short to be divided; raises Unsolvable."""
         left = self.places.modes_at(a)
         right = self.places.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
@@ -155,8 +156,9 @@ class CrossingSearch:
         return [*parts, (start, right.p)]
 
     def _between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
-        """Crossings between two places, in increasing order of p, that explain the change of the number of
-        unstable modes; empty if a crossing is not found or the change is too large for one search."""
+        """Crossings between the arms with the modes `left` and `right`, in increasing order of p, that
+        explain the change of the number of unstable modes; empty if a crossing is not found or the change is
+        too large for one search."""
         change = (right.unstable - left.unstable) // 2
         many = self.places.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
@@ -179,8 +181,8 @@ class CrossingSearch:
         return []
 
     def _newton(self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
-        """The crossing of the imaginary axis by eigenvalue number i of the place `start`, by Newton's method
-        for p; None if Newton's method does not converge within `ends`.
+        """The crossing of the imaginary axis by the eigenvalue with index i in `start.w`, by Newton's method
+        for p; None if Newton's method does not converge within `ends`, or converges to another crossing.
 
         ends: allowed interval of p. grows: whether the growth rate of the pair increases with p.
         """

@@ -55,7 +55,8 @@ class Seed:
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
     """The seed of a threshold with values of both parameters; None for an overtaking (`leading_eigenvalue`),
-    because no boundary consists of overtakings. kind: value of `ChangeKind`."""
+    because no boundary consists of overtakings. kind: value of `ChangeKind`. frequency, growth_rate: Im and
+    Re of the eigenvalue, in 1/tau2."""
     if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (ChangeKind.onset, ChangeKind.real_again):
@@ -77,18 +78,18 @@ class _ChangeBoundaries:
         return left[0]
 
     def missing_items(self, seed: int) -> list[int]:
-        """No work items: a curve is traced in milliseconds, at once."""
+        """No work items for the threshold with index `seed`: its curve is traced at once, in milliseconds."""
         return []
 
     def curve(self, seed: int) -> BoundaryCurve | None:
-        """The curve through threshold number `seed`; None if it is not found."""
+        """The curve through the threshold with index `seed`; None if no curve is found."""
         one = self.seeds[seed]
         x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, one.values, strict=True))
         return trace(one.sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
-        """Distance of threshold number `seed` from `curve` along the first axis; inf if the curve has no
-        point near the threshold."""
+        """Distance of the threshold with index `seed` from `curve` along the first axis; inf if the curve has
+        no point near the threshold."""
         return _distance(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:

@@ -62,8 +62,8 @@ class BoundaryCurve:
 
 
 def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> BoundaryCurve | None:
-    """The boundary curve with `sign` through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no
-    point of a curve is found there.
+    """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
+    curve is found there. sign: as in `BoundaryCurve`.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
@@ -102,7 +102,7 @@ def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, Bo
                 fold = _fold(curve, passed[i], passed[i + 1], axis)
                 if fold is not None:
                     folds.append(fold)
-    # One by one: the rounding of NumPy's exp of an array depends on the place of an element in memory.
+    # One by one: the rounding of NumPy's exp of an array depends on the position of an element in memory.
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])

@@ -59,7 +59,8 @@ CRUSHED_MARGIN = 4
 
 
 class BoundaryEnd(IntEnum):
-    """Reasons for the end of a boundary curve."""
+    """Reasons for the end of a boundary curve. edge: edge of the plane. crushed: crushed rod. closed: the
+    curve returns to its first point. list_full: maximum number of points."""
 
     none = 0
     edge = 1
@@ -107,7 +108,8 @@ class ChangeCurveProblem:
         return there
 
     def margins(self, point: BoundaryPoint) -> Array:
-        """Distances of a point from the four edges of the plane, and 1 or, for a crushed rod, -1; (5,)."""
+        """Distances of a point from the four edges of the plane, and -1 for a crushed rod in the plane, else
+        1; (5,)."""
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may describe no rod.

@@ -83,7 +83,7 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
 
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
-    crushing force."""
+    crushing force; a row of crushed rods is not searched."""
     name = request.name
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
@@ -123,8 +123,9 @@ def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: st
 
 
 def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
-    """(class, number of unstable modes) at each value of the path's parameter, (values,) each, from the
-    thresholds `found`. Values beyond the end of a search that ended early are undecided."""
+    """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
+    the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
+    the open range, beyond the end of a search that ended early, and where the number is unknown."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)

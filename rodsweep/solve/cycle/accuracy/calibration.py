@@ -22,11 +22,11 @@ from .calibration_settings import CALIBRATION
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
 
 MULTIPLIER = 4
-"""Index of the error of the largest multiplier in the error arrays of a calibration; the smaller indices are
-the indices of `path_differences`."""
+"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
+indices are the indices of `path_differences`."""
 ERROR_COUNT = 5
 """Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
-largest multiplier."""
+largest nontrivial multiplier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Calibration:
     """Measured errors of a mesh at an orbit, with convergence rates.
 
     space, time: errors due to the elements and to the time intervals, (5,) each. The first four are relative,
-    as in `path_differences`; the last is the absolute error of the largest multiplier.
+    as in `path_differences`; the last is the absolute error of the largest nontrivial multiplier.
     """
 
     mesh: OrbitMesh
@@ -67,8 +67,8 @@ class Calibration:
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
     def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
-        """This calibration with the errors scaled to a later orbit of a chain; outdated if the orbit has
-        shrunk too much. change: relative change of the parameter since the previous orbit."""
+        """This calibration with the errors scaled to a later orbit of a chain; `reach` is inf if the orbit
+        has shrunk too much. change: relative change of the parameter since the previous orbit."""
         tails = _tails(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
@@ -100,8 +100,9 @@ class Calibration:
         return self.reach + change <= CALIBRATION.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Returns (errors in space, errors in time), (5,) each: lower limits of errors that are measured
-        again at `orbit` on the same mesh, a fraction of the present errors."""
+        """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
+        `orbit` on the same mesh. A limit is a fraction of an error of this calibration, and decreases with
+        the coefficient tails."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
             _change(self.tails, _tails(orbit)), 1.0
         )
@@ -109,7 +110,7 @@ class Calibration:
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
-        accuracy.
+        requested relative accuracy `accuracy`.
 
         For the multiplier and the other extrema, errors in space and in time are scaled by the larger of the
         two growth factors, because an error was once seen to grow 2.7 times as much as its tail. For period
@@ -153,7 +154,7 @@ class Calibration:
 
 def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
-    safety factors and lower limits."""
+    safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
     whole = CALIBRATION.safety_factor * (space + time)
     apart = space[WHOLE_PATH] + time[WHOLE_PATH]
     in_time = CALIBRATION.min_error_share_in_time * time[WHOLE_PATH]
@@ -195,7 +196,7 @@ def _growth(before: Array, after: Array) -> Array:
 
 def _change(before: Array, after: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
-    after: relative tails and size, (3,)."""
+    after: relative tails and size, (3,) each."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
     return change
 
@@ -205,8 +206,9 @@ def calibration_of(
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
 
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh, whose errors give the
-    rates; None if the rates are estimated from the coefficients of `orbit` and the number of stages.
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If its mesh has another
+    order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
+    in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
     """
     tails = _tails(orbit)
     if before is None:

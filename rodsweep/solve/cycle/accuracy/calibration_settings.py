@@ -61,8 +61,8 @@ class CalibrationSettings:
     fast."""
     min_repeated_share: float = 0.5
     """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled
-    with the tails. Near a change of sign, an error is small at one cycle, and as large as before three cycles
-    later."""
+    with the tails. Near a change of sign, an error is small at one cycle, and three cycles later as large as
+    before."""
     min_tail: float = 1e-15
     """Lower limit of the coefficient tails by which errors are scaled; smaller tails are rounding errors."""
 

@@ -33,11 +33,11 @@ class CoarserMeshSettings:
     max_fewer_orders: int = 4
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
     min_space_decay: float = 1.5
-    """The difference of the orders is chosen so that ln(error) in space is expected to decrease by at least
-    this number from the coarse mesh to the fine mesh. Where coefficients decay slowly, errors oscillate with
-    the order, and meshes of nearly the same order may agree by coincidence. With a difference of 2 orders, 16
-    of 112 errors of slender cones exceeded their estimates, by factors up to 2.2. With this decrease no error
-    exceeded 0.4 times its estimate."""
+    """The difference of the orders is chosen, up to `max_fewer_orders`, so that ln(error) in space is
+    expected to decrease by at least this number from the coarse mesh to the fine mesh. Where coefficients
+    decay slowly, errors oscillate with the order, and meshes of nearly the same order may agree by
+    coincidence. With a difference of 2 orders, 16 of 112 errors of slender cones exceeded their estimates, by
+    factors up to 2.2. With this decrease no error exceeded 0.4 times its estimate."""
     more_intervals: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
@@ -73,8 +73,8 @@ class CoarserMeshes:
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
-        """Whether the cycle on `mesh` can be predicted: with the elements and stages of the coarse mesh, an
-        order and a number of time intervals that are not too large."""
+        """Whether the cycle on `mesh` can be predicted: `mesh` has the elements and stages of the coarse
+        mesh, and its order and its number of time intervals are not too large."""
         near = (
             mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESHES.max_interval_ratio

@@ -1,5 +1,5 @@
 """Error estimates of a cycle: of the period, of the largest y and other extrema of the tip, and of the
-largest multiplier."""
+largest nontrivial Floquet multiplier."""
 
 from dataclasses import dataclass
 from math import nan
@@ -30,9 +30,9 @@ CYCLE_ERROR_SETTINGS = CycleErrorSettings()
 class CycleErrors:
     """Error estimates of a cycle.
 
-    period_error: relative, of the period. amplitude_error: relative, of the tip's largest y. extrema_error:
-    largest error of the tip's other extrema, divided by the largest y. multiplier_error: absolute, of the
-    largest nontrivial multiplier.
+    period_error, amplitude_error: relative errors of the period and of the tip's largest y. extrema_error:
+    largest error of the tip's other extrema, divided by the largest y. multiplier_error: absolute error of
+    the largest nontrivial multiplier.
     """
 
     period_error: float

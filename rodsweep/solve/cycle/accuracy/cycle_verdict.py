@@ -16,7 +16,7 @@ from .minimal_period import undecided_divisor
 
 @dataclass(frozen=True, eq=False)
 class RefinedCycle:
-    """A solved cycle with its measures, multipliers and errors.
+    """A solved cycle with its measures, Floquet multipliers and errors.
 
     converged: orbit and matrix. calibration: source of the errors. path: motion of the orbit over its period.
     multipliers: nontrivial multipliers, (rank - 1,), by descending modulus. trivial_error: distance of the
@@ -37,7 +37,7 @@ class RefinedCycle:
 
     @property
     def largest_multiplier(self) -> float:
-        """Largest modulus of the nontrivial multipliers."""
+        """Largest modulus of the nontrivial multipliers; 0 if there is no nontrivial multiplier."""
         return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
 
     @property
@@ -47,8 +47,8 @@ class RefinedCycle:
 
     @property
     def margin(self) -> float:
-        """Error of the largest multiplier's modulus; the stability is undecided if the modulus differs from 1
-        by this error or less."""
+        """Error of `largest_multiplier`; the stability is undecided if this modulus differs from 1 by this
+        error or less."""
         return max(self.trivial_error, self.errors.multiplier_error)
 
     @property
@@ -69,5 +69,5 @@ class RefinedCycle:
             shorter = f"the minimal period may be {self.divisor} times shorter"
             return CycleStatus.not_settled, shorter
         if self.stable is None:
-            return CycleStatus.not_settled, f"the cycle's largest multiplier is 1 within {self.margin:.0e}"
+            return CycleStatus.not_settled, f"the cycle's largest |multiplier| is 1 within {self.margin:.0e}"
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

@@ -53,8 +53,9 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     """Calibration of the mesh of the orbit `found`, with errors measured on two finer meshes; raises
     Unsolvable.
 
-    before: calibration at a nearby orbit, on any mesh, whose errors give the convergence rates; None if the
-    rates are estimated from the coefficients of the orbit and the number of stages.
+    accuracy: requested relative accuracy. before: calibration at a nearby orbit, on any mesh, for the
+    convergence rates (`calibration_of`) and lower limits of errors on the same mesh; None if the rates are
+    estimated from the coefficients of the orbit and the number of stages.
     """
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
@@ -83,7 +84,7 @@ class ComparedCycle:
         return multipliers_of(at_orbit(self._found, FINER_MESH_SETTINGS.matrix_distance))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
-        """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four of
-        `path_differences`, and the error of the largest multiplier."""
+        """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four
+        differences of `path_differences`, and `multiplier_change` of the nontrivial multipliers."""
         change = multiplier_change(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.path, fine.path), change)

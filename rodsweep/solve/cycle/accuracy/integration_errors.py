@@ -8,8 +8,8 @@ from .cycle_errors import CycleErrors
 
 
 def errors_of_pair(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
-    """Error estimates from the cycles `one` and `other` of two time integrations. share: relative distance of
-    a settled motion from the cycle, which is added to the error estimates."""
+    """Error estimates from the cycles `one` and `other` of two time integrations; NaN for the multiplier.
+    share: relative distance of a settled motion from the cycle, which is added to the error estimates."""
     a = one.extrema
     b = other.extrema
     size = abs(b["tip_y_max"])

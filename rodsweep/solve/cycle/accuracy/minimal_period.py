@@ -29,7 +29,7 @@ class MinimalPeriodSettings:
     number times the relative error of the extrema."""
     min_certain_harmonic: float = 1e-6
     """A harmonic is not certainly nonzero if its size divided by the size of the largest harmonic is at most
-    this: the error estimate is of the tip, and the bending strain may have a larger error."""
+    this: the error estimate applies to the tip, and the bending strain may have a larger error."""
 
 
 MINIMAL_PERIOD = MinimalPeriodSettings()

@@ -27,7 +27,7 @@ from .refinement_settings import REFINEMENT
 
 def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
-    scaled to this orbit."""
+    scaled to this orbit. accuracy: requested relative accuracy."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
@@ -41,8 +41,8 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
 
 
 def _multiplier_per_exponent(multipliers: Complex) -> float:
-    """Change of the largest multiplier mu per relative change of its exponent ln |mu|: |mu ln |mu||.
-    multipliers: (m,).
+    """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
+    |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
 
     The exponent has the relative error of the amplitude, even if the multiplier agrees on two meshes by
     coincidence.
@@ -134,8 +134,8 @@ def calibrated_cycle(
     """The solved orbit `found` as a cycle with measured errors, solved again on finer meshes if necessary;
     raises Unsolvable.
 
-    before: calibration at a nearby cycle, or None. parameter: parameter of the cycle's tangent, or None. The
-    most accurate cycle is returned if no allowed mesh reaches the accuracy.
+    before: calibration at a nearby cycle, or None. parameter: parameter along which the tangent of the cycle
+    is computed, or None. The most accurate cycle is returned if no allowed mesh reaches the accuracy.
     """
     best = None
     last = inf
@@ -158,8 +158,9 @@ def calibrated_cycle(
 
 def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None) -> ConvergedOrbit:
     """The orbit `found` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that its
-    multipliers are exact to rounding error; raises Unsolvable. parameter: of the tangent, or None."""
-    # `linearised` makes one more, quadratically convergent step, so half of the digits suffice here.
+    multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
+    parameter: parameter along which the tangent of the orbit is computed, or None."""
+    # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
     solution = newton(mesh.interpolate(found.orbit), last, found.workspace)
     return newton_step(require_similar_size(solution, found.orbit.size), parameter)
@@ -168,7 +169,7 @@ def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
     if not REFINEMENT.min_size_ratio * size < found.orbit.size < REFINEMENT.max_size_ratio * size:
-        raise Unsolvable("Newton's method converged to an orbit of a very different size than its start")
+        raise Unsolvable("the orbit found by Newton's method is far larger or smaller than its start")
     return found
 
 
@@ -177,8 +178,9 @@ def refined_cycle(
 ) -> RefinedCycle:
     """The cycle near an orbit, over its minimal period, to a relative accuracy; raises Unsolvable.
 
-    workspace: memory of Newton's matrices. parameter: parameter of the cycle's tangent, or None. If the
-    stability is undecided, the cycle is solved again for a hundredth of the accuracy.
+    workspace: memory of Newton's matrices. parameter: parameter along which the tangent of the cycle is
+    computed, or None. If the stability is undecided, the cycle is solved again for a hundredth of the
+    accuracy.
     """
     found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, MINIMAL_PERIOD.min_harmonic) > 1:

@@ -12,8 +12,8 @@ class RefinementSettings:
     min_newton_tolerance: float = 1e-13
     """Smallest relative tolerance of Newton's method for a cycle: some hundred rounding errors."""
     undecided_accuracy_divisor: float = 100.0
-    """A cycle whose largest multiplier is 1 within its error is solved again with the accuracy divided by
-    this."""
+    """A cycle whose largest nontrivial multiplier has modulus 1 within its error is solved again with the
+    accuracy divided by this."""
     matrix_distance_share: float = 3.0
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers, divided by
     the accuracy."""

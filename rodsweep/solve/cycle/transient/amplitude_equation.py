@@ -1,6 +1,6 @@
 """Amplitude equation of slow motions about the straight rod, which predicts the final amplitude of a motion.
 
-The logarithm of the amplitude a grows per period by g = g0 - c a^2, with the exact linear growth g0, so that
+The logarithm of the amplitude a grows per return by g = g0 - c a^2, with the exact linear growth g0, so that
 a cycle has the amplitude a* = sqrt(g0/c). The coefficient c is measured from a motion at amplitudes where c
 a^2 exceeds the error of the integrator. For a limiting rod, such as a rod with k1 = inf, a nearby rod is
 integrated; the measured growth is corrected by the difference of the two linear growth rates. A slowly
@@ -101,7 +101,7 @@ class AmplitudeEquation:
 
     def scale_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
-        factor if no amplitude is predicted.
+        factor if no amplitude is predicted. Measures c if its contribution exceeds the noise.
 
         None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
         times: (k,); states: (k, unknowns).

@@ -26,7 +26,8 @@ class MotionMeshSettings:
     min_order: int = 12
     """Smallest order of the coarse mesh."""
     coarse_accuracy: float = 1e-4
-    """Relative accuracy of the linear problem that the coarse mesh of an arm must reach."""
+    """Relative accuracy to which the coarse mesh of an arm resolves waves of the largest expected wave
+    number."""
     max_stiffness: float = 1e8
     """A larger dimensionless stiffness k1 or k2 is replaced by this value for the integration; the motion
     changes by 1e-6 or less."""

@@ -49,8 +49,8 @@ def tip_angle_row(beam: Beam) -> Array:
 
 
 def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
-    """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip. row:
-    `tip_angle_row` of the beam, (unknowns,)."""
+    """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
+    RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
     last = float(row @ z)
 
@@ -131,7 +131,8 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
 
 def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
-    distance. distance: relative distance between the last return and the return m earlier.
+    distance. distance: relative distance between the last return and the m-th return before it. (1, inf) if
+    the last moments are rounding errors.
 
     moments: bending moments at successive returns of the tip, (nodes,) each. Only bending moments are
     compared, because the interpolation between time steps has errors in the stiff components, 1e-2 at k1 =

@@ -45,8 +45,8 @@ class ShapeTrace:
         return self.steps >= SHAPE_TRACE_SETTINGS.max_steps
 
     def needs_more_motion(self, z: Array) -> bool:
-        """True until the record is complete, that is, the arm is at rest or the record is full. The motion is
-        integrated until then, even if the outcome is known. z: present state, (unknowns,)."""
+        """Whether the motion is integrated further even if its outcome is known: the arm is not at rest, and
+        the record is not full. z: present state, (unknowns,)."""
         return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
 
     def begin(self, z: Array, relaxed: Array, duration: float) -> None:
@@ -69,8 +69,8 @@ class ShapeTrace:
     def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
         """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest.
 
-        returns: times of the last returns of the tip. period: period of the leading mode, in tau2, used if
-        there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.
+        returns: times of the last returns of the tip, in tau2. period: period of the leading mode, in tau2,
+        used if there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.
         """
         from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 

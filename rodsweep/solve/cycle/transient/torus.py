@@ -41,8 +41,8 @@ class TorusTestSettings:
     """Fraction of the returns, counted from the start, that the test ignores, because the motion still
     approaches the torus."""
     max_angle_difference: float = 0.3
-    """Largest difference, in rad, between the angle per return on a torus and the angle of the cycle's
-    multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
+    """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
+    complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
     trials_per_width: int = 4
     """The spacing of the trial angles, before the best angle is refined, is 2/(trials_per_width k) rad for k
     returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
@@ -109,8 +109,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 
 
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
-    """Argument, in (0, pi), of the complex pair of multipliers outside the unit circle; None unless this pair
-    is the only instability of the cycle."""
+    """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
+    this pair is the only instability of the cycle."""
     outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
     if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.margin:
         return None

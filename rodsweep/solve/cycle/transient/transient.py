@@ -42,9 +42,9 @@ class Transient:
     """Integration of the motion of one rod from a start; `follow` is called only once.
 
     form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. along:
-    parameter of the cycle's tangent, or None. unstable: a nearby unstable cycle, or None. workspace: memory
-    of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...).
-    trace: record of the tip's path or of shapes, or None if not requested.
+    parameter along which the cycle's tangent is computed, or None. unstable: a nearby unstable cycle, or
+    None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a
+    limiting rod (k1 = inf, ...). trace: record of the tip's path or of shapes, or None if not requested.
     """
 
     def __init__(
@@ -137,7 +137,7 @@ class Transient:
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
-        times, states: at the returns, (k,) and (k, unknowns)."""
+        times, states: of the returns, (k,) and (k, unknowns)."""
         self.waited += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.field(states, "m3")
@@ -169,8 +169,8 @@ class Transient:
     def _rate_of_the_beam(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
 
-        rate: linear growth rate of the rod in `form`, returned if the integrated rod is the same rod.
-        Eigenvalues of the matrix of a stiff beam would have rounding errors of 1e-4.
+        rate: linear growth rate of the rod in `form`, returned if the integrated rod is the same rod or its
+        spectrum is not known. Eigenvalues of the matrix of a stiff beam would have rounding errors of 1e-4.
         """
         if self.beam.rod == self.form.rod:
             return rate
@@ -208,7 +208,7 @@ class Transient:
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
-        None."""
+        None. After too many failures of Newton's method near a periodic motion, sets `unsolved`."""
         turns, distance = repetition(
             [state for _, state in self.past][-1 - RETURN_SETTINGS.max_returns_per_period :]
         )
@@ -224,7 +224,7 @@ class Transient:
         return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
 
     def _newton_start_distance(self) -> float:
-        """Newton's method starts if the relative distance between two returns is less than this number."""
+        """The relative distance between two returns below which Newton's method starts."""
         distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
         settles = self.trace and self.waited < self.most_periods // 2
         return min(distance, TRANSIENT.stored_path_distance) if settles else distance

@@ -104,8 +104,9 @@ class ShootingIntervals:
 
 def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
     """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval if the norm
-    of P is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the present
-    shooting interval if the norm of the joined map is at most this number. mass: diagonal of M, (n,)."""
+    of P is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
+    present shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
+    (n,)."""
     blocks = factors.blocks
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])

@@ -57,7 +57,8 @@ class FollowedArms:
         return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
 
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """(dw/dp, error of w) of an eigenvalue w returned by `spectrum` at p; None for any other w."""
+        """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
+        w."""
         for one in self._judged.get(p, []):
             for k in np.flatnonzero(one.track.w[0] == w).tolist():
                 return complex(one.track.slope[0, k]), float(one.track.error[0, k])
@@ -115,8 +116,8 @@ class FollowedArms:
                 return
 
     def _from_nearest(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
-        """(track with the eigenvalues at p only, number of modes proved complete), followed from the point
-        nearest to p. one: an interval that contains p.
+        """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
+        point nearest to p. one: an interval that contains p. modes: number of leading modes to be proved.
 
         The track is None if following fails.
         """
@@ -145,8 +146,8 @@ class ProvedEigenvalues(NamedTuple):
     proved_modes: int
 
     def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:
-        """The leading `modes` eigenvalues if they were followed, are accurate and are proved complete; else
-        None."""
+        """The leading `modes` eigenvalues if they were followed, have the relative accuracy `accuracy` and
+        are proved complete; else None."""
         if self.track.w.shape[1] < modes:
             return None
         good, unstable = assess_points(self.track, np.array([self.proved_modes]), modes, accuracy)

@@ -38,7 +38,8 @@ class LeadingEigenvalue(NamedTuple):
 
 
 def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
-    """The leading eigenvalue of `rod`, followed from a neighbouring rod; None unless it is proved to lead.
+    """The leading eigenvalue of `rod`, followed from a neighbouring rod; None unless the eigenvalue is
+    accurate, real or complex as for the neighbouring rod, and proved to lead.
 
     near: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading eigenvalue first. For a
     uniform rod only the first eigenvalue is used; the proof for an arm that varies along its length needs
@@ -59,7 +60,7 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
 def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
     """The result of `follow_leading_eigenvalue` for a uniform rod of linear material.
 
-    near: leading eigenvalue of the neighbouring rod.
+    near: leading eigenvalue of the neighbouring rod. accuracy: largest relative error.
     """
     w = refine_eigenvalue(near, rod.coefficients)
     error, _, _ = root_error(w, rod.coefficients)
@@ -74,7 +75,8 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     """The result of `follow_leading_eigenvalue` for an arm that is not uniform; raises FloatingPointError if
     D needs too many elements.
 
-    near: eigenvalues of the neighbouring arm, (n,).
+    near: eigenvalues of the neighbouring arm, (n,), the leading eigenvalue first. accuracy: largest relative
+    error.
     """
     hull = hull_of(rod)
     if not isfinite(hull.a) or not np.isfinite(near).all():

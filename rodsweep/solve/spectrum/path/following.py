@@ -112,8 +112,8 @@ def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> 
 
 @compiled
 def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalue) -> bool:
-    """Writes eigenvalue k of point i to the track, and its conjugate to index `mate` unless `mate` is
-    negative.
+    """Writes the eigenvalue with index k of point i to the track, and its conjugate to index `mate` unless
+    `mate` is negative. last: the last Newton step of the eigenvalue.
 
     Returns False if a complex pair has become real. The error of eigenvalue k must already be in the track.
     """
@@ -135,11 +135,11 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
 def _iterate_to_convergence(
     first: CorrectedEigenvalue, crowding: float, exact: bool, rod: Coefficients, direction: Coefficients
 ) -> tuple[CorrectedEigenvalue, float]:
-    """(last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until `converged_error`
-    is finite.
+    """Returns (last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until
+    `converged_error` is finite.
 
-    first: result of the first step. crowding, exact: as in `converged_error`. The error is inf without
-    convergence.
+    first: result of the first step. crowding, exact: as in `converged_error`. rod: coefficients of the rod.
+    direction: d(F, nu, c2, gamma3)/dp. The error is inf without convergence.
     """
     here = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
@@ -152,7 +152,8 @@ def _iterate_to_convergence(
 
 @compiled
 def are_distinct_roots(w: Complex, error: Array) -> bool:
-    """Whether all eigenvalues w and errors, (m,), are finite and no two eigenvalues can be the same root."""
+    """Whether all eigenvalues w and their absolute errors `error`, (m,) each, are finite, and no two
+    eigenvalues can be the same root."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
@@ -166,8 +167,9 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
 def _correct_all(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
-    """Refines the guesses for all eigenvalues of point i, (m,), and writes the eigenvalues to the track.
-    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex.
+    """Refines the guesses `guess` for all eigenvalues of point i, (m,), and writes the eigenvalues to the
+    track; the `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
+    converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]

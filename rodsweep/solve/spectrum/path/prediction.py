@@ -87,8 +87,9 @@ def find_conjugates(w: Complex, mate: NDArray) -> None:
 
 @compiled
 def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
-    """Pairs real eigenvalues that are about to meet: writes the index of the partner of each into `mate`,
-    (m,), the earliest meeting first. step: change of p.
+    """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of the
+    partner of each paired eigenvalue into `mate`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change
+    of p.
     """
     while True:
         soonest = EIGENVALUE_PREDICTION.max_steps_to_meeting
@@ -127,8 +128,8 @@ def extrapolate_hermite(
 
 @compiled
 def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
-    """(half the sum of eigenvalues k and j, squared half difference, slope of the half sum, slope of the
-    squared half difference)."""
+    """Returns (half the sum of w[k] and w[j], squared half difference, slope of the half sum, slope of the
+    squared half difference). w, slope: eigenvalues and dw/dp, (m,)."""
     half = (w[k] - w[j]) / 2
     slope_of_half = (slope[k] - slope[j]) / 2
     middle = (w[k] + w[j]).real / 2

@@ -73,8 +73,8 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class FollowedStretch:
-    """Spectra of the rods of a stretch. solved: for which rods, (n,); the other rods must be solved one by
-    one.
+    """Spectra of the rods of a stretch. solved: whether the spectrum of each rod is known, (n,); the
+    remaining rods must be solved one by one.
     """
 
     spectra: Spectrum
@@ -126,7 +126,8 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
-    """Eigenvalues followed from rod `start` as far as possible, with counts; None if the first rod fails."""
+    """Eigenvalues followed from the rod with index `start` as far as possible, with counts; None if the first
+    rod fails, or for a uniform rod of nonlinear material, which is solved as an equivalent linear rod."""
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
     if rod.uniform and not (rod.standard or varies):
@@ -154,8 +155,8 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
 
-    complete: this number at the first point. If a proof does not carry the number to the next point, a new
-    count there is tried.
+    modes: number of requested eigenvalues. complete: number of eigenvalues proved complete at the first
+    point. If a proof does not carry the number to the next point, a new count there is tried.
     """
     n = len(track.w)
     coefficients = stretch.coefficients[:n]
@@ -178,8 +179,8 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
 
 
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """(eigenvalues to follow, (m,), without unpaired complex eigenvalues; number of eigenvalues proved
-    complete); None after a failure.
+    """Returns (eigenvalues, complete); None after a failure or without a proof. eigenvalues: eigenvalues to
+    follow, (m,), without unpaired complex eigenvalues. complete: number of eigenvalues proved complete.
     """
     try:
         modes = request.modes + SWEEP_STRETCH_SETTINGS.further_modes
