@@ -1,9 +1,9 @@
 """Rates d/du of the five minors along an element, one power of w at a time, and the start values of the
 minors.
 
-The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
+The equations are given in `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
 the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
-turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH).
+turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at the power w^0, else 0.
 """
 
 from ....arrays import Array
@@ -22,8 +22,8 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 
 @compiled_for_vectors
 def add_start_value(minor: int, start: float, values: Array) -> None:
-    """Adds the start value of a minor to `values`, (MINORS, STAGES, WIDTH), in the lanes of the solution with
-    start value 1 of this minor and 0 of all others.
+    """Adds `start` to the values, (MINORS, STAGES, WIDTH), of the minor with row index `minor`, in the lanes
+    of the solution whose start value is 1 for this minor and 0 for all other minors.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
@@ -32,8 +32,8 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`add_start_value` for theta^s or y^theta, (STAGES, WIDTH), from whose equation another minor is
-    eliminated.
+    """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
+    turning: as in the module docstring; its column 0 multiplies the start value.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
@@ -46,7 +46,7 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
     """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
     at the previous power of w.
 
-    values, rates: (MINORS, STAGES, WIDTH). W: unit of w.
+    values, rates: (MINORS, STAGES, WIDTH). local: coefficients, (6, STAGES, WIDTH). W: unit of w.
     """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
@@ -59,7 +59,9 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
 
 @compiled_for_vectors
 def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s, (STAGES, WIDTH), the terms with s^m and the start value of theta^m."""
+    """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
+    theta^m.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
@@ -78,7 +80,9 @@ def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m and s^m."""
+    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
+    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             turn = values[TM, i, c]

@@ -72,8 +72,8 @@ NO_BOUND = Hull(inf, 0.0)
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """Returns (distance, normal) for w with Im w >= 0. distance: lower bound of the distance of w from the
-    hull, at most 0 if w lies inside. normal: unit vector towards w.
+    """Returns (distance, normal) for w with Im w >= 0 and the hull with the constants a, c. distance: lower
+    bound of the distance of w from the hull, at most 0 if w lies inside. normal: unit vector towards w.
 
     <normal, w - v> >= distance for every v in the hull.
     """
