@@ -90,9 +90,12 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
-    """The smallest number of elements, and then the lowest order, that resolve a wave to a relative accuracy.
+    """The smallest number of elements, and then the lowest order (plus one for several elements), that
+    resolve a wave to the relative accuracy `accuracy`.
 
-    wave_number: in 1/L. largest_order: maximum order of an element; default `RESOLUTION_SETTINGS.max_order`.
+    If this takes more than `RESOLUTION.max_unknowns` unknowns, the result is a mesh with too many unknowns
+    that need not resolve the wave. wave_number: in 1/L. largest_order: maximum order of an element,
+    `RESOLUTION.max_order` by default.
     """
     largest_order = largest_order or RESOLUTION_SETTINGS.max_order
     max_elements = RESOLUTION_SETTINGS.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway
