@@ -123,7 +123,9 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
 
 
 def _other_plane(planes: Planes, verb: str) -> list[str]:
-    """Sentence on flutter in the second plane of a rectangular section; an empty list for other sections."""
+    """List of one sentence on flutter in the second plane of a rectangular section; empty for other sections.
+    verb: "is" or "would be".
+    """
     second = planes.second
     if second is None:
         return []
