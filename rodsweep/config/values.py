@@ -130,7 +130,8 @@ class Axis(StrictSection):
     factor: Annotated[float, Field(exclude=True)] = 1.0
     """Factor by which all values of a range are multiplied, such as F divided by the pressure in Pa."""
     written: Annotated[Any, Field(exclude=True)] = None
-    """The values as the user wrote them, for values with units; otherwise None."""
+    """The values of an arm's quantity as the user wrote them, with or without units; None for all other
+    axes."""
 
     @property
     def size(self) -> int:

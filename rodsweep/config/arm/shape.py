@@ -37,7 +37,9 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
 
 
 def with_length(given: dict[str, Any]) -> dict[str, Any]:
-    """Keys and values of an arm; if `length` is missing, the sum of the segment lengths is added."""
+    """The keys and values `given` of an arm; if segments are given without `length`, their total length is
+    added.
+    """
     if given.get("segments") is None or given.get("length") is not None:
         return given
     texts = as_segments(given["segments"]) or ()
@@ -47,7 +49,8 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Constitutive law of all arms, with the profile of the first arm to which the rod model applies.
+    """Constitutive law of all arms, with the profile of the first arm to which the rod model applies; without
+    a profile if there is no such arm.
 
     Raises ValueError if the arms of a grid of parameters have different profiles.
     """

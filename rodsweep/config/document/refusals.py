@@ -131,7 +131,9 @@ def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 
 def dotted(location: Sequence[str]) -> str:
-    """Full name of a key, like "parameters.F.num", from the names of its sections and its own name."""
+    """Full name of a key, like "parameters.F.num", from the names of its sections and its own name; shortened
+    to MAX_KEY_LENGTH characters. location: these names.
+    """
     return printable_name(".".join(location), MAX_KEY_LENGTH)
 
 
