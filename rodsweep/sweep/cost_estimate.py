@@ -209,7 +209,9 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
 
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
-    """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes."""
+    """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes to the relative
+    accuracy `accuracy`.
+    """
     if not rod.standard:
         return arm_mesh(rod, modes, accuracy).unknowns
     _, wave = most_amplified_wave(rod)

@@ -65,7 +65,7 @@ class Pace:
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
-        includes the wait since the latest record.
+        includes the wait since the latest record. Parameters as in `remaining`.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
         None if their sum is below MIN_BEGUN.

@@ -109,8 +109,8 @@ class Stretches:
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
     """Stretches of a grid along the first of its longest usable axes; None if every usable axis is too short.
 
-    moved: the only parameter that varies along each axis; "" for an axis of several parameters, which is not
-    usable.
+    shape: shape of the grid. moved: the only parameter that varies along each axis; "" for an axis of several
+    parameters, which is not usable.
     """
     able = [axis for axis, name in enumerate(moved) if name]
     axis = max(able, key=lambda i: shape[i], default=None)
