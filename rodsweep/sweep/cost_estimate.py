@@ -190,8 +190,9 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
-    """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep. modes:
-    number of eigenvalues. accuracy: relative accuracy. certify: whether spectra are certified.
+    """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
+    none of these points has a rod. modes: number of eigenvalues. accuracy: relative accuracy. certify:
+    whether spectra are certified.
     """
     rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]

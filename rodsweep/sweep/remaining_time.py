@@ -79,7 +79,7 @@ class Pace:
 
 
 def in_words(seconds: float) -> str:
-    """Text of a duration with two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
+    """Text of a duration with at most two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"

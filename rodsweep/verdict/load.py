@@ -18,7 +18,9 @@ four digits."""
 
 
 def three_digits(value: float) -> str:
-    """`value` as text with three significant digits; with an exponent only from a million on."""
+    """`value` as text with three significant digits; with an exponent only from a million on and below
+    1e-4.
+    """
     short = float(f"{value:.3g}")
     return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
 

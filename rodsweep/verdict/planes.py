@@ -44,7 +44,9 @@ class Planes:
 
     @property
     def always_first(self) -> bool:
-        """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`."""
+        """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`; True
+        without a second plane.
+        """
         if self.second is None:
             return True
         loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)

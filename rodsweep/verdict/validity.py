@@ -97,8 +97,8 @@ def first_flutter_of(found: FlutterRange) -> Crossing | None:
 
 
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
-    """Neglected effects at the first flutter in `found`. Inertia and compression are NaN if the arm does not
-    flutter.
+    """Neglected effects at the first flutter in `found`. Inertia, compression and Reynolds number are NaN if
+    the arm does not flutter.
     """
     first = first_flutter_of(found)
     if first is None:

@@ -75,8 +75,8 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
-    """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius is
-    given.
+    """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius or no
+    base radius is given.
     """
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}

@@ -155,7 +155,9 @@ def model_of(field: FieldInfo) -> Any:
 
 
 def allowed_values_text(field: FieldInfo) -> str:
-    """Phrase that describes the allowed values of a config key, from its type and bounds."""
+    """Phrase that describes the allowed values of a config key: its description, otherwise made from its type
+    and bounds.
+    """
     kind = field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")
     bound = {name: getattr(part, name) for part in field.metadata for name in bounds if hasattr(part, name)}

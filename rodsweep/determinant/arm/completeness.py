@@ -86,8 +86,8 @@ def prove_complete(
 ) -> tuple[bool, int]:
     """Returns (whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
-    line: if positive, nothing is proved. known, error: known eigenvalues and their absolute errors, (n,)
-    each. Complex eigenvalues without their conjugate in `known` are treated as unknown.
+    line: if positive, or if no hull exists, nothing is proved. known, error: known eigenvalues and their
+    absolute errors, (n,) each. Complex eigenvalues without their conjugate in `known` are treated as unknown.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0

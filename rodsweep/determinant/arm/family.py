@@ -53,7 +53,7 @@ class ArmFamilySettings(CompiledSettings):
         return 2 * self.converged_tail
 
     def trials(self) -> list[tuple[int, float]]:
-        """(number of arms, scale over the length of the interval) of each trial, in order."""
+        """Pairs (number of arms, scale over the length of the interval) of all trials, in order."""
         return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 

@@ -86,7 +86,7 @@ def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> 
 
 
 def _is_in_eigenvalue_box(w: complex, hull: Hull) -> bool:
-    """Whether w lies in the box that contains all eigenvalues with real parts >= Re w."""
+    """Whether w is finite and lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False
     real, imag = hull.box(max(-w.real, 0.0))

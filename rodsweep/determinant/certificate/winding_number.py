@@ -154,8 +154,8 @@ def contour_phase_change(
 ) -> tuple[float, int]:
     """Returns (change of arg D along the upper half of the box, number of nodes and discs).
 
-    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`. If
-    the change could not be proved, the change is 0 and the number negative.
+    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`.
+    The number is negative, and the returned change meaningless, if the change could not be proved.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)

@@ -78,7 +78,7 @@ class SlenderArm:
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
     def text_of(self, name: str) -> str:
-        """Name and value of a quantity as the user wrote them, like "length = '10 cm'", for messages."""
+        """Name and value of the quantity `name` for messages, like "length = '10 cm'", see `quoted`."""
         return quoted(name, getattr(self, name))
 
     @cached_property

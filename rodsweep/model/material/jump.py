@@ -60,7 +60,7 @@ def _allowed(at: LocalSection, q1: float, step: float) -> float:
     """Largest fraction, up to 1, of a step of q1 after which h1 >= LEAST_STRETCH_KEPT times h1 before the
     step.
 
-    at, q1: section and unknown before the step.
+    at, q1: section and unknown before the step. step: change of q1.
     """
     h = at.nu + at.c1 * q1
     change = at.c1 * step

@@ -107,7 +107,8 @@ class Stretches:
 
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """Stretches of a grid along the first of its longest usable axes; None if every usable axis is too short.
+    """Stretches of a grid along the first of its longest usable axes; None if no usable axis has
+    SHORTEST_AXIS values.
 
     shape: shape of the grid. moved: the only parameter that varies along each axis; "" for an axis of several
     parameters, which is not usable.

@@ -60,7 +60,7 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
 @compiled_for_vectors
 def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
     """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
-    theta^m.
+    theta^m. local, values: see the module docstring.
     """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
@@ -72,7 +72,9 @@ def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates
 
 @compiled_for_vectors
 def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH)."""
+    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). local, values: see the module
+    docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
@@ -81,7 +83,8 @@ def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
 @compiled_for_vectors
 def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
     """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
-    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted.
+    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted. local, values:
+    see the module docstring.
     """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
@@ -96,7 +99,9 @@ def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, ra
 
 @compiled_for_vectors
 def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH)."""
+    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). local, values: see the
+    module docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
@@ -104,7 +109,9 @@ def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. local, values: see the module
+    docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]
