@@ -42,7 +42,8 @@ GROWING_MS = 0.08
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
 2.8 times as long."""
 MOST_FOLLOWED_GROWING = 9
-"""Unstable modes in addition to the requested modes up to which the eigenvalues of an arm are followed."""
+"""Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
+modes by at most this number."""
 FIRST_POINT_COST = 2.0
 """Time of the first point of a stretch, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
