@@ -128,7 +128,7 @@ def _first_up_to(path: Path, end: float) -> float:
     if any(min(box.p_from, box.p_to) < first for box in left):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
-            "may lie below the first Hopf point found"
+            "may lie below the first Hopf point found; give an absolute load"
         )
     return first
 
@@ -152,7 +152,8 @@ def _first_of_varied(path: Path, end: float) -> float:
     )
     if not found.proved or (found.ended_early and first == inf):
         raise FlutterSearchFailed(
-            "the flutter threshold to which a relative load refers is uncertain: a Hopf point may be missing"
+            "the flutter threshold to which a relative load refers is uncertain, because a Hopf point may be "
+            "missing; give an absolute load"
         )
     return first
 

@@ -25,11 +25,11 @@ class _Pieces(NamedTuple):
     """Matrices and weights of a mesh of elements of order p, from which `_pencil_of_coefficients` computes
     the pencil of an arm.
 
-    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value, (p + 1, p +
-    1). constant: entries of the first two blocks, which are the same for every arm, (n,). bending, weight:
-    Gauss weights divided by, and multiplied by, half the length of each element, (elements, p). lumped: mass
-    of the nodes, (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows,
-    columns: (nnz,).
+    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
+    (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
+    bending, weight: Gauss weights divided by, and multiplied by, half the length of each element,
+    (elements, p). lumped: mass of the nodes, (elements, p + 1). where: index in the pattern of each entry of
+    all blocks, (m,). rows, columns: row and column of each entry of the pattern, (nnz,).
     """
 
     value: Array

@@ -127,8 +127,8 @@ def finite_eigenvalues(rod: Rod, nodes: int) -> int:
 
 
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-    """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included, (nodes +
-    1, k) each.
+    """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
+    (nodes + 1, k) each.
 
     scale: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2, nodes).
     """

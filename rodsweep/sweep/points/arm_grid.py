@@ -155,10 +155,12 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
     if no_flutter:
         raise ValueError(
             f"parameters.arm.{section.load} is relative to flutter, but with the likeliest drag no arm "
-            "flutters"
+            "flutters; give an absolute load"
         )
     k1 = float(beside["k1"][0])
-    raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")
+    raise ValueError(
+        f"parameters.k1 is {k1:.15g} and every F is above, where the rod is crushed; F must start below k1"
+    )
 
 
 def _along(dimension: int, values: Any) -> Array:

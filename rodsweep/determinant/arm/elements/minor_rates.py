@@ -33,7 +33,7 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
     """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
-    turning: as in the module docstring; its column 0 multiplies the start value.
+    values: (MINORS, STAGES, WIDTH). turning: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
