@@ -73,8 +73,8 @@ def mesh_accuracy(accuracy: float, vectors: bool) -> float:
     """Relative accuracy that the eigenvalues of a mesh need for results of relative accuracy `accuracy`.
 
     vectors: whether eigenvectors are needed. The error of an eigenvector on a mesh is the square root of the
-    error of its eigenvalue. Without eigenvectors a coarse mesh suffices, because the eigenvalues are refined
-    to roots of D.
+    error of its eigenvalue. Without eigenvectors a mesh of the accuracy `RESOLUTION.start_accuracy` suffices,
+    because the eigenvalues are refined to roots of D.
     """
     return accuracy**2 if vectors else RESOLUTION_SETTINGS.start_accuracy
 

@@ -88,8 +88,8 @@ def number_in_si(name: str, given: Given | None) -> float:
 
 
 def quoted(name: str, given: Given) -> str:
-    """Name and value of the quantity `name` in UNITS for messages: a text as the user wrote it, like "length
-    = '10 cm'", or a number with its SI unit.
+    """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
+    user wrote it, a number with its SI unit.
     """
     if isinstance(given, str):
         return f"{name} = '{given}'"
