@@ -138,7 +138,9 @@ def dotted(location: Sequence[str]) -> str:
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
-    """Class of the config's section that is reached through the keys in `location`."""
+    """Class of the config's section that is reached through the keys in `location`; the last section on the
+    way if a key is not a section.
+    """
     section: type[BaseModel] = config
     for name in location:
         kind = model_of(section.model_fields[name])

@@ -127,8 +127,8 @@ def _fill(
     window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
-    """Writes the two regions (a, c) of a trial (F, f, h) into `regions`. In the first region (t - alpha) nu
-    is bounded by theta(0) = 0, in the second by the rotational drag.
+    """Writes the two regions (a, c) of a trial (F, f, h) into `regions`, (2, 2). In the first region (t -
+    alpha) nu is bounded by theta(0) = 0, in the second by the rotational drag.
 
     u: points of the arm, (points,). local: `LocalCoefficients` at u, (6, points). window: positions of u - h
     and of u + h in u.
