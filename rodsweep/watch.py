@@ -99,8 +99,8 @@ def _in_whole(make_position: MakePosition, outside: int) -> SolvePosition:
     """Position within the whole solve that a listener observes; a position without text is returned
     unchanged.
 
-    place: function that returns the position within the innermost part. outside: number of parts that enclose
-    the listener's `with` block.
+    make_position: function that returns the position within the innermost part. outside: number of parts that
+    enclose the listener's `with` block.
     """
     position = make_position()
     if not position.words:

@@ -137,9 +137,9 @@ class UnitChooser(Protocol):
 
 
 class DependentItemQueue(ChunkQueue):
-    """`ChunkQueue` whose units depend on the results of solved units, one unit in a chunk.
+    """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk.
 
-    work: chooses the next units from the results. results: results of solved units, by number of the unit; at
+    work: chooses the next items from the results. results: results of solved items, by number of the item; at
     first from an earlier run, later also from the reports. ranks: number of ranks.
     """
 

@@ -22,7 +22,7 @@ Indices = int | NDArray[np.int64]
 
 
 class UnitSolver(Protocol):
-    """Function that solves a unit, that is, a point, a chain or a stretch of points.
+    """Function that solves an item, that is, a point, a chain or a stretch of points.
 
     Yields (flat index, result) of a point, or (flat indices, results) of points of a stretch that were solved
     together.
