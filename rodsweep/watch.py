@@ -53,7 +53,8 @@ class _SolvePart(NamedTuple):
 
 
 _listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
-"""Listeners, outer ones first, each with the number of parts that its `with` block lies in."""
+"""Pairs (listener, number of parts that enclose the listener's `with` block), from the outermost block
+inwards."""
 _parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
 
 
@@ -95,7 +96,8 @@ def report(make_position: MakePosition = SolvePosition) -> None:
 
 
 def _in_whole(make_position: MakePosition, outside: int) -> SolvePosition:
-    """Position within the whole solve that a listener observes.
+    """Position within the whole solve that a listener observes; a position without text is returned
+    unchanged.
 
     make_position: function that returns the position within the innermost part. outside: number of parts that
     enclose the listener's `with` block.

@@ -51,7 +51,9 @@ class ProfileTable(StrictSection):
         columns = {name: [1.0] * len(self.u) if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
-                raise ValueError(f"{name} has {len(column)} values and u has {len(self.u)}")
+                raise ValueError(
+                    f"{name} has {len(column)} values and u has {len(self.u)}; give one value for each u"
+                )
         return Profile(tuple(self.u), tuple(zip(*columns.values(), strict=True)))
 
     @model_validator(mode="after")
@@ -96,7 +98,7 @@ class MaterialSection(StrictSection):
 
 
 def with_profile_read(tree: Any, directory: Path) -> Any:
-    """A parsed config with the file name in `material.profile` replaced by the columns of the file.
+    """The parsed config `tree` with the file name in `material.profile` replaced by the columns of the file.
 
     directory: folder of a relative file name. Raises InputError if the file is not a table of numbers.
     """

@@ -108,8 +108,8 @@ class Config(StrictSection):
     def settings_of_results(self) -> dict[str, Any]:
         """All settings on which the results depend, except the points, as JSON-compatible values.
 
-        Settings under the key `together` change only variables that are computed from all points together.
-        Two configs with equal meanings and equal points give the same results.
+        Settings under the key `together` change only the variables that are computed jointly from all points.
+        Two configs with equal settings and equal points give the same results.
         """
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
         numbers = dict(self.parameters.constant_parameters)

@@ -51,7 +51,9 @@ def cell_number(cell: str) -> float:
 
 
 def short_repr(value: Any) -> str:
-    """`repr` of a value for messages, cut to 60 characters."""
+    """`repr` of a value for messages, cut to 60 characters; a phrase if `repr` fails because the value is too
+    large.
+    """
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
@@ -60,8 +62,8 @@ def short_repr(value: Any) -> str:
 
 
 def printable_name(name: object, most: int = 200) -> str:
-    """A name for a message: `repr` of a name that is not printable, shortened in the middle to at most `most`
-    characters.
+    """The name as text for a message, or `repr` of the text if the text is not printable; shortened in the
+    middle to at most `most` characters.
     """
     text = str(name)
     if not text.isprintable():
@@ -130,7 +132,8 @@ class Axis(StrictSection):
     factor: Annotated[float, Field(exclude=True)] = 1.0
     """Factor by which all values of a range are multiplied, such as F divided by the pressure in Pa."""
     written: Annotated[Any, Field(exclude=True)] = None
-    """The values as the user wrote them, for values with units; otherwise None."""
+    """The values of an arm's quantity as the user wrote them, with or without units; None for all other
+    axes."""
 
     @property
     def size(self) -> int:
@@ -138,7 +141,9 @@ class Axis(StrictSection):
 
     @property
     def logarithmic(self) -> bool:
-        """Whether the axis has log spacing, or is a list of positive values over more than a decade."""
+        """Whether the axis has log spacing, or is a list of positive values over more than a decade, inf left
+        out.
+        """
         if self.values is None:
             return self.spacing == "log"
         finite = [value for value in self.values if value < inf]
@@ -163,7 +168,9 @@ class Axis(StrictSection):
         return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
 
     def array(self) -> Array:
-        """Values of the axis in increasing order, (size,)."""
+        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to
+        DIGITS_OF_QUANTITY digits.
+        """
         if self.values is not None:
             values = np.array(self.values)
         elif self.spacing == "log":

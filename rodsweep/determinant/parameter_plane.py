@@ -124,14 +124,16 @@ class Plane:
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
-        (x, y). The stencil is one-sided if the rod two steps back is invalid.
+        (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
         """
         h = self.small_step(x, y, which, PLANE_SETTINGS.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
 
     def _of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
-        """`determinant` for arms without closed form; derivatives by x and y are fourth-order differences."""
+        """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
+        differences.
+        """
         D, D_w, S, noise = self.value(w, x, y)
         slopes = []
         for which in range(2):
@@ -154,8 +156,9 @@ class Plane:
         return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
-        """A difference step along axis number `which`: `largest`, or the fraction `step_to_crushing` of the
-        distance to a crushed rod, if shorter. Where the rod cannot be crushed, `largest`.
+        """A difference step along axis number `which` at (x, y): the smaller of `largest` and the fraction
+        `step_to_crushing` of the distance to a crushed rod. The step is `largest` if no value on the axis
+        crushes the rod.
         """
         rod = self.rod_at(x, y)
         axis = self.axes[which]

@@ -6,7 +6,7 @@ from .value import newton_correction
 
 
 def wave_number(rod: Rod, w: complex) -> float:
-    """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L; for a nonuniform arm the
-    average along the arm.
+    """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L; for an arm that is not
+    uniform or not of linear material, the average along the arm.
     """
     return newton_correction(w, rod.coefficients)[2] if rod.standard else arm_determinant(rod).wave_number(w)

@@ -78,8 +78,8 @@ def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
     `name`, (k, 2, 3).
 
-    Returns `NO_JUMP_CHANGE` for a linear law, because the stress at a jump then depends only on the mean
-    strain.
+    Returns `NO_JUMP_CHANGE` for a rod without jumps and for a linear law, for which the stress at a jump
+    depends only on the mean strain.
     """
     inside, at = _beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):

@@ -32,7 +32,8 @@ that are discontinuous at a jump."""
 def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
     """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m).
 
-    q1, q3: means over both sides, (m,). sides: the material on both sides, (2, 7).
+    law: number of the constitutive law. q1, q3: means over both sides, (m,). sides: the material on both
+    sides, (2, 7).
     """
     for i in range(len(q1)):
         q = Unknowns(q1[i], q3[i])

@@ -99,7 +99,8 @@ def _resistance_of(
     """The result of `_resistance`, cached by the bytes of the drag, because rods that differ only in F have
     equal drags.
 
-    drag, shape: bytes and shape of the array of drags.
+    drag, shape: bytes and shape of the array of drags. unknown_velocities: indices of the components of V
+    that are unknowns.
     """
     # Bytes can be a key of the cache, and the array is restored from the bytes.
     values = np.frombuffer(drag).reshape(shape)
@@ -109,8 +110,8 @@ def _resistance_of(
 def _resistance(
     drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
-    """Returns (drag, mobility, second, unknown_velocities), fields of a `NodalRod`. drag: (d, 1) or
-    (d, nodes + 1).
+    """Returns (drag, mobility, second, unknown_velocities), fields of a `NodalRod`. drag: drags of the
+    components, (d, 1) or (d, nodes + 1).
     """
     drag = _at_nodes(drag, grid.nodes + 1)
     mobility = np.zeros(drag.shape)

@@ -118,7 +118,7 @@ class RodOnMesh(ABC):
         return shape_from_strains(self.mesh, self.element_strains(x), np.zeros(3))
 
     def tip(self, x: Array) -> Array:
-        """(x, y, theta) of the tip in L and rad, (3, ...)."""
+        """Coordinates (x, y) and angle of the tip, in L and rad, (3, ...), for states (..., unknowns)."""
         return self.shape(x)[..., -1]
 
     def energy(self, x: Array) -> Array:

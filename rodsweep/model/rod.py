@@ -151,7 +151,7 @@ class Rod:
         return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:
-        """Coordinate of a parameter of the rod: 1/k for a stiffness k, otherwise the value."""
+        """Coordinate of the parameter `name` of the rod: 1/k for a stiffness k, otherwise the value."""
         return float(PARAMETERS[name].coordinate(getattr(self, name)))
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
@@ -243,7 +243,7 @@ class Rod:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
 
         Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
-        compliances and drags are products of coordinates: a derivative is the product of the other factors.
+        compliances and drags are products of coordinates: a derivative is the product of all other factors.
         """
         others = local_coefficients_at_base({**self.values, name: 1.0})
         changing = PARAMETERS[name].scaled_names or (name,)

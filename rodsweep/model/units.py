@@ -171,7 +171,8 @@ def share_of_flutter(given: Given) -> float | None:
 def compact(value: float, unit: str) -> tuple[float, str]:
     """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
-    The SI prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm").
+    The SI prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm"). For a value that is 0, inf
+    or nan, returns (1.0, `unit`).
     """
     if not value or not math.isfinite(value):
         return 1.0, unit

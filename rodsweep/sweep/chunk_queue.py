@@ -139,8 +139,8 @@ class UnitChooser(Protocol):
 class DependentItemQueue(ChunkQueue):
     """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk.
 
-    work: chooses the next items from the results. results: by number of the item, at first from an earlier
-    run; reported results are added.
+    work: chooses the next items from the results. results: results of solved items, by number of the item; at
+    first from an earlier run, later also from the reports. ranks: number of ranks.
     """
 
     def __init__(self, work: UnitChooser, results: dict[int, Any], ranks: int):

@@ -42,7 +42,8 @@ GROWING_MS = 0.08
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
 2.8 times as long."""
 MOST_FOLLOWED_GROWING = 9
-"""Unstable modes in addition to the requested modes up to which the eigenvalues of an arm are followed."""
+"""Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
+modes by at most this number."""
 FIRST_POINT_COST = 2.0
 """Time of the first point of a stretch, divided by the time of a point that is solved alone."""
 FOLLOWED_MS = 0.006
@@ -190,8 +191,9 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
-    """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep. modes:
-    number of eigenvalues. accuracy: relative accuracy. certify: whether spectra are certified.
+    """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
+    none of these points has a rod. modes: number of eigenvalues. accuracy: relative accuracy. certify:
+    whether spectra are certified.
     """
     rods = [points.rod(int(index)) for index in sampled(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
@@ -209,7 +211,9 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
 
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
-    """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes."""
+    """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes to the relative
+    accuracy `accuracy`.
+    """
     if not rod.standard:
         return arm_mesh(rod, modes, accuracy).unknowns
     _, wave = most_amplified_wave(rod)

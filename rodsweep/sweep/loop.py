@@ -24,8 +24,8 @@ Indices = int | NDArray[np.int64]
 class UnitSolver(Protocol):
     """Function that solves an item, that is, a point, a chain or a stretch of points.
 
-    Yields (flat index, result) of each point of a chain, or once (flat indices, results) of all points of a
-    stretch.
+    Yields (flat index, result) of a point, or (flat indices, results) of points of a stretch that were solved
+    together.
     """
 
     def __call__(self, item: int, /) -> Iterable[tuple[Indices, Any]]: ...

@@ -54,7 +54,9 @@ class ProgressReporter:
     """
 
     def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):
-        """live: True for a progress bar, False for lines; None: a bar on a terminal, lines elsewhere."""
+        """total, title, noun: see the class. live: True for a progress bar, False for lines; None: a bar on a
+        terminal, lines elsewhere.
+        """
         self.total = total
         self.noun = noun
         self.pace = None if total is None else Pace(total)

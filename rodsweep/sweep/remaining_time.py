@@ -65,7 +65,7 @@ class Pace:
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
-        includes the wait since the latest record.
+        includes the wait since the latest record. Parameters as in `remaining`.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
         None if their sum is below MIN_BEGUN.
@@ -79,7 +79,7 @@ class Pace:
 
 
 def in_words(seconds: float) -> str:
-    """Text of a duration with two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
+    """Text of a duration with at most two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"

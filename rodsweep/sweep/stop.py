@@ -118,7 +118,9 @@ class RankListener:
         self.next_report = time.monotonic() + POSITION_SECONDS
 
     def __call__(self, make_position: MakePosition) -> None:
-        """Handles a solver's report at `make_position()`; raises Stopped if the solve must end."""
+        """Handles a solver's report at the position `make_position()`; raises SolveStopped if the solve must
+        end.
+        """
         now = time.monotonic()
         if now >= self.next_report and (here := make_position()).words:
             self.next_report = now + POSITION_SECONDS

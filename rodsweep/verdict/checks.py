@@ -99,11 +99,11 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     validity = max(map(_validity, effects))
     largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
     ending = (
-        "the material is linear there",
-        f"rubber is some {100 * stiffening(largest):.1g} % stiffer there",
-        "real materials are no longer linear there",
+        "a linear law of the material is accurate",
+        f"rubber is some {100 * stiffening(largest):.1g} % stiffer at this compression",
+        "real materials are no longer linear at this compression",
     )[validity]
-    shares = " and ".join(says) or "there is no load"
+    shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
     where = " at the weakest section" if assessment.arm.shape.varies else ""
     return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", of_verdict=True)
 
@@ -120,9 +120,11 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
     if flutter is not None:
         shortens = "the flutter load shortens it" if says else "the flutter load shortens the arm"
         says.append(f"{shortens} by {100 * _shortening(arm, flutter):.2g} %")
-    shares = " and ".join(says) or "there is no load"
+    shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
     where = " at the weakest section" if arm.shape.varies else ""
-    return Check(Validity.applies, f"Compression: {shares}{where}, by the law of rubber.")
+    return Check(
+        Validity.applies, f"Compression: {shares}{where}; the law of rubber includes large compression."
+    )
 
 
 def _shortening(arm: SlenderArm, F: float) -> float:

@@ -18,7 +18,9 @@ four digits."""
 
 
 def three_digits(value: float) -> str:
-    """A number as text with three significant digits; with an exponent only from a million on."""
+    """`value` as text with three significant digits; with an exponent only from a million on and below
+    1e-4.
+    """
     short = float(f"{value:.3g}")
     return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
 
@@ -32,8 +34,8 @@ def range_text(low: float, high: float) -> str:
 
 
 def percent_range_text(low: float, high: float) -> str:
-    """A range of fractions as text in percent, rounded to integers, or to one significant digit below 1
-    percent.
+    """The range between the fractions `low` and `high` as text in percent, rounded to integers, or to one
+    significant digit below 1 percent; a single number if both ends round to the same number.
     """
     percents = [100 * value for value in sorted((low, high))]
     ends = [f"{value:.0f}" if value >= 1 else f"{value:.1g}" for value in percents]
@@ -69,8 +71,8 @@ class Load:
 
 
 def _short(given: object, value: float, si: str) -> str:
-    """The load as the user typed it, rounded to four digits if its number is long. value: the load in
-    the SI unit `si`.
+    """The load `given` as the user typed it, rounded to four digits if its number is long. A load given as a
+    number is written in the SI unit `si`, in which it is `value`.
     """
     if not isinstance(given, str):
         return f"{value:.4g} {si}"

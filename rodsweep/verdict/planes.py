@@ -44,7 +44,9 @@ class Planes:
 
     @property
     def always_first(self) -> bool:
-        """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`."""
+        """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`; True
+        without a second plane.
+        """
         if self.second is None:
             return True
         loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
@@ -82,7 +84,7 @@ def with_load(planes: Planes) -> Planes:
         end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
-            f"not flutter up to {end}"
+            f"not flutter up to {end}; give an absolute load"
         )
     factor, unit = compact(share * force * scale, UNITS[load][0])
     given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}

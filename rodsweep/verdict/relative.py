@@ -78,7 +78,7 @@ def _in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> 
 
 def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
     """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
-    section's height. build: constitutive law and profile; if given, replaces those of the arm.
+    section's height. build: constitutive law and profile; None for the build of the arm.
     """
     own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
     return Rod(F=0.0, **own, build=build or arm.build_with(drag))
@@ -115,7 +115,7 @@ def first_hopf_force(rod: Rod) -> float:
 
 def _first_up_to(path: Path, end: float) -> float:
     """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Covers the zeros
-    of the determinant with boxes.
+    of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded.
     """
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
@@ -128,14 +128,15 @@ def _first_up_to(path: Path, end: float) -> float:
     if any(min(box.p_from, box.p_to) < first for box in left):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
-            "may lie below the first Hopf point found"
+            "may lie below the first Hopf point found; give an absolute load"
         )
     return first
 
 
 def _first_of_varied(path: Path, end: float) -> float:
     """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Uses a search
-    along F for arms that are not uniform or not of linear material.
+    along F for arms that are not uniform or not of linear material. Raises FlutterSearchFailed if the search
+    fails or a smaller F is not excluded.
     """
     from ..solve.changes.along_path import pair_crossings
     from ..solve.point import FAILURES, cause_of
@@ -151,7 +152,8 @@ def _first_of_varied(path: Path, end: float) -> float:
     )
     if not found.proved or (found.ended_early and first == inf):
         raise FlutterSearchFailed(
-            "the flutter threshold to which a relative load refers is uncertain: a Hopf point may be missing"
+            "the flutter threshold to which a relative load refers is uncertain, because a Hopf point may be "
+            "missing; give an absolute load"
         )
     return first
 

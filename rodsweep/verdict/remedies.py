@@ -48,7 +48,9 @@ def effect_kind(effect: Effect) -> str:
 
 
 def as_multiple(effect: Effect) -> str:
-    """Ratio of an effect to its limit, as text: "2.5 times"."""
+    """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
+    FOUR_DIGIT_EXCESS.
+    """
     excess = float(effect.excess)
     return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
 

@@ -15,8 +15,9 @@ from .validity import Assessment
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     """Sentences of the verdict on an arm, over the range of drag: whether the model applies, flutter in the
-    plane with the smaller flutter load, then in the second plane. Only the reason if a search in the first
-    plane failed.
+    plane with the smaller flutter load, then in the second plane. The second plane is left out if the model
+    applies at flutter but not under the load. If a search in the first plane failed, the list contains only
+    the reason.
     """
     plane = planes.first
     if plane.found.failures:
@@ -123,7 +124,9 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
 
 
 def _other_plane(planes: Planes, verb: str) -> list[str]:
-    """Sentence on flutter in the second plane of a rectangular section; an empty list for other sections."""
+    """List of one sentence on flutter in the second plane of a rectangular section; empty for other sections.
+    verb: "is" or "would be".
+    """
     second = planes.second
     if second is None:
         return []

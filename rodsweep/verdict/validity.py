@@ -97,8 +97,8 @@ def first_flutter_of(found: FlutterRange) -> Crossing | None:
 
 
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
-    """Neglected effects at the first flutter in `found`. Inertia and compression are NaN if the arm does not
-    flutter.
+    """Neglected effects at the first flutter in `found`. Inertia, compression and Reynolds number are NaN if
+    the arm does not flutter.
     """
     first = first_flutter_of(found)
     if first is None:
@@ -107,7 +107,9 @@ def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ..
 
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:
-    """Factor on the viscosity with which inertia just reaches its limit; NaN if the arm does not flutter."""
+    """Factor on the viscosity with which the larger inertia in `effects`, of arm or fluid, just reaches its
+    limit; NaN if the arm does not flutter.
+    """
     return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
 
 
@@ -115,9 +117,10 @@ def viscosity_factor(effects: tuple[Effect, ...]) -> float:
 def thickness_factor(arm: SlenderArm) -> float:
     """Largest factor on the thickness of an arm with which inertia, in the same fluid, is within its limit.
 
-    The factor multiplies all sides of the section; the thresholds of the thinner arms are solved. NaN if the
-    arm does not flutter, or if another effect, such as weight, exceeds its limit for the thinner arm. NaN
-    also for an arm that varies along its length, because each solve would take a second.
+    The factor multiplies all sides of the section; the thresholds of the thinner arms are solved. NaN if an
+    arm does not flutter, if another effect, such as weight, exceeds its limit for the thinner arm, or if the
+    iteration does not converge. NaN also for an arm that varies along its length, because each solve would
+    take a second.
     """
     if arm.shape.varies:
         return nan
@@ -143,12 +146,12 @@ def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
 
 
 def rounded_down(value: float) -> float:
-    """A positive number, rounded down to REMEDY_DIGITS significant digits."""
+    """The positive number `value`, rounded down to REMEDY_DIGITS significant digits."""
     unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
     return floor(value / unit) * unit
 
 
 def rounded_up(value: float) -> float:
-    """A positive number, rounded up to REMEDY_DIGITS significant digits."""
+    """The positive number `value`, rounded up to REMEDY_DIGITS significant digits."""
     unit = 10.0 ** (floor(log10(value)) - REMEDY_DIGITS + 1)
     return ceil(value / unit) * unit

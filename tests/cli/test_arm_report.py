@@ -241,7 +241,7 @@ def test_a_load_may_be_relative_to_flutter(load):
         report.verdict[1]
         == f"{report.verdict[0].split(' is ')[0]} is 1.25 of flutter with the likeliest drag."
     )
-    with pytest.raises(rs.InputError, match=f"^{load} = '1.25 of flutter' has no value before"):
+    with pytest.raises(rs.InputError, match=f"^{load} = '1.25 of flutter' is relative to flutter"):
         _ = arm.F
 
 

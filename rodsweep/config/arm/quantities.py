@@ -16,7 +16,9 @@ RANGE_ENDS = ("start", "stop")
 
 
 def as_quantities(value: Any, info: ValidationInfo) -> Axis:
-    """The `Axis`, in SI units, of a quantity, or of a list or range of quantities; ValueError otherwise."""
+    """The `Axis`, in SI units, from a quantity, or a list or range of quantities, as the user wrote it;
+    ValueError otherwise.
+    """
     name = str(info.field_name)
     if isinstance(value, Axis):
         return value
@@ -109,12 +111,14 @@ def as_drags(value: Any) -> Axis:
 
 
 def drags_written(values: list[float]) -> list[str]:
-    """Names of drag estimates from their indices in DRAGS."""
+    """Names of drag estimates from `values`, their indices in DRAGS."""
     return [DRAGS[int(index)] for index in values]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
-    """First unit that the user typed for the values of an axis; the SI unit if no unit was typed."""
+    """First unit that the user typed for the values of an axis of the quantity `name`; the SI unit if no unit
+    was typed.
+    """
     units = [split_quantity(value)[1] for value in _each(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
@@ -142,7 +146,7 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
 
 
 def _each(written: Any) -> list[Any]:
-    """List of the values that a user wrote for a quantity: of a range, start and stop."""
+    """List of the values in `written`, a quantity as the user wrote it; for a range, [start, stop]."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in RANGE_ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]

@@ -85,7 +85,7 @@ class ArmSection(StrictSection):
     def _has_length_and_modulus(self) -> "ArmSection":
         for name in ("length", "young"):
             if getattr(self, name) is None and self.segments is None:
-                raise ValueError(f"parameters.arm.{name} is missing")
+                raise ValueError(f"parameters.arm.{name} is missing; give it, or give segments")
         return self
 
     @cached_property

@@ -37,7 +37,9 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
 
 
 def with_length(given: dict[str, Any]) -> dict[str, Any]:
-    """Keys and values of an arm; if `length` is missing, the sum of the segment lengths is added."""
+    """The keys and values `given` of an arm; if segments are given without `length`, their total length is
+    added.
+    """
     if given.get("segments") is None or given.get("length") is not None:
         return given
     texts = as_segments(given["segments"]) or ()
@@ -47,7 +49,8 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def build_of(arm: "ArmSection") -> Build:
-    """Constitutive law of all arms, with the profile of the first arm to which the rod model applies.
+    """Constitutive law of all arms, with the profile of the first arm to which the rod model applies; without
+    a profile if there is no such arm.
 
     Raises ValueError if the arms of a grid of parameters have different profiles.
     """
@@ -72,8 +75,8 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
 
 
 def tapers_of(arm: "ArmSection") -> set[float]:
-    """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius is
-    given.
+    """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius or no
+    base radius is given.
     """
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}

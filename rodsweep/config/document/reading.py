@@ -50,7 +50,9 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 
 def validated(tree: dict[str, Any]) -> Config:
-    """Config from nested dicts of keys and values; InputError for the first error."""
+    """Config from `tree`, nested dicts of keys and values; InputError, which states the first error, if
+    invalid.
+    """
     config = CONFIGS[_task(tree)]
     try:
         return config.model_validate(tree)
@@ -153,7 +155,7 @@ def _config_notation(axis: Any) -> Any:
 
 def _apply_override(tree: dict, override: str) -> None:
     """Sets a key of the parsed config `tree`, in place. override: text "a.b=value" of one --set, with a YAML
-    value.
+    value. Raises InputError if the override is invalid.
     """
     where = printable_name(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
@@ -197,8 +199,8 @@ def _task(tree: dict) -> str:
 
 
 def with_files_read(tree: Any, directory: Path) -> Any:
-    """A parsed config, with the profile read from its file, and `parameters.columns` read from the header of
-    the file of points.
+    """The parsed config `tree`, with the profile read from its file, and `parameters.columns` read from the
+    header of the file of points.
 
     directory: folder of relative file names. Raises InputError if the file of the profile is not a table of
     numbers.
@@ -207,7 +209,9 @@ def with_files_read(tree: Any, directory: Path) -> Any:
 
 
 def _with_columns(tree: Any, directory: Path) -> Any:
-    """A parsed config, with `parameters.columns` added if the file of points has optional parameters."""
+    """The parsed config `tree`, with `parameters.columns` added if the file of points has optional
+    parameters.
+    """
     parameters = tree.get("parameters") if isinstance(tree, dict) else None
     if not isinstance(parameters, dict) or not isinstance(parameters.get("points"), str):
         return tree

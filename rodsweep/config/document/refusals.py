@@ -131,12 +131,16 @@ def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
 
 
 def dotted(location: Sequence[str]) -> str:
-    """Full name of a key, like "parameters.F.num", from the names of its sections and its own name."""
+    """Full name of a key, like "parameters.F.num", from the names of its sections and its own name; shortened
+    to MAX_KEY_LENGTH characters. location: these names.
+    """
     return printable_name(".".join(location), MAX_KEY_LENGTH)
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
-    """Class of the config's section that is reached through the keys in `location`."""
+    """Class of the config's section that is reached through the keys in `location`; the last section on the
+    way if a key is not a section.
+    """
     section: type[BaseModel] = config
     for name in location:
         kind = model_of(section.model_fields[name])
@@ -153,7 +157,9 @@ def model_of(field: FieldInfo) -> Any:
 
 
 def allowed_values_text(field: FieldInfo) -> str:
-    """Phrase that describes the allowed values of a config key, from its type and bounds."""
+    """Phrase that describes the allowed values of a config key: its description, otherwise made from its type
+    and bounds.
+    """
     kind = field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")
     bound = {name: getattr(part, name) for part in field.metadata for name in bounds if hasattr(part, name)}

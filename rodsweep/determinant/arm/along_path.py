@@ -87,7 +87,8 @@ class ArmAlongPath:
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
-        `FAILED` if p moves by more than twice `reach`, if the sign of x changes, or without convergence.
+        reach: expected distance of p from the guess. Returns `FAILED` if p moves by more than twice `reach`,
+        if the sign of x changes, if the Jacobian is singular, or without convergence.
         """
         start = x
         first = p
@@ -131,8 +132,8 @@ class ArmAlongPath:
         return FAILED
 
     def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
-        """Estimated rounding error of D exp(-S) at real w = x: `spread_factor` times (max - min) of D on
-        different divisions of the arm into elements. S: scale of the result.
+        """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `spread_factor` times (max -
+        min) of D on different divisions of the arm into elements. S: scale of the result.
 
         Minors that are large in the middle of an arm have rounding errors that `noise` does not contain.
         """
@@ -158,10 +159,11 @@ class ArmAlongPath:
         return value.D.real * scale, value.D_w.real * scale
 
     def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
-        """Returns (stencil, step) of a difference by p, with a step of at most `largest`.
+        """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
+        step: at most `largest`.
 
-        The step is shortened until both neighbours are valid arms: not crushed, no negative compliance or
-        drag. The stencil is one-sided at a compliance or a drag of 0.
+        The step is shortened, at most `max_shortenings` times, until both neighbouring arms are valid: not
+        crushed, no negative compliance or drag. The stencil is one-sided at p = 0, unless p is the force.
         """
         step = min(ROOT_NEWTON.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":

@@ -62,7 +62,7 @@ class CompletenessSettings(CompiledSettings):
     ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
 
     def proof_trials(self) -> list[tuple[int, float]]:
-        """(k, largest x_k in units of the largest known |w|) of each trial, in order."""
+        """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
         return list(zip(self.point_counts, self.max_last_point, strict=True))
 
 
@@ -86,8 +86,8 @@ def prove_complete(
 ) -> tuple[bool, int]:
     """Returns (whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
-    known, error: known eigenvalues, (n,), and their absolute errors, (n,). Complex eigenvalues whose
-    conjugate is not known are treated as unknown.
+    line: if positive, or if no hull exists, nothing is proved. known, error: known eigenvalues and their
+    absolute errors, (n,) each. Complex eigenvalues without their conjugate in `known` are treated as unknown.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
@@ -114,8 +114,8 @@ def has_conjugate(known: Complex) -> Array:
 
 
 def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
-    """Largest |w| at which the first trial of `prove_complete` evaluates D; inf if no trial is possible.
-    known: (n,).
+    """Largest |w| at which the first possible trial of `prove_complete` evaluates D; inf if no trial is
+    possible. line: Re w of the vertical line. known: known eigenvalues, (n,).
     """
     largest = float(np.abs(known).max())
     trials = COMPLETENESS.proof_trials()
@@ -126,8 +126,8 @@ def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
 def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
     """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof).
 
-    known: approximate eigenvalues, (n,), leading first. The cheapest proof has the smallest |w|, and so the
-    fewest elements. The number is at least `modes`, or 0 if no proof is possible.
+    line: Re w of the vertical line. known: approximate eigenvalues, (n,), leading first. The cheapest proof
+    has the smallest |w|, so the fewest elements. The number is at least `modes`; 0 if no proof is possible.
     """
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
@@ -161,7 +161,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; empty if such
     points would overflow.
 
-    a, c: constants of the hull.
+    line: Re w of the vertical line. k: number of points. a, c: constants of the hull.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
     x = max(COMPLETENESS.min_first_point * abs(line), a * a, COMPLETENESS.min_first_distance)
@@ -198,8 +198,8 @@ def remainder_of_sum(
     """The sum R over the unknown eigenvalues, with its rounding error and the least contribution of an
     unknown eigenvalue right of the line.
 
-    known, error: known eigenvalues, (n,), closed under conjugation, and their errors, (n,). points: x_j,
-    (k,). level: (W, propagators), W at least the last point.
+    line: Re w. known, error: known eigenvalues, closed under conjugation, and their errors, (n,) each.
+    points: x_j, (k,). level: (W, propagators for |w| <= W), W at least the last point.
     """
     k = len(points)
     R = 0.0
@@ -228,7 +228,7 @@ def remainder_of_sum(
 
 @compiled
 def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
-    """A lower bound of Re phi at real points of the hull right of the line, and of 2 Re phi elsewhere."""
+    """Lower bound of Re phi at real w, and of 2 Re phi at complex w, in the hull (a, c) right of the line."""
     b = 1 - c
     right = max(a * a / (4 * b), line)
     least = 1.0

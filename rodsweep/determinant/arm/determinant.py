@@ -127,7 +127,7 @@ class PropagatorElements(NamedTuple):
 
 
 def samples_of(rods: list[Rod]) -> Samples:
-    """Samples of several arms with equal breaks of their profiles."""
+    """Samples of the arms `rods`, whose profiles have equal breaks."""
     points, weights, _ = sampled(rods[0])
     local = Rod.local_of_all(rods, points)
     forces = np.array([[rod.F] for rod in rods])

@@ -1,8 +1,8 @@
 """The propagators of all arms on an interval of a path, as polynomials in the path variable p.
 
-The propagator of an element is smooth in p, like the coefficients along the arm. On elements that resolve all
-arms of the interval, the propagators of a few arms, at Chebyshev points in p, are interpolated. This gives
-the propagators of every arm and their derivatives by p. The last Chebyshev coefficients show the error.
+Propagators are smooth in p, like the coefficients along the arm. The propagators of a few arms, at Chebyshev
+points in p, on elements that resolve all arms, are interpolated. This gives all propagators and their
+derivatives by p. The last Chebyshev coefficients show the error.
 """
 
 import math
@@ -35,8 +35,7 @@ class ArmFamilySettings(CompiledSettings):
     """Settings for the number and spacing of the arms from which a family is interpolated."""
 
     arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
-    """Number of arms in each trial. The first number suffices on 21 of 24 random paths from 0 to three times
-    a load."""
+    """Number of arms in each trial. 12 suffice on 21 of 24 random paths from 0 to three times a load."""
     spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
     """`ArmFamily.scale` over the length of the interval, for each trial. Logarithmic spacing needs fewer arms
     near complex forces of the size of the stiffness, where the stretch of rubber has branch points."""
@@ -54,7 +53,7 @@ class ArmFamilySettings(CompiledSettings):
         return 2 * self.converged_tail
 
     def trials(self) -> list[tuple[int, float]]:
-        """(number of arms, scale over the length of the interval) of each trial, in order."""
+        """Pairs (number of arms, scale over the length of the interval) of all trials, in order."""
         return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 
@@ -76,10 +75,9 @@ class ArmFamily(NamedTuple):
 
 
 def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
-    """The family of the arms of `path` with p from `low` to `high`, for |w| <= W.
-
-    None if the arms are not smooth in p, or the propagators have too many entries. Raises ValueError at a p
-    without a valid arm, FloatingPointError if no elements resolve an arm.
+    """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are not
+    smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm, and
+    FloatingPointError if no elements resolve an arm.
     """
     for number, share in ARM_FAMILY.trials():
         scale = share * (high - low)
@@ -100,7 +98,6 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
 
 def is_smooth(path: Path, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
-
     Raises ValueError at a p without a valid arm.
     """
     for number, share in reversed(ARM_FAMILY.trials()):
@@ -117,7 +114,7 @@ def _series_converges(samples: Samples) -> bool:
 
 
 def _interpolation_points(low: float, high: float, scale: float, number: int) -> Array:
-    """Values of p at which arms are interpolated, (number,), increasing, with exactly both ends."""
+    """Increasing values of p, low to high, of the interpolated arms, (number,); scale: see `ArmFamily`."""
     t = (chebyshev_points(number) + 1) / 2
     if scale < LINEAR_SCALE:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
@@ -126,7 +123,9 @@ def _interpolation_points(low: float, high: float, scale: float, number: int) ->
 
 
 def _converged(values: Array, tolerance: float) -> bool:
-    """Whether the last two Chebyshev coefficients of values, (nodes, n, ...), are small for each n."""
+    """Whether the last two Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:,
+    i]|.
+    """
     others = tuple(range(2, values.ndim))
     last = np.tensordot(_to_series(len(values))[-2:], values, 1)
     size = np.abs(values).max(axis=(0, *others))
@@ -147,7 +146,9 @@ def _to_series(number: int) -> Array:
 
 @compiled
 def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
-    """Fills the propagators of the arm at p and their derivatives by p, both (elements, terms, PADDED)."""
+    """Writes the propagators of the arm at p into polynomials, and their derivatives by p into changes, both
+    (elements, terms, PADDED).
+    """
     half = (family.high - family.low) / 2
     t = (p - (family.low + family.high) / 2) / half
     if family.scale < LINEAR_SCALE:
@@ -221,10 +222,9 @@ def determinant_in_family(family: ArmFamily, w: complex, p: float) -> Determinan
 
 @compiled
 def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
-    """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family.
-
-    Newton's method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for
-    nearly double eigenvalues.
+    """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family. Newton's
+    method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for nearly
+    double eigenvalues.
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -92,7 +92,7 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
 
 @compiled
 def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
-    """`two_roots` with the propagators of `level`."""
+    """`two_roots` about `middle`, with the propagators of `level`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     if middle.imag == 0:
         D = complex(D.real, 0.0)

@@ -1,6 +1,6 @@
 """Refinement of a mesh's eigenvalues to roots of D, for arms without a closed form of D.
 
-The algorithm is that of `rodsweep.determinant.roots.roots`, with D from propagators.
+The algorithm equals the algorithm of `rodsweep.determinant.roots.roots`, with D from propagators.
 """
 
 import cmath
@@ -86,7 +86,7 @@ def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> 
 
 
 def _is_in_eigenvalue_box(w: complex, hull: Hull) -> bool:
-    """Whether w lies in the box that contains all eigenvalues with real parts >= Re w."""
+    """Whether w is finite and lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False
     real, imag = hull.box(max(-w.real, 0.0))
@@ -144,8 +144,8 @@ def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDetermina
 
 
 def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
-    """Errors of the roots, (n,). For two entries that are the same root of D, the error is at least the
-    distance 2 |D'/D''| of the next root."""
+    """Errors of the roots `found`, (n,). For two entries that are the same root of D, the error is at least
+    the distance 2 |D'/D''| of the next root."""
     error = [root.error for root in found]
     for i, one in enumerate(found):
         for j in range(i + 1, len(found)):

@@ -73,10 +73,11 @@ def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=1)
 def squared_amplification(rod: Rod) -> float:
-    """The smallest constant a^2 of the a-priori box over all weights rho; inf if no bound exists.
+    """The smallest a^2 of the module docstring over all weights rho; inf if no bound exists.
 
-    For g > 0 the minimum is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
-    shear stiffness) rho g - nu has no zero, and gamma3 = 0 gives no bound.
+    For g >= 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), also for c2 = 0 or gamma3 = 0. For g < 0 (a pull beyond
+    the shear stiffness) the larger entry of the maximum is minimised over rho; c2 gamma3 = 0 then gives no
+    bound.
     """
     drag = rod.c2 * rod.rotational_drag
     level = abs(rod.F) * sqrt(drag)

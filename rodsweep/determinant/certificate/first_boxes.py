@@ -38,8 +38,8 @@ COVERING_SETTINGS = CoveringSettings()
 
 
 def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
-    """Intervals (start, end) of p; over each interval nu at most halves, and a drag or compliance at most
-    doubles.
+    """Intervals (start, end) of p from `start` to `stop`; over each interval nu at most halves, and a drag or
+    compliance at most doubles, except on the shortest intervals.
     """
     edges = [start]
     width = (stop - start) / COVERING_SETTINGS.min_intervals
@@ -60,7 +60,7 @@ def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, f
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
 
-    None if no a-priori bound exists.
+    None if no a-priori bound exists, or if the lower bound of eta underflows.
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):

@@ -64,9 +64,10 @@ NO_INTEGER = "the winding number of D is not an integer within rounding errors"
 
 @dataclass(frozen=True, slots=True)
 class EigenvalueCount:
-    """Number of eigenvalues right of a vertical line, and number of nodes on the contour.
+    """Number of eigenvalues right of a vertical line.
 
-    number: None if the count failed. why_not: reason of the failure.
+    number: None if the count failed. nodes: number of nodes and discs on the contour. why_not: reason of the
+    failure.
     """
 
     number: int | None
@@ -76,10 +77,11 @@ class EigenvalueCount:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """Returns (change of arg D along the segment from `start` to `end`, number of nodes).
+    """Returns (change of arg D along the segment from `start` to `end`, number of nodes and discs).
 
     Where one exponential of D is proved to dominate, `phase_over_dominated_segment` gives the change;
-    elsewhere `phase_change_by_nodes` does. If the change cannot be proved, returns (0, -number of nodes).
+    elsewhere `phase_change_by_nodes` does. If the change cannot be proved, returns (0, -number of nodes and
+    discs).
     """
     length = abs(end - start)
     direction = (end - start) / length
@@ -150,10 +152,10 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
 def contour_phase_change(
     line: float, foot: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
-    """Returns (change of arg D along the upper half of the box, number of nodes).
+    """Returns (change of arg D along the upper half of the box, number of nodes and discs).
 
     The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`.
-    The number of nodes is negative if the change could not be proved.
+    The number is negative, and the returned change meaningless, if the change could not be proved.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)

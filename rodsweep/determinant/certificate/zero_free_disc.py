@@ -87,7 +87,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
 @compiled
 def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
     """The point w with its reach, for a uniform rod. Within the reach the phase of D exp(-L dw) changes by
-    less than pi/2.
+    less than pi/2. Reach and L are 0 if |D| is not above its rounding error.
     """
     D, D_w, S, noise = scaled_determinant(w, coefficients)
     room = DISC_BOUND_SETTINGS.clearance * abs(D) - DISC_BOUND_SETTINGS.rounding_over_noise * noise

@@ -68,8 +68,8 @@ def crossing_newton(
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
     origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
-    Returns `FAILED` if a step exceeds `ROOT_NEWTON.largest_step`, if eta <= 0, or if the method does not
-    converge.
+    Returns `FAILED` if a step exceeds `ROOT_NEWTON.largest_step`, if eta <= 0, if the Jacobian is singular,
+    or if the method does not converge.
     """
     last = math.inf
     for _ in range(ROOT_NEWTON.max_steps):
@@ -108,8 +108,9 @@ def double_newton(
 ) -> LocatedZero:
     """The double real eigenvalue D = D_w = 0 near the guess (x, p).
 
-    origin, direction: coefficients at p = 0 and their derivative by p. `FAILED` if p moves by more than twice
-    `reach`, if the sign of x changes, or without convergence.
+    origin, direction: coefficients at p = 0 and their derivative by p. reach: expected distance of p from the
+    guess. Returns `FAILED` if p moves by more than twice `reach`, if the sign of x changes, if the Jacobian
+    is singular, or without convergence.
     """
     start = x
     first = p

@@ -85,7 +85,7 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 @compiled
 def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
     """The two roots of the quadratic polynomial with value D, first derivative D1 and second derivative D2 at
-    `middle`.
+    `middle`; `middle` twice if D2 = 0.
     """
     if D2 == 0:
         return middle, middle

@@ -73,8 +73,8 @@ def mesh_accuracy(accuracy: float, vectors: bool) -> float:
     """Relative accuracy that the eigenvalues of a mesh need for results of relative accuracy `accuracy`.
 
     vectors: whether eigenvectors are needed. The error of an eigenvector on a mesh is the square root of the
-    error of its eigenvalue. Without eigenvectors a coarse mesh suffices, because the eigenvalues are refined
-    to roots of D.
+    error of its eigenvalue. Without eigenvectors a mesh of the accuracy `RESOLUTION_SETTINGS.start_accuracy`
+    suffices, because the eigenvalues are refined to roots of D.
     """
     return accuracy**2 if vectors else RESOLUTION_SETTINGS.start_accuracy
 
@@ -90,9 +90,12 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:
-    """The smallest number of elements, and then the lowest order, that resolve a wave to a relative accuracy.
+    """The smallest number of elements, and then the lowest order (plus one for several elements), that
+    resolve a wave to the relative accuracy `accuracy`.
 
-    wave_number: in 1/L. largest_order: maximum order of an element; default `RESOLUTION_SETTINGS.max_order`.
+    If this takes more than `RESOLUTION_SETTINGS.max_unknowns` unknowns, the result is a mesh with too many
+    unknowns that need not resolve the wave. wave_number: in 1/L. largest_order: maximum order of an element,
+    `RESOLUTION_SETTINGS.max_order` by default.
     """
     largest_order = largest_order or RESOLUTION_SETTINGS.max_order
     max_elements = RESOLUTION_SETTINGS.max_unknowns // (3 * largest_order) + 2  # more unknowns fail anyway

@@ -27,9 +27,9 @@ class _Pieces(NamedTuple):
 
     value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
     (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
-    bending, weight: Gauss weights over and times half the length of each element, (elements, p). lumped: mass
-    of the nodes, (elements, p + 1). where: index in the pattern of each entry of all blocks, (m,). rows,
-    columns: (nnz,).
+    bending, weight: Gauss weights divided by, and multiplied by, half the length of each element,
+    (elements, p). lumped: mass of the nodes, (elements, p + 1). where: index in the pattern of each entry of
+    all blocks, (m,). rows, columns: row and column of each entry of the pattern, (nnz,).
     """
 
     value: Array
@@ -169,8 +169,8 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Ar
 def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
     """Adds the entries of all element blocks, in the order of `where`, to A.
 
-    local: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern, then one for the
-    clamp, (nnz + 1,).
+    F: follower force. local: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern,
+    then one for the clamp, (nnz + 1,).
     """
     elements, order = pieces.weight.shape
     value = pieces.value

@@ -103,7 +103,7 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
 
 def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
     """Number of elements of the order `largest_order` that resolve an interval in which the phase of the wave
-    grows by `share`."""
+    grows by `share`, to the relative accuracy `accuracy`."""
     count = 1
     while required_order(share / count, accuracy) > largest_order:
         count += 1

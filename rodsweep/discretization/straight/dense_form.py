@@ -33,8 +33,8 @@ class DenseForm:
     scale: Array
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
-        """Returns (y, theta) of k eigenvectors, (unknowns, k), at all nodes, clamp included, (nodes + 1, k)
-        each.
+        """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
+        (nodes + 1, k) each.
         """
         return fields_of_vectors(vectors, self.scale)
 

@@ -2,7 +2,8 @@
 
 The equal elements of a uniform rod have equal matrices. A system with the matrix A - s M is solved by static
 condensation: the interior nodes of the elements are eliminated, with one factorisation for all elements; then
-a system for the nodes between elements is solved. The cost hardly grows with the number of elements.
+a system for the unknowns at the ends of all elements is solved. The cost hardly grows with the number of
+elements.
 
 About the straight rod longitudinal and transverse components are decoupled and have separate matrices.
 
@@ -174,7 +175,8 @@ class ElementFactors:
     """Factorisation of A - shift M by static condensation.
 
     K: matrix of one element. interior: elimination of the interior unknowns of an element, None for a single
-    element. interface: LU factorisation of the matrix of the nodes between elements.
+    element. interface: LU factorisation of the matrix of the end unknowns of all elements; for a single
+    element, of all its unknowns.
     """
 
     elements: StraightElements

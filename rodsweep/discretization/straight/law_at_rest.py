@@ -134,8 +134,8 @@ def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
     """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
     (k, 2, 7).
 
-    The unknowns of each side are functions of N and M, so their means q1 and q3 are too. N(q1, q3) and
-    M(q1, q3) are the inverse of this function.
+    The unknowns on both sides are functions of N and M, and so are the means q1 and q3. N(q1, q3) and
+    M(q1, q3) are the inverse of (N, M) -> (q1, q3).
     """
     shares = sides[..., 3:5]
     unknowns = inverse_derivatives(_derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0)))

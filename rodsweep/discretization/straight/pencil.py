@@ -127,7 +127,8 @@ def finite_eigenvalues(rod: Rod, nodes: int) -> int:
 
 
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-    """Returns (y, theta) of k eigenvectors, (unknowns, k), at all nodes, clamp included, (nodes + 1, k) each.
+    """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
+    (nodes + 1, k) each.
 
     scale: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2, nodes).
     """
@@ -220,8 +221,8 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
 def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
     """The `Pencil` in which the blocks `entries` of all elements are summed into one sparsity pattern.
 
-    entries: (index of the constant matrix, rows, columns, block) of each block. mass: lumped mass, (nodes,).
-    scale: scale of the unknowns, (unknowns,).
+    elements, order: number and order of the elements. entries: (index of the constant matrix, rows, columns,
+    block) of each block. mass: lumped mass, (nodes,). scale: scale of the unknowns, (unknowns,).
     """
     size = 3 * elements * order
     diagonal = np.arange(size)

@@ -78,7 +78,7 @@ class SlenderArm:
         return float(getattr(self, name, PARAMETERS[name].neutral))
 
     def text_of(self, name: str) -> str:
-        """Name and value of a quantity as the user wrote them, like "length = '10 cm'", for messages."""
+        """Name and value of the quantity `name` for messages, like "length = '10 cm'", see `quoted`."""
         return quoted(name, getattr(self, name))
 
     @cached_property
@@ -162,7 +162,7 @@ class SlenderArm:
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
-            raise InputError(f"{self.text_of(self.load)} has no value before flutter is computed")
+            raise InputError(f"{self.text_of(self.load)} is relative to flutter; give an absolute load")
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property

@@ -16,8 +16,8 @@ slender-body theory are then meaningless."""
 DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
 
 """Names of the drag estimates in the order of `range_of_drag`: the likeliest, then the corners of the range.
-`least` has the smallest translational and rotational drag, `most` the largest; `max_rotational_drag` combines
-the largest rotational with the smallest translational drag, `most_translational` the reverse."""
+`least` has the smallest translational and rotational drag, `most` the largest; `most_rotational` combines the
+largest rotational with the smallest translational drag, `most_translational` the reverse."""
 
 RANGE_OF_DRAG = "range"
 """Value of the config key `drag` for a sweep over all estimates in DRAGS."""

@@ -232,8 +232,8 @@ def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
 
 
 def _independent_of_viscosity(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
-    """An effect whose `value` does not depend on the viscosity; its viscosity factor is inf above `limit`,
-    otherwise 0.
+    """The effect `name`, whose `value` does not depend on the viscosity: its viscosity factor is inf if
+    `value` exceeds `limit`, otherwise 0. of_cycles_only: as in `Effect`.
     """
     # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
     factor = np.where(value > limit, inf, 0.0)

@@ -88,7 +88,9 @@ def number_in_si(name: str, given: Given | None) -> float:
 
 
 def quoted(name: str, given: Given) -> str:
-    """Name and value of a quantity in UNITS as the user wrote them, like "length = '10 cm'", for messages."""
+    """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
+    user wrote it, a number with its SI unit.
+    """
     if isinstance(given, str):
         return f"{name} = '{given}'"
     return f"{name} = {in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

@@ -86,7 +86,9 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
 
 
 def _refuse_sections(arm: "SlenderArm") -> None:
-    """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii."""
+    """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii;
+    NoWall if the bore is too wide.
+    """
     sides = (arm.width, arm.height)
     for name, why in (
         ("inner_radius", "a rectangular section has no bore"),
@@ -161,8 +163,8 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         fine = False
     if not fine:
         raise InputError(
-            f"{length} makes numbers too large or too small with the section and Young's modulus; check "
-            "the units"
+            f"{length}, with this section and Young's modulus, makes stiffnesses or the unit of force "
+            "overflow or underflow; check the units"
         )
     if slenderness < LEAST_SLENDERNESS:
         raise NotSlender(

@@ -189,7 +189,7 @@ class Build:
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
         """Stiffnesses and drags at points u, divided by their values at the base, by name; arrays of the
-        shape of u.
+        shape of u. taper: a number, or an array for n arms, (n, 1, ...).
         """
         if self.profile is None:
             factors = dict.fromkeys(FACTORS, np.ones(u.shape))

@@ -50,7 +50,7 @@ def _section(side: Array) -> LocalSection:
 
 @compiled
 def _solved(T: Tangent, N: float, M: float) -> Unknowns:
-    """Solution x of the linear system T x = (N, M), with T as a 2 x 2 matrix."""
+    """Solution x of the linear system T x = (N, M), with the 2 x 2 matrix T = ((N1, N3), (M1, M3))."""
     determinant = T.N1 * T.M3 - T.N3 * T.M1
     return Unknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
 
@@ -60,7 +60,7 @@ def _allowed(at: LocalSection, q1: float, step: float) -> float:
     """Largest fraction, up to 1, of a step of q1 after which h1 >= LEAST_STRETCH_KEPT times h1 before the
     step.
 
-    at, q1: section and unknown before the step.
+    at, q1: section and unknown before the step. step: change of q1.
     """
     h = at.nu + at.c1 * q1
     change = at.c1 * step
@@ -76,7 +76,8 @@ def _small(step: Unknowns, at: Unknowns) -> bool:
 
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
-    """The unknowns a on the base side of a jump, from the mean unknowns q; sides: (2, 7).
+    """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
+    law. sides: (2, 7).
 
     Newton's method solves the equations of equal stresses on both sides.
     """
@@ -115,7 +116,9 @@ def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
-    """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3; sides: (2, 7)."""
+    """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
+    the constitutive law. sides: (2, 7).
+    """
     a = unknowns_before_jump(law, sides, Unknowns(q1, q3))
     return stress(law, _section(sides[0]), a.q1, a.q3)
 
@@ -124,7 +127,7 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
     """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
 
-    a, b: unknowns on the base side and on the tip side. sides: (2, 7).
+    law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: (2, 7).
     """
     S = tangent(law, _section(sides[0]), a.q1, a.q3)
     T = tangent(law, _section(sides[1]), b.q1, b.q3)
@@ -144,7 +147,7 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
     """Returns (change of a, change of b): changes of the unknowns on the base side and the tip side of a
     jump.
 
-    q: mean unknowns. change: infinitesimal change of q. sides: (2, 7).
+    law: number of the constitutive law. q: mean unknowns. change: infinitesimal change of q. sides: (2, 7).
     """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
@@ -156,8 +159,8 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
 
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3; sides:
-    (2, 7).
+    """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3. law: number of
+    the constitutive law. sides: (2, 7).
     """
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
@@ -171,9 +174,9 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
     q3.
 
-    sides: (2, 7). change: derivatives of nu, c1 and c3 of both sides with respect to the parameter, (2, 3).
-    The weights in the mean strain are constant, because a parameter multiplies the compliances of both sides
-    by the same factor.
+    law: number of the constitutive law. sides: (2, 7). change: derivatives of nu, c1 and c3 of both sides
+    with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a parameter
+    multiplies the compliances of both sides by the same factor.
     """
     q = Unknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)

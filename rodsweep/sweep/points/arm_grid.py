@@ -114,7 +114,8 @@ def _force_of(
 ) -> FlutterForce:
     """Dimensionless force F of a unit load on an arm; UNCOVERED if `arm` is None or has no load.
 
-    The unit load is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter.
+    The unit load is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces
+    the arm's taper unless None.
     """
     if arm is None or not section.load:
         return UNCOVERED
@@ -144,8 +145,8 @@ def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
-    """Raises ValueError with the reason why the rod model applies to no point. no_flutter: whether some arm
-    does not flutter.
+    """Raises ValueError with the reason why the rod model applies to no point. beside: as in `grid_of_arms`.
+    no_flutter: whether some arm does not flutter. forces: result of `_forces`.
     """
     section.arm_of(section.first_values, loaded=True)
     for force in forces.ravel():
@@ -154,12 +155,16 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
     if no_flutter:
         raise ValueError(
             f"parameters.arm.{section.load} is relative to flutter, but with the likeliest drag no arm "
-            "flutters"
+            "flutters; give an absolute load"
         )
     k1 = float(beside["k1"][0])
-    raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")
+    raise ValueError(
+        f"parameters.k1 is {k1:.15g} and every F is above, where the rod is crushed; F must start below k1"
+    )
 
 
 def _along(dimension: int, values: Any) -> Array:
-    """Values, (n,), as an array along dimension 0 (arms), 1 (loads) or 2 (replaced parameters) of three."""
+    """`values`, (n,), as an array with three dimensions, along dimension 0 (arms), 1 (loads) or 2 (replaced
+    parameters).
+    """
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -118,7 +118,8 @@ class ChainSolver:
         self.checkpoints.remove(chain)
 
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
-        """(position in the chain of the first point to solve, its initial state).
+        """Returns (position in the chain of the first point to solve, its initial state). order: flat indices
+        of the points of the chain in the order of solution.
 
         The checkpoint is used if no point up to the checkpoint is missing; otherwise the chain starts again
         without an initial state.

@@ -57,7 +57,9 @@ def rods_of_flutter(
 
 
 def _arms(section: ArmSection) -> Iterable[SlenderArm]:
-    """Yields the arms of a config section to which the rod model applies, without load."""
+    """Yields the arms of a config section to which the rod model applies, without load. Raises InputError for
+    an invalid arm.
+    """
     for values in section.sections():
         try:
             yield section.arm_of(values)

@@ -63,8 +63,8 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which the load crushes some
     rods.
 
-    None if all rods or no rods are crushed, and for grids of more than MOST_POINTS points. axes: values of
-    each parameter, (n,).
+    None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
+    MOST_POINTS points. axes: values of each parameter, (n,).
     """
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:

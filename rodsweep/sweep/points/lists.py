@@ -42,7 +42,7 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> 
                 for column, number in zip(columns, numbers, strict=True):
                     column.append(number)
     except MemoryError:
-        raise InputError(f"{path} is too large to be read") from None
+        raise InputError(f"{path} is too large to be read; divide the list of points") from None
     except OSError as error:
         raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:

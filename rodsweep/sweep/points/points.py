@@ -145,7 +145,7 @@ class ParameterLine:
     name: str
     """Name of the parameter that varies."""
     parameters: dict[str, float]
-    """Values of the other parameters, by name."""
+    """Values of all other parameters, by name."""
     x: Array
     """Values of the parameter that varies, (n,)."""
     at: np.ndarray

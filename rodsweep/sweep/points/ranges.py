@@ -1,4 +1,6 @@
-"""Ranges (first, end) of flat indices of points or chains, sets of such indices, and shards of a sweep."""
+"""Ranges (first, end) of flat indices of points or of numbers of work items, sets of such indices, and shards
+of a sweep.
+"""
 
 import math
 from collections.abc import Iterable, Sequence

@@ -1,8 +1,8 @@
 """Stretches: neighbouring points on a grid line of a sweep that are solved together.
 
 The division of grid lines into stretches depends only on the grid. Results therefore depend neither on the
-number of ranks nor on points of an earlier run: along a stretch with any missing point eigenvalues are
-followed again completely.
+number of ranks nor on points of an earlier run: if any point of a stretch is missing, eigenvalues are
+followed again along the complete stretch.
 """
 
 import math
@@ -29,15 +29,15 @@ STRETCHES_PER_BLOCK = 1 << 12
 class StretchResult:
     """Result of a stretch of n points solved together.
 
-    values: every variable of the result file at the points, (n, ...), by name. solved: for which points,
-    (n,); the others must be solved one by one.
+    values: every variable of the result file at the points, (n, ...), by name. solved: mask of the points
+    that were solved together, (n,); all other points must be solved one by one.
     """
 
     values: dict[str, NDArray]
     solved: NDArray[np.bool_]
 
     def at(self, places: NDArray[np.int64]) -> "StretchResult":
-        """Result at the positions `places` in the stretch, (m,)."""
+        """The part of the result at the positions `places` in the stretch, (m,)."""
         values = {name: column[places] for name, column in self.values.items()}
         return StretchResult(values, self.solved[places])
 
@@ -107,10 +107,11 @@ class Stretches:
 
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """Stretches of a grid along the first of its longest usable axes; None if every usable axis is too short.
+    """Stretches of a grid along the first of its longest usable axes; None if no usable axis has
+    SHORTEST_AXIS values.
 
-    moved: the only parameter that varies along each axis; "" for an axis of several parameters, which is not
-    usable.
+    shape: shape of the grid. moved: the only parameter that varies along each axis; "" for an axis of several
+    parameters, which is not usable.
     """
     able = [axis for axis, name in enumerate(moved) if name]
     axis = max(able, key=lambda i: shape[i], default=None)
@@ -121,7 +122,8 @@ def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -
 class StretchSolver:
     """Function from the number of a stretch to the results of its missing points.
 
-    solve: function from a flat index to the outcome of a point that is not solved with the others.
+    solve: function from the flat index of a point that could not be solved together with its stretch to the
+    outcome of the point.
     """
 
     stretches: Stretches
@@ -133,7 +135,7 @@ class StretchSolver:
         """Solves a stretch; yields (flat indices, (m,), `StretchResult`) of all missing points that are
         solved together, then (flat index, outcome) of each further missing point.
 
-        A run that ends between two points has lost none of the points before.
+        A run that ends between two points loses no point that was yielded before.
         """
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)

@@ -5,9 +5,9 @@ built)
 
     y' = nu theta + c2 s,   theta' = c3 m,   s' = w gamma2 y + F c3 m,   m' = w gamma3 theta - g s.
 
-D is the minor of the rows s and m of two solutions, those that start with s = 1 or m = 1 at the clamp. With
-y^s for the minor of the rows y and s, and so on, y^s + theta^m - F y^theta is constant along the arm: 0 for
-these two solutions. The other five minors then obey a linear system of their own,
+D is the minor of the rows s and m of the two solutions that start with s = 1 or m = 1 at the clamp. With y^s
+for the minor of the rows y and s, and so on, y^s + theta^m - F y^theta is constant along the arm: 0 for these
+two solutions. The other five minors then obey a linear system of their own,
 
     (s^m)'     = w (gamma2 y^m - gamma3 theta^s)
     (theta^s)' = F c3 theta^m - c3 s^m - w gamma2 y^theta
@@ -63,10 +63,11 @@ class IntegrationMatrices(NamedTuple):
 
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
-    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); terms is 0 if MAX_TERMS
-    powers do not suffice.
+    """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); the array is empty,
+    terms = 0, if MAX_TERMS powers do not suffice.
 
-    F: forces of n arms, (n,). local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: (elements,).
+    F: forces of n arms, (n,). W: bound of |w|. local: `LocalCoefficients`, (6, n, elements, STAGES). lengths:
+    of the elements, in L, (elements,).
     """
     n, elements = local.shape[1:3]
     batches = -(-elements // ARM_ELEMENTS.lanes)
@@ -92,7 +93,8 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
     MAX_TERMS do not suffice.
 
     F: forces of n arms, (n,). coefficients: `LocalCoefficients` times the lengths of the elements, (n,
-    batches, 6, STAGES, LANES). terms: of w/W, (n, batches * LANES, MAX_TERMS, PADDED), all 0 at first.
+    batches, 6, STAGES, LANES). terms: coefficients of the powers of w/W, (n, batches * LANES, MAX_TERMS,
+    PADDED), all 0 at first.
     """
     most = 1
     values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
@@ -113,7 +115,7 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
 
 @compiled_for_vectors
 def _repeat(coefficients: Array, local: Array) -> None:
-    """Coefficients, (6, STAGES, LANES), repeated for each initial value: (6, STAGES, WIDTH)."""
+    """Writes coefficients, (6, STAGES, LANES), once for each initial value into local, (6, STAGES, WIDTH)."""
     for q in range(6):
         for i in range(ARM_ELEMENTS.stages):
             for k in range(MINORS):
@@ -123,7 +125,9 @@ def _repeat(coefficients: Array, local: Array) -> None:
 
 @compiled_for_vectors
 def _copy_to_simd_lane(eliminated: Array, lane: int, turning: Array) -> None:
-    """Copies `elimination_matrix` of an element into its lane of `turning`, (STAGES, 1 + STAGES, WIDTH)."""
+    """Copies `eliminated`, the `elimination_matrix` of one element, into the columns of lane number `lane` of
+    `turning`, (STAGES, 1 + STAGES, WIDTH).
+    """
     for i in range(ARM_ELEMENTS.stages):
         for j in range(1 + ARM_ELEMENTS.stages):
             for k in range(MINORS):
@@ -231,7 +235,9 @@ def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
 
 @compiled_for_vectors
 def _add_ends(weights: Array, rates: Array, end: Array) -> None:
-    """Adds the integrals of rates, (MINORS, STAGES, WIDTH), over the elements to `end`, (MINORS, WIDTH)."""
+    """Adds the integrals of rates, (MINORS, STAGES, WIDTH), over the elements to `end`, (MINORS, WIDTH).
+    weights: Gauss weights, (STAGES,).
+    """
     for row in range(MINORS):
         for i in range(0, ARM_ELEMENTS.stages, 4):
             p = weights[i]

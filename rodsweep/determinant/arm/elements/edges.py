@@ -16,12 +16,12 @@ from .settings import ARM_ELEMENTS
 
 @compiled
 def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks: Array) -> Array:
-    """Boundaries of elements for |w| <= W, increasing from 0 to 1; each element has an equal share of
-    `_density`.
+    """Boundaries of elements for |w| <= W, increasing from 0 to 1. The elements between two breaks have equal
+    integrals of `_density`.
 
     squares: of n arms as in `ArmSamples`, (4, n, points). tapers: (n,). points: midpoints of equal parts of
-    the intervals between breaks, (points,). breaks: (pieces + 1,). If an interval needs more than
-    `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
+    the intervals between breaks, (points,). breaks: of the profile, (pieces + 1,). If an interval needs more
+    than `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
     """
     density = _density(W, squares, tapers, points)
     pieces = len(breaks) - 1
@@ -50,10 +50,10 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
 
 @compiled
 def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
-    """Number of elements per length that the local exponents and the taper need, at points of n arms,
+    """Number of elements per length that the local exponents and the taper require, at the points of n arms,
     (points,).
 
-    At each point the arm that needs most elements is used. Arguments as in `element_edges`.
+    At each point the result is the largest number of all arms. Arguments as in `element_edges`.
     """
     density = np.empty(len(points))
     for i in range(len(points)):
@@ -92,9 +92,10 @@ def _last_terms(stages: int) -> Array:
 
 @compiled
 def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
-    """Mask of the elements, (elements,), in which the last two Legendre coefficients of an arm are too large.
+    """Mask of the elements, (elements,), that do not resolve an arm: one of the last two Legendre
+    coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `largest_tail` times the largest value.
 
-    local: coefficients, (6, n, elements, stages).
+    local: coefficients of n arms, (6, n, elements, stages). last_terms: result of `_last_terms`.
     """
     quantities, arms, elements, stages = local.shape
     coarse = np.zeros(elements, np.bool_)

@@ -31,7 +31,9 @@ def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
 
 @compiled_for_vectors
 def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array) -> None:
-    """Adds F Q c3 Q g to the leading (STAGES, STAGES) part of a matrix; g: (STAGES or more,)."""
+    """Adds F Q c3 Q g to the leading (STAGES, STAGES) part of `system`, (STAGES, columns). c3, Q: as in
+    `elimination_matrix`. g: (STAGES or more,), of which the first STAGES entries are used.
+    """
     stages = Q.shape[0]  # no constant: the compiler would unroll the inner loop instead of vectorizing it
     for i in range(stages):
         for k in range(stages):

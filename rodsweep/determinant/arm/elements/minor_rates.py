@@ -1,9 +1,9 @@
 """Rates d/du of the five minors along an element, one power of w at a time, and the start values of the
 minors.
 
-The equations are those of `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
+The equations are given in `rodsweep.determinant.arm.elements.collocation`. values, rates: of the minors at
 the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
-turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH).
+turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at the power w^0, else 0.
 """
 
 from ....arrays import Array
@@ -22,8 +22,8 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 
 @compiled_for_vectors
 def add_start_value(minor: int, start: float, values: Array) -> None:
-    """Adds the start value of a minor to `values`, (MINORS, STAGES, WIDTH), in the lanes of the solution with
-    start value 1 of this minor and 0 of all others.
+    """Adds `start` to the values, (MINORS, STAGES, WIDTH), of the minor with row index `minor`, in the lanes
+    of the solution whose start value is 1 for this minor and 0 for all other minors.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
@@ -32,8 +32,8 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
-    """`add_start_value` for theta^s or y^theta, (STAGES, WIDTH), from whose equation another minor is
-    eliminated.
+    """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
+    values: (MINORS, STAGES, WIDTH). turning: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`.
     """
     for i in range(ARM_ELEMENTS.stages):
         for lane in range(ARM_ELEMENTS.lanes):
@@ -46,7 +46,7 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
     """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
     at the previous power of w.
 
-    values, rates: (MINORS, STAGES, WIDTH). W: unit of w.
+    values, rates: (MINORS, STAGES, WIDTH). local: coefficients, (6, STAGES, WIDTH). W: unit of w.
     """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
@@ -59,7 +59,9 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
 
 @compiled_for_vectors
 def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s, (STAGES, WIDTH), the terms with s^m and the start value of theta^m."""
+    """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
+    theta^m. local, values: see the module docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
@@ -70,7 +72,9 @@ def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates
 
 @compiled_for_vectors
 def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH)."""
+    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). local, values: see the module
+    docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
@@ -78,7 +82,10 @@ def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m and s^m."""
+    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
+    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted. local, values:
+    see the module docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             turn = values[TM, i, c]
@@ -92,7 +99,9 @@ def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, ra
 
 @compiled_for_vectors
 def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH)."""
+    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). local, values: see the
+    module docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
@@ -100,7 +109,9 @@ def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. local, values: see the module
+    docstring.
+    """
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]

@@ -22,7 +22,8 @@ class ArmElementSettings(CompiledSettings):
     vanish."""
     largest_tail: float = 1e-9
     """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
-    exceeds this fraction of the largest value. The error of a Gauss method is about its square."""
+    exceeds this fraction of the largest value. The error of a Gauss method is about the square of this
+    fraction."""
     max_halvings: int = 12
     """Maximum number of halvings of an element, down to 2e-4 of the first length."""
     smallest_level: float = 16.0

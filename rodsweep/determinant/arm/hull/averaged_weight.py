@@ -127,10 +127,11 @@ def _fill(
     window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
-    """Writes the two regions (a, c) of a trial (F, f, h) into `regions`. In the first region (t - alpha) nu
-    is bounded by theta(0) = 0, in the second by the rotational drag.
+    """Writes the two regions (a, c) of a trial (F, f, h) into `regions`, (2, 2). In the first region (t -
+    alpha) nu is bounded by theta(0) = 0, in the second by the rotational drag.
 
-    window: positions of u - h and of u + h among the points u of the arm.
+    u: points of the arm, (points,). local: `LocalCoefficients` at u, (6, points). window: positions of u - h
+    and of u + h in u.
     """
     F, f, h = trial
     count = len(u)
@@ -172,7 +173,8 @@ def _averaged(
 ) -> tuple[Array, Array, Array]:
     """Returns (log t at u - h, log t at u + h, integral of log t over [u - h, u + h]), all (points,).
 
-    integral: integral of log t from the first point to every point, (points,).
+    u: points of the arm. log_t: log t at u. integral: integral of log t from the first point to every point.
+    All (points,). window: positions of u - h and of u + h in u.
     """
     behind = _interpolated(window[0], log_t)
     ahead = _interpolated(window[1], log_t)

@@ -16,7 +16,7 @@ n^2 N^2 with 4 c^2 = int (g - alpha nu)^2/(alpha c2) (int_0^u c3) du. Both give,
     Re w <= a n - (1 - c) n^2,   |Im w| <= a n + c n^2,
 
 a convex region bounded by a parabola. Of several alpha the one with the smallest region is taken. With alpha
-= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod is that of
+= g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
 `rodsweep.determinant.certificate.box`.
 
 Extremes along the arm are evaluated at points between the breaks, and `HULL.margin` allows for the arm
@@ -144,7 +144,7 @@ def _smallest_region(
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
     if no bound is found.
 
-    largest: bound of c. averaged: as in `SampledArms`.
+    F, lengths, local, averaged: as in `SampledArms`. largest: bound of c.
     """
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0
@@ -176,9 +176,9 @@ def _smallest_region(
 def _smaller_region(
     best: tuple[float, float], other: tuple[float, float], largest: float
 ) -> tuple[float, float]:
-    """The smaller of two regions (a, c), by the measure a^2 (1 + (c/HULL.wide_c)^4).
+    """The smaller of the regions (a, c) `best` and `other`, by the measure a^2 (1 + (c/HULL.wide_c)^4).
 
-    A region with c >= `largest` is never chosen.
+    `best` is returned if `other` has c >= `largest`.
     """
     if not other[1] < largest:
         return best

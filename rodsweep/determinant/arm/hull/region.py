@@ -28,7 +28,8 @@ class HullSettings(CompiledSettings):
     wide_c: float = 0.15
     """The smallest hull is chosen by the measure a^2 (1 + (c/wide_c)^4), which is 2 a^2 at this c."""
     constant_weights: int = 41
-    """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm."""
+    """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm, in
+    addition to 1."""
     min_weight: float = 1e-3
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
     supporting_lines: int = 48
@@ -72,8 +73,8 @@ NO_BOUND = Hull(inf, 0.0)
 
 @compiled
 def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
-    """Returns (distance, normal) for w with Im w >= 0. distance: lower bound of the distance of w from the
-    hull, at most 0 if w lies inside. normal: unit vector towards w.
+    """Returns (distance, normal) for w with Im w >= 0 and the hull with the constants a, c. distance: lower
+    bound of the distance of w from the hull, at most 0 if w lies inside. normal: unit vector towards w.
 
     <normal, w - v> >= distance for every v in the hull.
     """

@@ -56,7 +56,7 @@ def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Arr
     the largest squared norm of the hull's matrix along all arms, (factors,).
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
-    from `ChebyshevMatrices`.
+    matrix of `ChebyshevMatrices`.
     """
     found = np.zeros(len(HULL.weight_factors))
     points = local.shape[3]
@@ -86,7 +86,7 @@ def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integ
     (alphas,).
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
-    (`rodsweep.determinant.arm.hull.hull`). local: coefficients, (6, n, pieces, points). integral: from
+    (`rodsweep.determinant.arm.hull.hull`). F, lengths, local: as in `SampledArms`. integral: matrix of
     `ChebyshevMatrices`.
     """
     found = np.zeros(len(alphas))
