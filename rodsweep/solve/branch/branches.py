@@ -175,9 +175,8 @@ def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
     """Smallest taper in [low, high] whose tip the force does not crush; `high` if every tip is crushed."""
 
     def holds(taper: float) -> bool:
-        return (1 - BRANCH_SETTINGS.crushing_margin) * rod.build.relative_crushing_force(
-            taper
-        ) * rod.k1 > rod.F
+        share = (1 - BRANCH_SETTINGS.crushing_margin) * rod.build.relative_crushing_force(taper)
+        return share * rod.k1 > rod.F
 
     if holds(low) or not holds(high):
         return low if holds(low) else high

@@ -77,16 +77,14 @@ class SpecialBoundaries:
     ) -> Arrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # The number of an item is twice the index of its special point, plus 1 for the half to smaller
-        # values.
-
+        # The number is twice the index of the special point, plus 1 for the half to smaller values.
         index, behind = divmod(item, 2)
         one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, item: int) -> int:
-        """Index of the row on which half curve number `unit` starts."""
+        """Index of the row on which half curve number `item` starts."""
         return self.special[item // 2].number
 
     def item_label(self, item: int) -> str:
@@ -173,9 +171,8 @@ class _CurvesOfKind:
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
-        return sorted(
-            (p.row_coordinate, self.line.coordinate(p.at)) for p in (curve.points[0], curve.points[-1])
-        )
+        ends = curve.points[0], curve.points[-1]
+        return sorted((p.row_coordinate, self.line.coordinate(p.at)) for p in ends)
 
     def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
@@ -203,8 +200,8 @@ def _traced(
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
-    """One half of a curve, from the special point `one` of a row; `half` is None after a failure. located:
-    special points of this row, with cycles. special: all special points, for the distances."""
+    """One half of a curve, from special point `one` of a row; `half` is None after a failure. located: points
+    of this row, with cycles. special: all special points, for the distances."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
@@ -225,8 +222,7 @@ def _traced(
 
 
 def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row of special point `one` from the curve through `points`, in row lengths; inf if
-    not near."""
+    """Distance along the row of special point `one` from a curve, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
     row_coordinate = limits.rows.coordinate(one.row)

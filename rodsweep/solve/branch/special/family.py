@@ -1,11 +1,10 @@
 """Correction of a predicted point of a curve of folds or torus points over two parameters.
 
 Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
-row coordinate. In the plane of these variables the special points form a smooth curve, the zeros of a test
-function; the curve is smooth also at a cusp, where both parameters turn back. The secant method finds a zero
-in a direction across the curve. All cycles and their test functions are corrected with the matrix factors of
-one cycle (`augmented`). The first derivatives across the curve come from the previous point. The error is the
-difference between two meshes, measured at about every third point.
+row coordinate. There the special points form a smooth curve, also at a cusp, where both parameters turn back:
+the zeros of a test function. The secant method finds a zero across the curve. All cycles and test functions
+are corrected with the matrix factors of one cycle (`augmented`). The first derivatives across the curve come
+from the previous point. The error is the difference between two meshes, measured at every third point or so.
 """
 
 from dataclasses import dataclass, replace
@@ -62,8 +61,7 @@ class CycleFamily:
     def near_point(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near the point `point` of a curve of special points. kind, rows,
-        workspace: as in the class."""
+        """The family of the cycles near `point` of a curve of special points; the rest as in the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 

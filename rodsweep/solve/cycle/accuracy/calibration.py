@@ -101,8 +101,7 @@ class Calibration:
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
-        `orbit` on the same mesh. A limit is a fraction of an error of this calibration, and decreases with
-        the coefficient tails."""
+        `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
             _change(self.tails, _tails(orbit)), 1.0
         )
@@ -129,9 +128,8 @@ class Calibration:
         finer mesh if no allowed mesh suffices."""
         present = self.mesh
         lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
-        orders = np.arange(
-            lowest, min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION.max_more_orders) + 1
-        )
+        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION.max_more_orders)
+        orders = np.arange(lowest, highest + 1)
         fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
         most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
         intervals = np.arange(fewest, most + 1)
