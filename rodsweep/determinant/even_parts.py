@@ -150,4 +150,5 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
         even, total, noise = even_sum_by_squares(w, coefficients, blur_M, blur_square)
-    return even, total, NOISE_UNIT * (math.exp(-even.S) + size / 2 * noise)
+    scale_noise = 1 + EVEN_FUNCTION_SETTINGS.rounding_of_scale * even.S
+    return even, total, NOISE_UNIT * (scale_noise * math.exp(-even.S) + size / 2 * noise)

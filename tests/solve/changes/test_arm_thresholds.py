@@ -203,3 +203,15 @@ def test_errors_of_double_eigenvalues_hold_in_the_last_digit():
     exact = "11.144982346022727144", "79.813236894182175485", "125.31246511120310814"
     for crossing, at in zip(double, exact, strict=True):
         assert abs(Decimal(crossing.at) - Decimal(at)) <= Decimal(crossing.error) <= 1e-12 * crossing.at
+
+
+@pytest.mark.parametrize("multiple", [1.5, 2.0, 3.0, 8.0])
+def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(multiple):
+    """With equal intervals one of their ends would be the Hopf point, where no count succeeds."""
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
+    (first,) = across_the_axis(
+        solve_thresholds(rod, ThresholdsRequest(20.0, 1e-10, certify=True, crossings=32))
+    )
+    found = solve_thresholds(rod, ThresholdsRequest(multiple * first[1], 1e-10, certify=True, crossings=32))
+    assert found.status == ThresholdStatus.ok
+    assert across_the_axis(found)[0] == (first[0], pytest.approx(first[1], rel=1e-11))

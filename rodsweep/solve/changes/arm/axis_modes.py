@@ -9,6 +9,7 @@ import numpy as np
 from ....arrays import Complex
 from ...point import Unsolvable
 from ...spectrum.search import Spectrum, SpectrumRequest
+from ...spectrum.status import SpectrumStatus
 from ..anchors import ANCHOR_SETTINGS, minimum_of_cubic
 from .path import ArmPath
 
@@ -119,7 +120,9 @@ class AxisModesOfPath:
                 p, SpectrumRequest(modes, ANCHOR_SETTINGS.place_accuracy, self.certify)
             )
         if found.unstable_count < 0:
-            raise Unsolvable(f"{self.problem.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
+            decided = found.status != SpectrumStatus.ok  # else only the number of unstable modes is unknown
+            name = found.status.name if decided else SpectrumStatus.undecided.name
+            raise Unsolvable(f"{self.problem.path.text_at(p)}: {name} {found.message}".rstrip())
         if _needed_modes(found) > max(modes, AXIS_MODE_SETTINGS.max_known_modes):
             raise Unsolvable(
                 f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, more than "

@@ -29,7 +29,11 @@ class ArmPathSettings:
     """Settings for the intervals of a path of arms and for following eigenvalues."""
 
     edges: int = 12
-    """Number of equal intervals into which a path of arms is first divided."""
+    """Number of intervals into which a path of arms is first divided."""
+    edge_shift: float = 0.0618
+    """All edges but the first and the last are shifted by this fraction of an interval. With equal intervals,
+    an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice or three times the
+    force of the Hopf point."""
     points_between: int = 4
     """Number of steps in which eigenvalues are followed through each of the `edges` intervals."""
     followed_modes: int = 4
@@ -89,9 +93,10 @@ class ArmPath(PathProblem):
 
     def edges(self, low: float, high: float) -> list[float]:
         edges = np.linspace(low, high, ARM_PATH.edges + 1)
+        edges[1:-1] -= ARM_PATH.edge_shift * (high - low) / ARM_PATH.edges
         if self._followed is None and low < high:
-            points = np.linspace(low, high, ARM_PATH.edges * ARM_PATH.points_between + 1)
-            points[:: ARM_PATH.points_between] = edges
+            steps = np.arange(ARM_PATH.edges * ARM_PATH.points_between + 1) / ARM_PATH.points_between
+            points = np.interp(steps, np.arange(len(edges)), edges)
             self._followed = FollowedArms(self.path, points, ARM_PATH.followed_modes)
         return edges.tolist()
 
