@@ -143,7 +143,7 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def solve_from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """The cycle of a rod, solved without a neighbour. start: value of the option `start`."""
+    """The cycle of a rod to the relative accuracy `accuracy`, without a neighbour. start: option `start`."""
     return require_cycle(
         solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
     )
@@ -172,7 +172,7 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
 
 
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
-    """Measurements of all `cycle_contenders` on all rods `points`, timed in turn."""
+    """Measurements of all `cycle_contenders` on all rods `points`, in `rounds` timed rounds."""
     rods = [swept_rod(point, ACCURACY) for point in points]
     entries = [
         CaseWithErrorMeasure(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods

@@ -82,7 +82,9 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem."""
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem.
+    peers: contenders of the peers. rounds: number of timed rounds.
+    """
     measurements = []
     for name, rod in ARMS.items():
         judge = partial(_error_field, exact_arm_spectrum(rod))

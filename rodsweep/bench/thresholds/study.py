@@ -173,7 +173,9 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
 def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """Measurements of the contenders `every`, which find the threshold `kind`, on each rod."""
+    """Measurements of the contenders `every`, which find the threshold `kind`, on each rod. kind: ONSET or
+    HOPF. rounds: number of timed rounds.
+    """
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"

@@ -85,8 +85,8 @@ class BeatingPicture:
         self.grip.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws the cycle of an answer `found` of the task `limit_cycle`; if there is no cycle, the straight
-        arm and a sentence.
+        """Draws the cycle of an answer `found` of the task `limit_cycle`, with a sentence if the cycle is not
+        stable; if there is no cycle, the straight arm and a sentence. length: unit and label of both axes.
         """
         self.length = length
         self.remove_dragged_shape()

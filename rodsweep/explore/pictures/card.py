@@ -101,8 +101,8 @@ class Card:
     """A figure, or a sentence in its place. The axes of the figure are invisible until the first `reveal`."""
 
     def __init__(self, name: str, figure: figure, title_lines: int = 1):
-        """title_lines: number of lines reserved for the title; further lines are cut until the browser lays
-        out the figure again.
+        """name: prefix of the names of the Bokeh models. title_lines: number of lines reserved for the title;
+        further lines are cut until the browser lays out the figure again.
         """
         self.figure = figure
         self.title_lines = title_lines

@@ -98,6 +98,9 @@ def _fixed(state: PageState) -> dict[str, Any]:
 
 
 def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
+    """Diagram of uniform rods, with the variables of `diagram`, from the task `phase_diagram`. with_cycles:
+    whether folds and torus points of cycles are followed.
+    """
     F = np.linspace(0, state.largest_force(), LOAD_COUNT)
     rows = second_parameter_values(state, SLOW_ROW_COUNT if with_cycles else ROW_COUNT)
     keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
@@ -129,6 +132,9 @@ def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def _of_thresholds(state: PageState) -> dict[str, Any]:
+    """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram`, from
+    the task `thresholds`.
+    """
     keywords: dict[str, Any] = {**_fixed(state), state.second: second_parameter_values(state, SLOW_ROW_COUNT)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
@@ -139,6 +145,9 @@ def _of_thresholds(state: PageState) -> dict[str, Any]:
 
 
 def _of_arm(state: PageState) -> dict[str, Any]:
+    """Diagram of arms, with the variables of `diagram`, from the task `thresholds` for values around the
+    second quantity of `state`.
+    """
     given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
     quantity = QUANTITIES[state.second]
     middle = in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)

@@ -199,7 +199,8 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
     curves of the file. Crushed points are ignored if the rods are crushed at F = k1.
 
-    table: classes at the computed points, (rows with a finite value, columns).
+    line, row: parameters along a row, and constant on a row. table: classes at the computed points, (rows
+    with a finite value, columns).
     """
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])

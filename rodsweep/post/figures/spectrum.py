@@ -159,7 +159,7 @@ def _map(view: View, names: list[str]) -> Figure:
 
 def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
     """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
-    growth: values, (nx, ny).
+    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny).
     """
     limits = axes.axis()
     across, up = np.meshgrid(x, y, indexing="ij")

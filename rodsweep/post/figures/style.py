@@ -100,8 +100,8 @@ def file_label(view: View, views: Sequence[View]) -> str:
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives 200. digits:
-    largest number of significant digits.
+    """The number `value` as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives
+    200. digits: largest number of significant digits.
     """
     if isinf(value):
         return r"\infty" if value > 0 else r"-\infty"
@@ -208,8 +208,8 @@ def colour_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws coloured cells with a labelled colour bar. edges: edges of the cells along x and along y. values:
-    (ny, nx); a cell with NaN has no colour. colours: name of a colour map.
+    """Draws coloured cells with a colour bar. edges: edges of the cells along x and along y. values: (ny,
+    nx); a cell with NaN has no colour. label: label of the colour bar. colours: name of a colour map.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """

@@ -28,7 +28,7 @@ THRESHOLD_CLAUSES = {
     "restabilization": "it is stable again from {F}",
     "real_again": "decaying disturbances stop oscillating at {F}",
     "real_leads": "a real eigenvalue becomes the leading eigenvalue at {F}",
-    "pair_leads": "a complex pair becomes the leading pair at {F}",
+    "pair_leads": "a complex pair overtakes the leading real eigenvalue at {F}",
 }
 """Clause on the straight rod at a threshold, by kind of threshold."""
 SEARCH_TASKS = ("thresholds", "criticality", "branch")

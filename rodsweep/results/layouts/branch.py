@@ -72,7 +72,8 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(
             "unstable_multipliers",
-            "number of Floquet multipliers outside the unit circle; 0: stable; -1: undecided within error",
+            "number of nontrivial Floquet multipliers outside the unit circle; 0: stable; -1: undecided "
+            "within error",
         ),
         *(real(name, "1", f"estimate of {error}, at branch_{parameter}") for name, error in ERRORS),
     )

@@ -47,6 +47,7 @@ class KeptArrays:
     pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, head: bytes):
+        """directory: journal directory. fingerprint: of config and points. head: first line of each file."""
         self.directory = directory
         self.header = head + fingerprint.encode() + b"\n"
 
@@ -84,7 +85,9 @@ class Checkpoints(KeptArrays):
     pattern = CHECKPOINTS
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
-        """state_of: makes a solver state from its arrays (the result of the state's method `arrays`)."""
+        """directory, fingerprint: as in `KeptArrays`. state_of: makes a solver state from its arrays (the
+        result of the state's method `arrays`).
+        """
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
@@ -113,6 +116,7 @@ class ItemResults(KeptArrays):
     pattern = ITEM_RESULTS
 
     def __init__(self, directory: Path, fingerprint: str):
+        """directory, fingerprint: as in `KeptArrays`."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:

@@ -62,9 +62,8 @@ class Journal:
     def append_all(
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
-        """Writes the records of finished points: flat indices `index`, (n,), and variables by name, (n, ...).
-
-        reasons: as in `append`.
+        """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
+        name, (n, ...). reasons: as in `append`.
         """
         records = np.zeros(len(index), self.page.dtype)
         records["index"] = index

@@ -74,8 +74,8 @@ def _of_modes(record: Record) -> ArmMotion:
 
 
 def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
-    """Function from a record to the motion at the first Hopf point. at: name of the variable with the force
-    at crossings.
+    """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
+    point. at: name of the variable with the force at crossings.
     """
 
     def found(record: Record) -> ArmMotion:
@@ -106,11 +106,13 @@ def _of_flutter(record: Record) -> ArmMotion:
 
 
 def _of_cycle(record: Record) -> ArmMotion:
+    """Motion on the limit cycle. If there is no cycle, the amplitude is 0 and the frequency NaN."""
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
 def _of_branches(record: Record) -> ArmMotion:
+    """Motions on the cycles of all branches."""
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
 

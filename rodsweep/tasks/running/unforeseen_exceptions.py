@@ -132,8 +132,8 @@ class TracebackLog:
     """
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
-        """output: the result file. where: function from the flat index of a point to a text with its
-        parameters. strict: whether every exception is raised again after it is logged.
+        """output: the result file. rank: number of this rank. where: function from the flat index of a point
+        to a text with its parameters. strict: whether every exception is raised again after it is logged.
         """
         self.strict = strict
         self.path = log_file(output)

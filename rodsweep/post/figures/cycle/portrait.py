@@ -160,9 +160,9 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
-    """Draws the follower force as an arrow that ends at the tip, along -(cos theta, sin theta) with theta at
-    the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length: L, in the unit of the
-    axes.
+    """Draws the follower force as an arrow of the colour `colour` that ends at the tip, along -(cos theta,
+    sin theta) with theta at the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length:
+    L, in the unit of the axes.
     """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     along = -ARROW_LENGTH * length * e1

@@ -231,7 +231,9 @@ def class_along_row(
 
 
 def _changes(view: View, variable: str, line: str, index: int) -> Array:
-    """Positions of the changes of class along a row, in increasing order, (m,). index: index of the row."""
+    """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
+    `stable_states`. line: parameter along the row. index: index of the row.
+    """
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[index] for name in names if name in view.variables}
     at = v["crossing_at"]

@@ -214,7 +214,8 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
 
 
 def _first_over_force(paths: list[Array], force: int) -> list[Array]:
-    """Parts of curves, (n, 2) each, that have the smallest F of all curves. force: column with F."""
+    """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
+    column with F."""
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
@@ -231,9 +232,8 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes the symbol `name` next to the path, (points, 2), with the greatest visible length. share:
-    position of the symbol, as a fraction of this length.
-    """
+    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `share` of
+    this length. paths: curves, (points, 2) each."""
     lengths = []
     seen = []
     for path in paths:

@@ -177,7 +177,8 @@ def wrapped(text: str) -> list[str]:
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
     """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
-    `own`. v: variables of the file. The errors have the shape of the two variables.
+    `own`; 0 where `own` is 0 or infinite. v: variables of the file. The errors have the shape of the two
+    variables.
     """
     known = np.isfinite(v[own]) & (v[own] != 0)
     scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)

@@ -124,7 +124,9 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
         if apart:
             raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
         if points.is_grid != grids[0].is_grid:
-            raise InputError(f"{first.path} and {other.path} cannot be joined: a grid and a list")
+            raise InputError(
+                f"{first.path} and {other.path} cannot be merged: one has a grid of points, the other a list"
+            )
     if "arm" in meant:
         raise InputError(
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
@@ -190,7 +192,9 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
-    """Config of the first file with the axes of the joined points; meant: the `meaning` of this config."""
+    """Config of the first file with the axes of the joined points. meant: `Config.settings_of_results` of the
+    first file's config.
+    """
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
