@@ -99,7 +99,9 @@ class Page:
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Requests the shape with the tip held at `tip`, in L, or the motion after release; see TIP_KINDS."""
+        """Requests the shape with the tip held at `tip`, in L, or the motion after release; see TIP_KINDS.
+        kind: "bent" or "motion".
+        """
         for other in TIP_KINDS:
             if other != kind:
                 self._drop(other)
@@ -145,7 +147,9 @@ class Page:
         self.idle.restart()
 
     def _show_error(self, sentence: str) -> None:
-        """Cancels all solves and shows an error message in place of all pictures except a drawn diagram."""
+        """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
+        diagram.
+        """
         self.idle.cancel()
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
@@ -171,7 +175,9 @@ class Page:
         self._show_solving()
 
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
-        """Sends a new question. A stored answer replaces the solve, unless `is_solved_again`."""
+        """Sends a new question of the kind `kind`. A stored answer replaces the solve, unless
+        `is_solved_again`. tip: position of the dragged tip, in L.
+        """
         question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
         needed = needs(question)
         if self.asked.get(kind) == needed:

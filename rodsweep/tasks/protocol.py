@@ -53,7 +53,9 @@ class JointVariables(Protocol):
         """Initial data that this rank has cached for the items `chosen`, to be sent to all ranks."""
 
     def add_initial_data(self, starts: Mapping[int, Any]) -> None:
-        """Caches initial data received from a different rank."""
+        """Caches initial data received from a different rank. starts: initial data by number, as from
+        `initial_data`.
+        """
 
     def solve(self, items: Any, item: int) -> NamedArrays:
         """Solves an item and returns its result."""

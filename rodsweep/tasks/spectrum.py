@@ -97,7 +97,9 @@ class SpectrumTask(CertifiedTask):
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material."""
+        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
+        as in `Task.afterwards`.
+        """
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:

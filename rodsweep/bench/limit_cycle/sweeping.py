@@ -112,7 +112,8 @@ class SweptRod:
 
 
 def swept_rod(point: Rod, accuracy: float) -> SweptRod:
-    """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps."""
+    """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
+    of the cycles."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
@@ -157,8 +158,7 @@ def require_cycle(cycle: Cycle) -> Cycle:
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and for each cold
-    start."""
+    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one per swept parameter and cold start."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))

@@ -99,7 +99,8 @@ def _error_field(exact: list[complex], w: Complex) -> dict[str, float]:
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
-    TARGET_ERROR."""
+    TARGET_ERROR. rounds: number of timed rounds.
+    """
     rows = [
         {
             "method": method,

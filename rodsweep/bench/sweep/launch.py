@@ -184,7 +184,8 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
-    was killed on purpose."""
+    was killed on purpose. kind: kind of solver.
+    """
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output

@@ -132,7 +132,9 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """Measurement of a sweep from all its runs; times are medians, and the error is nan."""
+    """Measurement of a sweep from all its runs; times are medians, and the error is nan. ranks: number of
+    ranks.
+    """
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]

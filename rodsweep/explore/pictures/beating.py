@@ -111,12 +111,14 @@ class BeatingPicture:
             self.card.tell(sentence_of(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
-        """Draws the equilibrium shape of the arm whose tip the user drags."""
+        """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
+        `dragged_equilibrium`.
+        """
         self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
-        """Starts the animation of a released arm, and writes the state that the arm reaches into the
-        title.
+        """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
+        found: result of `motion`, and the position `tip`.
         """
         factor = self.length.factor
         step = found["step"]

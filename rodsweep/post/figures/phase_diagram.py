@@ -152,8 +152,8 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the axes are F and k1 and the rods are crushed at F = k1, as uniform rods of linear material
-    are.
+    """Whether the axes `line` and `row` are F and k1 and the rods are crushed at F = k1, as uniform rods of
+    linear material are.
     """
     return (line, row) == CRUSHING and has_covering(view.config)
 
@@ -172,8 +172,8 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite
-    values.
+    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite values.
+    line, row: parameters along a row, and constant on a row.
     """
     x = view.variables[line]
     y = view.axes[row]

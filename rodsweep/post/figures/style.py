@@ -118,7 +118,9 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with their symbols and values, as one line of TeX."""
+    """Parameters with their symbols and values, as one line of TeX. parameters: values by name. digits:
+    largest number of significant digits.
+    """
     return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
@@ -147,7 +149,9 @@ def require_content(view: View, available: object, what: str) -> None:
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """Draws one legend, with up to `columns` columns, below the panels of the figure."""
+    """Draws one legend, with up to `columns` columns, below the panels of the figure. handles: legend
+    entries.
+    """
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 

@@ -176,7 +176,9 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
+    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
+    branches of the rod.
+    """
     found = {
         rounded(factor * special.at, factor * special.error): None
         for curve in curves

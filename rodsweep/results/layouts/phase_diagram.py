@@ -78,7 +78,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together, including variables that the config does
-    not request.
+    not request. config: the resolved config. is_grid: not used.
     """
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)

@@ -161,7 +161,7 @@ def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 def kept_sentence(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
-    points.
+    points. fingerprint: of config and points.
     """
     return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
 

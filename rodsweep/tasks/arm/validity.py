@@ -196,7 +196,7 @@ class ArmValidity:
 
     def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load.
+        if the arm has no load. index: as in `of`.
         """
         own = self._column("k1", index)
         F = self._column("F", index) if "F" in self.points.names else motion.F
@@ -210,7 +210,8 @@ class ArmValidity:
     def _compressing(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section.
 
-        NaN for rubber, whose constitutive law includes large compression.
+        NaN for rubber, whose constitutive law includes large compression. F, index: forces, and indices of
+        their points, as in `of`.
         """
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
@@ -221,7 +222,7 @@ class ArmValidity:
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
-        have this parameter.
+        have this parameter. index: as in `of`.
         """
         if name not in self.points.names:
             return None

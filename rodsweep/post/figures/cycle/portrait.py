@@ -98,7 +98,8 @@ def _panels(
     """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
 
     The panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
-    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank.
+    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank. narrow: whether the
+    page is narrow.
     """
     count = len(cycles)
     (left, right), (low, high) = region(cycles)

@@ -221,7 +221,8 @@ def _axis(own: Axis, values: Array) -> Axis:
 
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: Plan) -> None:
-    """Raises InputError if the points of a chain of the joined file would come from several files."""
+    """Raises InputError if the points of a chain of the joined file would come from several files. sources,
+    grids: source files and their grids. plan: plan of the joined file."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]
