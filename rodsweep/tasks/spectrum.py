@@ -64,7 +64,9 @@ class SpectrumTask(CertifiedTask):
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
-        """Longitudinal growth rates, if requested, along the parameters on which these rates depend."""
+        """Longitudinal growth rates, if requested, along the parameters on which these rates depend. Empty if
+        not requested.
+        """
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()

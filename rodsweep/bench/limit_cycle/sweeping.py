@@ -134,7 +134,8 @@ def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
 
 
 def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """Solves the timed points of a sweep along `axis`, each from its neighbour; returns the last cycle."""
+    """Solves the timed points of a sweep along `axis`, each from its neighbour, to `accuracy`; returns the
+    last cycle."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
         there = earlier_rod(rod.rod, axis, k)
@@ -158,7 +159,7 @@ def require_cycle(cycle: Cycle) -> Cycle:
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one per swept parameter and cold start."""
+    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one per parameter and cold start."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))

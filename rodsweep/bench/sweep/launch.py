@@ -184,7 +184,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
-    was killed on purpose. kind: kind of solver.
+    was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed.
     """
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)

@@ -83,7 +83,8 @@ def has_uniform_rods(state: PageState) -> bool:
 
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,): logarithmically spaced around the present value, or linearly
-    over TAPER_RANGE for the taper. rows: number of values.
+    over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the present value is
+    finite and positive.
     """
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)

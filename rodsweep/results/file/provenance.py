@@ -64,7 +64,7 @@ def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
 
 
 def merged_blas_kernels(*several: Iterable[str]) -> str:
-    """Value of KERNELS_ATTRIBUTE for a file with points computed by the kernels in all the lists `several`."""
+    """Value of KERNELS_ATTRIBUTE for a file with points computed by the kernels in the lists `several`."""
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 

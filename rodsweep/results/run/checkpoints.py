@@ -1,8 +1,8 @@
-"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of items
-(work items for variables that depend on all points).
+"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of work items
+for variables that depend on all points.
 
 Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A damaged
-file, or a file of another run, is ignored: the chain starts again, the item is solved again.
+file, or a file of another run, is ignored: the chain starts again, the work item is solved again.
 """
 
 import io
@@ -19,7 +19,7 @@ from .journal import drop_files
 CHECKPOINTS = "chain-*"
 """Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
 ITEM_RESULTS = "unit-*"
-"""Pattern of the file names of results of items, including files that a kill left unfinished."""
+"""Pattern of the file names of results of work items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 6\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
@@ -111,7 +111,9 @@ class Checkpoints(KeptArrays):
 
 
 class ItemResults(KeptArrays):
-    """Store of the results of finished items, until the variables that depend on all items are computed."""
+    """Store of the results of finished work items, until the variables that depend on all points are
+    computed.
+    """
 
     pattern = ITEM_RESULTS
 
@@ -120,11 +122,11 @@ class ItemResults(KeptArrays):
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:
-        """Stores the result of the item number `item`, as arrays by name."""
+        """Stores the result of the work item number `item`, as arrays by name."""
         self.put(item, arrays)
 
     def read(self) -> dict[int, Arrays]:
-        """Results of all items with an intact file, by number of the item."""
+        """Results of all work items with an intact file, by number of the work item."""
         names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULTS))
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
         return {item: arrays for item, arrays in found.items() if arrays is not None}

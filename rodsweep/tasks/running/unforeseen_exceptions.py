@@ -60,7 +60,9 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
 
 @dataclass(frozen=True, slots=True)
 class _Guard:
-    """Implementation of `guarded_solver`. inner: the solver whose exceptions are caught."""
+    """Implementation of `guarded_solver`. inner: the solver whose exceptions are caught. layout: variables of
+    a point. note_exception: function called with every exception that is caught.
+    """
 
     inner: Solver
     layout: Layout

@@ -156,7 +156,7 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, index: Any) -> list[
 def _band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
     as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: as in
-    `_lines`.
+    `_lines`. The list is empty if the drag does not vary, or is the quantity on the horizontal axis.
     """
     if DRAG not in view.arm_axes or x == DRAG or len(view.variables[DRAG]) < 2:
         return []

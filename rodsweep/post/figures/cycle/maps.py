@@ -144,7 +144,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
 
 def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
     """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
-    entry.
+    entry. The list is empty if no cell is marked.
     """
     if not unstable.any():
         return []

@@ -129,7 +129,8 @@ def _unit(view: View, name: str) -> str:
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines with the ranges of all variables in SI units, over the points in the mask `done`, (...,)."""
+    """Lines with the ranges of all variables in SI units, over the points in the mask `done`, (...,). Empty
+    list for a rod."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)

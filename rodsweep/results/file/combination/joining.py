@@ -155,7 +155,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(
-                f"the files have {name} = {values}, which differ by rounding only; make them equal"
+                f"the files have {name} = {values}, which differ by rounding only; make these values equal"
             )
         axes.append(axis)
     whole = Points(grids[0].names, tuple(axes), is_grid=True)
@@ -230,7 +230,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
         if not np.array_equal(grid.by_name[name], plan.points.by_name[name]):
             raise InputError(
                 f"{source.path} differs from the other files in {name}, along which each point starts from "
-                "its neighbour; pieces of chains cannot be joined; use run --extend"
+                "its neighbour; parts of chains cannot be merged; use run --extend"
             )
 
 
