@@ -54,7 +54,7 @@ class Page:
             self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
-        """Shows the state that an address encodes; query: the part of the address after "?"."""
+        """Shows the state of an address, or an error message; query: part of the address after "?"."""
         try:
             self._change_to(from_address(query, self.state))
         except InputError as error:
@@ -62,7 +62,7 @@ class Page:
             self._show_error(str(error))
 
     def load(self, text: str) -> None:
-        """Shows the rod or the arm of a config; text: the config in YAML."""
+        """Shows the rod or the arm of a config, or an error message; text: the config in YAML."""
         try:
             loaded = state_of_text(text, self.state.F_max)
             self._change_to(replace(loaded, across=loaded.across or self.state.across))

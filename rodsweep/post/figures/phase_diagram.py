@@ -60,8 +60,8 @@ entry."""
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Colours for a map of an integer variable. words: (integer, word) of each value. colours: colour of each
-    word.
+    """Colours for a map of an integer variable. variable: name of the variable. words: (integer, word) of
+    each value. colours: colour of each word.
     """
 
     variable: str
@@ -97,7 +97,8 @@ BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
 
 def draw_phase_diagram(request: FigureRequest) -> str:
     """Draws the class or the stable states of the rod over two parameters, with boundary curves, or along
-    single rows if fewer than two rows are at finite values; returns a sentence.
+    single rows if fewer than two rows are at finite values; returns a sentence. Raises InputError for options
+    that the task does not have, and if nothing can be drawn.
     """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)

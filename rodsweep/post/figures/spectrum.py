@@ -58,7 +58,7 @@ GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 def draw_spectrum(request: FigureRequest) -> str:
     """Draws spectra along lines, a map, or the eigenvalues of single points, depending on the files; returns
-    a sentence.
+    a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn.
     """
     if len(request.views) > 1:
         return _several(request)

@@ -50,7 +50,7 @@ class HoverPoint:
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
     """Texts for n values of a curve. places: positions relative to the lower left corner of the figure, in
-    pixels, (n, 2).
+    pixels, (n, 2). texts: texts of the values.
     """
 
     places: Array

@@ -41,7 +41,7 @@ class HasArrays(Protocol):
 
 class KeptArrays:
     """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
-    identified by a number.
+    identified by a number. pattern: pattern of the names of the files.
     """
 
     pattern: ClassVar[str]

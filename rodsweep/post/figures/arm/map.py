@@ -55,7 +55,8 @@ MAP_HATCH_COLOUR = "0.35"
 
 def draw_arm_map(request: FigureRequest) -> str:
     """Draws the main results of a task over one or two quantities of an arm, with a panel of lines or a map
-    for each result; returns a sentence.
+    for each result; returns a sentence. Raises InputError for options that the task does not have, and if
+    nothing can be drawn.
     """
     view = replace(request, what=None).only_view()
     long = [name for name in view.arm_axes if len(view.variables[name]) > 1]

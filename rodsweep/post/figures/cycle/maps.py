@@ -67,7 +67,8 @@ panel."""
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
-    Hopf points. narrow: whether the panels are stacked.
+    Hopf points, unstable cycles, and the statuses of cells without a cycle. narrow: whether the panels are
+    stacked. Raises InputError if no point has a cycle.
     """
     points = point_map(view)
     words = view.outcomes[points.at]

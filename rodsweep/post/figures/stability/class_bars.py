@@ -76,7 +76,8 @@ THRESHOLD_DIGITS = 6
 
 
 def draw_class_bars(view: View) -> Figure:
-    """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods."""
+    """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods. Raises
+    InputError if nothing can be drawn."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
     require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")

@@ -40,7 +40,7 @@ HEADROOM = 1.05
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
     a line for each value of the other parameter. long: the one or two parameters with several values.
-    searched: clause on the searched range.
+    searched: clause on the searched range. Raises InputError if nothing can be drawn.
     """
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)

@@ -192,8 +192,8 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
-    """Config of the first file with the axes of the joined points. meant: `Config.settings_of_results` of the
-    first file's config.
+    """Config of the first file, for grids with the axes of the joined points. meant:
+    `Config.settings_of_results` of the first file's config.
     """
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
