@@ -165,7 +165,8 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
     """Diagram, with the variables of `diagram`, from a result of the task `thresholds` for arms. values:
     values of the second quantity, (rows,).
 
-    The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure.
+    The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure. If there is
+    neither a pressure nor flutter, the load extends to the largest searched pressure.
     """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]
