@@ -121,7 +121,9 @@ def _sections(task: str) -> dict[str, Collection[str]]:
 
 
 def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
-    """Name of the first section with the key `name`; None if no section has this key."""
+    """Name of the first section with the key `name`; None if no section has this key. sections: allowed keys
+    by name of the section.
+    """
     return next((section for section, known in sections.items() if name in known), None)
 
 
@@ -166,7 +168,7 @@ def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
 
 
 def _range(start: float | str, stop: float | str, num: int, spacing: str) -> AxisRange:
-    """An axis of a sweep as a range; InputError for a masked value."""
+    """An axis of a sweep as a range with the keys of an `AxisRange`; InputError for a masked value."""
     for name, value in (("start", start), ("stop", stop), ("num", num)):
         if np.ma.is_masked(value):
             raise InputError(f"{name} is masked, so it is not a number; give a number")
@@ -206,8 +208,8 @@ def plain_keyword(key: str, value: Any) -> Any:
 
 
 def _with_unit(value: Any, unit: str) -> Any:
-    """Text of a number with a unit; for a list, the list of these texts; the unchanged number if `unit` is
-    empty.
+    """Text of the number `value` with a unit; for a list, the list of these texts; `value` unchanged if
+    `unit` is empty.
     """
     if isinstance(value, list):
         return [_with_unit(item, unit) for item in value]

@@ -75,8 +75,9 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
 
 
 def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
-    """The Dataset that `rodsweep run` computes on `ranks` MPI ranks in a temporary directory. tree: config
-    tree. strict: as in `sweep`. shown: progress display.
+    """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
+    directory. tree: config tree. strict: as in `sweep`. shown: progress display. Raises EnvironmentIncomplete
+    if mpiexec cannot be started, or the exception of `_failure`.
     """
     points = tree["parameters"].get("points")
     if points is not None:

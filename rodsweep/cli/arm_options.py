@@ -53,7 +53,9 @@ def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Calla
 
 
 def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
-    """Decorator that adds the option of one quantity of an arm."""
+    """Decorator that adds the option of one quantity of an arm. name: name of the quantity. required: whether
+    the option is required.
+    """
     meaning = QUANTITIES[name].meaning
     help_text = f"{meaning[0].upper()}{meaning[1:]}{HELP_REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")

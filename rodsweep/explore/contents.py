@@ -111,7 +111,9 @@ class PageContents:
         self.sharing.show(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
-        """Draws the answer `found` to a question of the kind `kind` in all pictures that show this answer."""
+        """Draws the answer `found` to a question of the kind `kind` in all pictures that show this answer,
+        and updates the table of numbers; the answer "film" is saved as a file.
+        """
         if kind == "spectrum":
             self.spectrum.show(found)
             self.mode.show(found)

@@ -54,7 +54,7 @@ class Page:
             self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
-        """Shows the state that an address encodes; query: the part of the address after "?"."""
+        """Shows the state of an address, or an error message; query: part of the address after "?"."""
         try:
             self._change_to(from_address(query, self.state))
         except InputError as error:
@@ -62,7 +62,7 @@ class Page:
             self._show_error(str(error))
 
     def load(self, text: str) -> None:
-        """Shows the rod or the arm of a config; text: the config in YAML."""
+        """Shows the rod or the arm of a config, or an error message; text: the config in YAML."""
         try:
             loaded = state_of_text(text, self.state.F_max)
             self._change_to(replace(loaded, across=loaded.across or self.state.across))
@@ -99,7 +99,9 @@ class Page:
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Requests the shape with the tip held at `tip`, in L, or the motion after release; see TIP_KINDS."""
+        """Requests the shape with the tip held at `tip`, in L, or the motion after release; see TIP_KINDS.
+        kind: "bent" or "motion".
+        """
         for other in TIP_KINDS:
             if other != kind:
                 self._drop(other)
@@ -145,7 +147,9 @@ class Page:
         self.idle.restart()
 
     def _show_error(self, sentence: str) -> None:
-        """Cancels all solves and shows an error message in place of all pictures except a drawn diagram."""
+        """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
+        diagram.
+        """
         self.idle.cancel()
         for kind in (*TIP_KINDS, *MANUAL_KINDS):
             self._drop(kind)
@@ -171,7 +175,9 @@ class Page:
         self._show_solving()
 
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
-        """Sends a new question. A stored answer replaces the solve, unless `is_solved_again`."""
+        """Sends a new question of the kind `kind`. A stored answer replaces the solve, unless
+        `is_solved_again`. tip: position of the dragged tip, in L.
+        """
         question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
         needed = needs(question)
         if self.asked.get(kind) == needed:

@@ -104,6 +104,7 @@ def length_axis(state: PageState) -> PictureAxis:
 def _of_rod(
     name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False
 ) -> ControlScale:
+    """Scale of a rod's parameter `name`. low, high, logarithmic, has_inf: as in `ControlScale`."""
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"
@@ -113,6 +114,7 @@ def _of_rod(
 def _of_arm(
     name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
+    """Scale of an arm's quantity `name`. low, high, unit, factor, logarithmic: as in `ControlScale`."""
     label = f"{quantity_words(name)} ({unit})"
     return ControlScale(
         name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic

@@ -177,7 +177,9 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
 
 
 def _choice(key: str, given: str, known: Any) -> str:
-    """Returns `given` if it is one of `known`; raises InputError otherwise."""
+    """Returns `given` if it is one of `known`; raises InputError otherwise. key: name of the choice, for the
+    message.
+    """
     if given not in known:
         raise InputError(f"{key} = {short_repr(given)} is not allowed; it must be {' or '.join(known)}")
     return given

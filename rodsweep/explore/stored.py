@@ -58,7 +58,8 @@ def state_of(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageStat
 
     Each parameter has the middle value of its axis, and the load the middle of its values that do not crush
     the rod. The parameter with the most values, except the load, is the second parameter of the diagram.
-    path: file of the config, for error messages. F_max: largest force if the config has none.
+    path: file of the config, for error messages. F_max: largest force if the config has none. Raises
+    InputError for a list of points.
     """
     F_max = _largest_force(config, F_max)
     if config.parameters.arm is not None:

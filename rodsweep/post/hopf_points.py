@@ -94,7 +94,8 @@ class StoredChanges:
 
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
         """Reads the onsets and changes of stability selected by the mask `along` from the variables whose
-        names start with `prefix`. name: parameter along which the thresholds are located.
+        names start with `prefix`. name: parameter along which the thresholds are located. v: variables of the
+        file.
         """
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
         fields = (name, "error", "frequency", "kind")

@@ -105,6 +105,7 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     """For every symmetry breaking on a branch, the number of the second branch that begins or ends there.
 
     Keys: (number of the branch, from 1; index of the symmetry breaking among the branch's special points).
+    curves: all branches of a rod.
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
@@ -116,7 +117,7 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
 
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
-    """A cycle of a branch as variables of the file."""
+    """A cycle of a branch as variables of the file. along: the followed parameter."""
     own = {
         f"branch_{along}": "at",
         f"branch_{along}_error": "at_error",

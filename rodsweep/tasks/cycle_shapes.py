@@ -43,7 +43,8 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
 
 def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
     """Solves a point of the file again; returns (job of the point, variables of its cycle). number: number of
-    the point, from 1.
+    the point, from 1. Raises InputError if the cycle cannot be solved here, or ends in a state that differs
+    from the stored state.
     """
     job = _job(view, number)
     try:

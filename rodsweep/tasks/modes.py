@@ -38,7 +38,9 @@ class ModesTask(CertifiedTask):
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material."""
+        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
+        as in `Task.afterwards`.
+        """
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:

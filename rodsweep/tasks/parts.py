@@ -177,6 +177,7 @@ def arms_line(
     linear material.
 
     Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
+    first_mesh: function that returns the initial mesh.
     """
     if config.standard:
         return ""
@@ -193,7 +194,7 @@ def arms_line(
 
 
 def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Texts on the tapers and the profile of the arms; empty for uniform arms."""
+    """Texts on the tapers and the profile of the arms; empty for uniform arms. columns: as in `arms_line`."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))

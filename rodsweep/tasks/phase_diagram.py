@@ -132,7 +132,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def rod(self, index: int) -> Rod:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
-        along the row.
+        along the row. index: flat index of the row.
         """
         return self.points.rod(index, gamma1=self.config.gamma1)
 

@@ -45,26 +45,30 @@ class JointVariables(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def items(self, view: View) -> Any:
-        """The items to be divided among the ranks; None if there are no items. view: the file with all
-        points.
+        """The work items to be divided among the ranks; None if there are no work items. view: the file with
+        all points.
         """
 
     def initial_data(self, items: Any, chosen: Sequence[int]) -> dict[int, Any]:
-        """Initial data that this rank has cached for the items `chosen`, to be sent to all ranks."""
+        """Initial data that this rank has cached for the work items numbered `chosen` of `items`, to be sent
+        to all ranks.
+        """
 
     def add_initial_data(self, starts: Mapping[int, Any]) -> None:
-        """Caches initial data received from a different rank."""
+        """Caches initial data received from a different rank. starts: initial data by number, as from
+        `initial_data`.
+        """
 
     def solve(self, items: Any, item: int) -> NamedArrays:
-        """Solves an item and returns its result."""
+        """Solves the work item number `item` of `items`, and returns its result."""
 
     def empty_result(self) -> NamedArrays:
-        """Empty result, for an item whose solver raised an unforeseen exception."""
+        """Empty result, for a work item whose solver raised an unforeseen exception."""
 
     def variables(self, view: View, items: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
         """The variables that depend on all points, for the result file; called on the first rank only.
 
-        view: the file with all points. results: results of all items, by number.
+        view: the file with all points. items: the work items. results: results of all work items, by number.
         """
 
 
@@ -139,19 +143,22 @@ class Task(ABC):
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension."""
+        """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension. By
+        default empty.
+        """
         return {}
 
     def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
-        among the ranks.
+        among the ranks. By default empty.
         """
         return ()
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
         """Variables of the file computed from the results of all points; called on the first rank only.
 
-        values: variables of the points by name, shape (points, own dimensions), readable by slices.
+        values: variables of the points by name, shape (points, own dimensions), readable by slices. By
+        default empty.
         """
         return ()
 

@@ -64,7 +64,9 @@ class SpectrumTask(CertifiedTask):
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
-        """Longitudinal growth rates, if requested, along the parameters on which these rates depend."""
+        """Longitudinal growth rates, if requested, along the parameters on which these rates depend. Empty if
+        not requested.
+        """
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
@@ -97,7 +99,9 @@ class SpectrumTask(CertifiedTask):
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
     def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
-        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material."""
+        """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
+        as in `Task.afterwards`.
+        """
         return force_changes(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:

@@ -640,7 +640,7 @@ def cycle_sentences(view, page, keywords, fine):
         proved = int(own["hopf_lines_proved"]), int(own["hopf_lines"])
         found += counts(
             page,
-            "list of Hopf points between the points is proved complete on NUMBER of NUMBER line",
+            "list of Hopf points between neighbouring points is proved complete on NUMBER of NUMBER line",
             *proved,
         )
     found += _second_states(view, page, w, keywords)

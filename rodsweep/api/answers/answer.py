@@ -26,8 +26,8 @@ UNPRINTED_VARIABLES = ("status", "seconds")
 SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
 """SI units of the variables of an arm. Variables with other units are in units of the rod."""
 TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
-"""Name of the variable that counts all items found of a list, including items that are not stored, by name of
-the list."""
+"""For each list, by name: the variable with the number of items found, including items that are not stored.
+"""
 LISTS_PRINTED_IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
 """Names of the lists that `Answer.table` prints in full. Of all other lists `Answer.table` prints only the
 number of rows."""

@@ -165,10 +165,10 @@ def plot(
     at: Mapping[str, float | str] = MappingProxyType({}),
     **look: Unpack[FigureOptions],
 ) -> Picture:
-    """Draws and returns the figure for the task of `data`: a Dataset, an Answer or a result file.
-
-    Several results of limit_cycle, thresholds or spectrum are drawn into one figure. output: file to write.
-    The remaining arguments are the options of `rodsweep plot`. Raises InputError if there is nothing to draw.
+    """Draws and returns the figure for the task of `data`: a Dataset, an Answer or a result file. Several
+    results of limit_cycle, thresholds or spectrum are drawn into one figure. output: file to write. roots,
+    what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError if
+    there is nothing to draw.
     """
     for name in look:
         if name not in FigureOptions.__annotations__:

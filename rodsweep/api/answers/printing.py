@@ -136,7 +136,7 @@ def _heads(printed: PrintedAnswer) -> list[str]:
 
 def _title(name: str, columns: Sequence[Column], total: int) -> str:
     """Title of a list: name and number of rows. total: number of items found, printed if larger than the
-    number of rows.
+    number of rows. columns: columns of the list.
     """
     count = len(columns[0].values)
     return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (

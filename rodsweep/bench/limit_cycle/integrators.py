@@ -66,7 +66,8 @@ class IntegratorFamily:
 def petsc_run(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
     """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
     ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
-    "arkimex" and "5"."""
+    "arkimex" and "5". tolerance: see the module.
+    """
     newton = TimeScheme().newton if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(task.beam.mesh, scheme).run(task.beam, task.z, task.duration)

@@ -74,7 +74,9 @@ class SettlingMethod:
 
 def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
-    methods. at: reference cycle at F = 50. every: contenders of the race WAITING."""
+    methods. at: reference cycle at F = 50. every: contenders of the race WAITING. rounds: number of timed
+    rounds.
+    """
     waiting = {
         method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()
     }

@@ -112,7 +112,8 @@ class SweptRod:
 
 
 def swept_rod(point: Rod, accuracy: float) -> SweptRod:
-    """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps."""
+    """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
+    of the cycles."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
@@ -133,7 +134,8 @@ def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
 
 
 def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """Solves the timed points of a sweep along `axis`, each from its neighbour; returns the last cycle."""
+    """Solves the timed points of a sweep along `axis`, each from its neighbour, to `accuracy`; returns the
+    last cycle."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
         there = earlier_rod(rod.rod, axis, k)
@@ -143,7 +145,7 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def solve_from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """The cycle of a rod, solved without a neighbour. start: value of the option `start`."""
+    """The cycle of a rod to the relative accuracy `accuracy`, without a neighbour. start: option `start`."""
     return require_cycle(
         solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
     )
@@ -157,8 +159,7 @@ def require_cycle(cycle: Cycle) -> Cycle:
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """Contenders that solve the cycle of a `SweptRod`: one for each swept parameter and for each cold
-    start."""
+    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one per parameter and cold start."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
@@ -172,7 +173,7 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
 
 
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
-    """Measurements of all `cycle_contenders` on all rods `points`, timed in turn."""
+    """Measurements of all `cycle_contenders` on all rods `points`, in `rounds` timed rounds."""
     rods = [swept_rod(point, ACCURACY) for point in points]
     entries = [
         CaseWithErrorMeasure(rod_label(rod.rod), rod, partial(cycle_errors, rod.exact_cycle)) for rod in rods

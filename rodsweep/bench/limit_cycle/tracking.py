@@ -115,7 +115,8 @@ def solve_reference() -> ReferenceCycle:
 
 def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `at` in time; times are divided by
-    the number of periods."""
+    the number of periods. rounds: number of timed rounds.
+    """
     task = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)

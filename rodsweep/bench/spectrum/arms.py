@@ -82,7 +82,9 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem."""
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem.
+    peers: contenders of the peers. rounds: number of timed rounds.
+    """
     measurements = []
     for name, rod in ARMS.items():
         judge = partial(_error_field, exact_arm_spectrum(rod))
@@ -97,7 +99,8 @@ def _error_field(exact: list[complex], w: Complex) -> dict[str, float]:
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
-    TARGET_ERROR."""
+    TARGET_ERROR. rounds: number of timed rounds.
+    """
     rows = [
         {
             "method": method,

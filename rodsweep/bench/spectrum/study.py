@@ -113,9 +113,10 @@ def cheapest_contenders(
 def equal_error_table(
     every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
-    """Times all methods on all rods, each at the smallest size that reaches the error `target`, and returns
-    the table of the methods. every: contenders of all methods, by ascending size. exact: exact eigenvalues of
-    each rod."""
+    """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
+    `target`, and returns the table of the methods. every: contenders of all methods, by ascending size.
+    exact: exact eigenvalues of each rod.
+    """
     fit = [cheapest_contenders(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
@@ -148,7 +149,7 @@ def equal_error_table(
 
 
 def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of the contenders `every` on all HARD_RODS."""
+    """Measurements of the contenders `every` on all HARD_RODS. rounds: number of timed rounds."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(spectrum_error, exact_spectrum(rod, MODE_COUNT))

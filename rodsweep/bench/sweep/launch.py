@@ -65,8 +65,8 @@ class SweepCase:
 
 
 def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
-    """A sweep of spectra over F, two values of k1, and k2, whose config is written into the new directory
-    `directory`.
+    """A sweep of spectra, named `name`, over F, two values of k1, and k2, whose config is written into the
+    new directory `directory`.
 
     points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4. kind:
     kind of solver.
@@ -80,7 +80,8 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
-    directory `directory`."""
+    directory `directory`. points: number of points. kind: kind of solver.
+    """
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in mixed_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -183,7 +184,8 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 
 def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
-    was killed on purpose."""
+    was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed.
+    """
     output, errors = process.communicate()
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output

@@ -84,9 +84,8 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
 
 
 def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn.
-
-    folder: directory of the sweeps. ranks: numbers of ranks.
+    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn. folder:
+    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks.
     """
     rounds, cycle_rounds = (
         (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
@@ -106,9 +105,8 @@ def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int])
 
 
 def instant_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed.
-
-    folder: directory of the sweeps. ranks: numbers of ranks of complete sweeps; other sweeps have one rank.
+    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. folder,
+    quick, ranks: as in `solved_sweeps`; killed and resumed sweeps have one rank.
     """
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
@@ -134,7 +132,9 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """Measurement of a sweep from all its runs; times are medians, and the error is nan."""
+    """Measurement of a sweep from all its runs; times are medians, and the error is nan. ranks: number of
+    ranks.
+    """
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]

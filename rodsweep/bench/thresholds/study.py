@@ -173,7 +173,9 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
 def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """Measurements of the contenders `every`, which find the threshold `kind`, on each rod."""
+    """Measurements of the contenders `every`, which find the threshold `kind`, on each rod. kind: ONSET or
+    HOPF. rounds: number of timed rounds.
+    """
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"
@@ -182,8 +184,9 @@ def measure_rods(
 
 
 def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
-    """Fields of `Measurement` for the computed threshold `first`: error, failure, cost, and correct decimal
-    digits per eigenproblem (0 if the threshold was missed)."""
+    """Fields of `Measurement` for the computed threshold `first` of the kind `kind`: error, failure, cost,
+    and correct decimal digits per eigenproblem (0 if the threshold was missed).
+    """
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))

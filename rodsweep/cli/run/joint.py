@@ -61,8 +61,9 @@ class JointWork:
         """Results of all finished half curves, by number, on the first rank only."""
 
     def solve(self, items: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
-        """Follows all half curves that are still missing, on all ranks. prepare: function called before the
-        first solve. title: text of the progress display; None for no display.
+        """Follows all half curves that are still missing, on all ranks; returns the work of this rank. items:
+        half curves, as in `PendingJointWork`. prepare: function called before the first solve. title: text of
+        the progress display; None for no display.
         """
         found: dict[int, NamedArrays] = {}
 
@@ -99,7 +100,7 @@ class JointWork:
 
     def _exchange_starts(self, items: Any) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again.
+        these points again. items: half curves, as in `PendingJointWork`.
         """
         chosen = self.team.on_first(lambda: items.items_to_solve(self.results))
         for starts in self.team.exchange(self.together.initial_data(items, chosen)):
@@ -117,7 +118,7 @@ class JointWork:
 
     def variables(self, items: Any) -> Sequence[Filled] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
-        before all half curves were followed.
+        before these variables were complete. items: half curves, as in `PendingJointWork`.
         """
         if items is not None and items.items_to_solve(self.results):
             return None

@@ -71,7 +71,7 @@ class PointWork:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
         items, count: returned by `items`. missing: ranges of the flat indices of all missing points. prepare:
-        function called before the first solve.
+        function called before the first solve. Raises EnvironmentIncomplete if a journal cannot be written.
         """
         reasons = FailureReasons(self.where)
         solver = self.solver
@@ -95,7 +95,7 @@ class PointWork:
                 share = sweep(self.team, ChunkQueue(items, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(
-                f"cannot write beside {self.output}: {error.strerror or error}"
+                f"cannot write into the folder of {self.output}: {error.strerror or error}"
                 f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
             ) from error
         finally:

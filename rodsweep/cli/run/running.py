@@ -130,9 +130,8 @@ class _RankRun:
 
     def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingJointWork:
         """Writes the points of all journals into the file; returns whether variables that depend on all
-        points are still missing, with their work items.
-
-        count: number of points to be solved in this run. contributions: reports of all ranks.
+        points are still missing, with their work items. count: number of points to be solved in this run.
+        contributions: reports of all ranks.
         """
         self.seconds = time.monotonic() - self.began
         if count:
@@ -215,7 +214,9 @@ class _RankRun:
         shares: list[RankWork],
         exceptions: int,
     ) -> int:
-        """Completes the result file, prints how the run ended, and returns the exit status."""
+        """Completes the result file, prints how the run ended, and returns the exit status. count: number of
+        points to be solved. contributions, shares: work of each rank on points and on half curves. joint:
+        variables that depend on all points. exceptions: number of unforeseen exceptions on all ranks."""
         lacks_joint_variables_in = self._finish_file(joint)
         missing = self.store.missing()
         self._print_store_notes()

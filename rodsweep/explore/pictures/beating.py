@@ -85,8 +85,8 @@ class BeatingPicture:
         self.grip.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws the cycle of an answer `found` of the task `limit_cycle`; if there is no cycle, the straight
-        arm and a sentence.
+        """Draws the cycle of an answer `found` of the task `limit_cycle`, with a sentence if the cycle is not
+        stable; if there is no cycle, the straight arm and a sentence. length: unit and label of both axes.
         """
         self.length = length
         self.remove_dragged_shape()
@@ -111,12 +111,14 @@ class BeatingPicture:
             self.card.tell(sentence_of(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
-        """Draws the equilibrium shape of the arm whose tip the user drags."""
+        """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
+        `dragged_equilibrium`.
+        """
         self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
-        """Starts the animation of a released arm, and writes the state that the arm reaches into the
-        title.
+        """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
+        found: result of `motion`, and the position `tip`.
         """
         factor = self.length.factor
         step = found["step"]

@@ -74,7 +74,10 @@ class BranchPicture:
         self.card.entitle("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
-        """Draws the branches of the answer `found`. load: horizontal axis. length: vertical axis."""
+        """Draws the branches of the answer `found`, with separately solved cycles as dots; the title is the
+        meaning of the status if the task did not succeed, else the source of the answer. load: horizontal
+        axis. length: vertical axis.
+        """
         pieces = found["pieces"]
         self.pieces.data = {
             "F": [at * load.factor for at, _, _ in pieces],

@@ -36,8 +36,8 @@ FIGURE_HEIGHT = 300
 
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
-    """Empty Bokeh figure with the page's style, as wide as a column of the page. options: further keywords of
-    Bokeh's `figure`.
+    """Empty Bokeh figure with the page's style, as wide as a column of the page. x_label, y_label: labels of
+    the axes. tooltips, options: keywords of Bokeh's `figure`.
     """
     made = figure(
         height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
@@ -56,7 +56,7 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
     """Vertical line at x = `at` over the whole height of a figure. When the line moves, Bokeh redraws only
-    the top canvas.
+    the top canvas. dash: line style.
     """
     return Span(
         location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
@@ -101,8 +101,8 @@ class Card:
     """A figure, or a sentence in its place. The axes of the figure are invisible until the first `reveal`."""
 
     def __init__(self, name: str, figure: figure, title_lines: int = 1):
-        """title_lines: number of lines reserved for the title; further lines are cut until the browser lays
-        out the figure again.
+        """name: prefix of the names of the Bokeh models. title_lines: number of lines reserved for the title;
+        further lines are cut until the browser lays out the figure again.
         """
         self.figure = figure
         self.title_lines = title_lines
@@ -136,7 +136,7 @@ class Card:
 
     def _paint_axes(self, alpha: float) -> None:
         """Makes the axes transparent or opaque. Removing and adding axes instead would move the frame and
-        leave parts of an earlier title.
+        leave parts of an earlier title. alpha: opacity, 0 or 1.
         """
         for axis in self.figure.axis:
             axis.update(**dict.fromkeys(AXIS_ALPHAS, alpha))

@@ -38,7 +38,9 @@ DARKEST_COUNT = 6
 
 
 class DiagramCell(NamedTuple):
-    """Rectangle around neighbouring grid points of a row that have equal numbers of unstable modes."""
+    """Rectangle around neighbouring grid points of a row that have equal numbers of unstable modes. left,
+    right, bottom, top: edges, in the units of the axes.
+    """
 
     left: float
     right: float

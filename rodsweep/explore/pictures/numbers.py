@@ -52,7 +52,7 @@ class NumbersTable:
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
         """Replaces the rows for the kind of question `kind` by numbers of the answer `found`; None removes
-        these rows.
+        these rows. A kind that is not in TABLE_ROWS has no effect.
         """
         if kind not in TABLE_ROWS:
             return

@@ -39,7 +39,9 @@ class SpectrumPicture:
         self.card.entitle("")
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws the eigenvalues of `found`, an answer of the task `spectrum`."""
+        """Draws the eigenvalues of `found`, an answer of the task `spectrum`; if no eigenvalue is known,
+        shows the meaning of the status instead.
+        """
         names = [SI_NAMES[name] if SI_NAMES[name] in found else name for name in ("growth_rate", "frequency")]
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
@@ -91,7 +93,9 @@ class ModePicture:
         self.card = Card("mode", figure)
 
     def show(self, found: dict[str, Any]) -> None:
-        """Draws the leading mode of `found`, an answer of the task `spectrum`."""
+        """Draws the leading mode of `found`, an answer of the task `spectrum`; if the mode is not known,
+        shows the meaning of the status instead.
+        """
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():

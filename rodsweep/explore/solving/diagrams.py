@@ -83,7 +83,8 @@ def has_uniform_rods(state: PageState) -> bool:
 
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,): logarithmically spaced around the present value, or linearly
-    over TAPER_RANGE for the taper. rows: number of values.
+    over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the present value is
+    finite and positive.
     """
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)
@@ -98,6 +99,9 @@ def _fixed(state: PageState) -> dict[str, Any]:
 
 
 def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
+    """Diagram of uniform rods, with the variables of `diagram`, from the task `phase_diagram`. with_cycles:
+    whether folds and torus points of cycles are followed.
+    """
     F = np.linspace(0, state.largest_force(), LOAD_COUNT)
     rows = second_parameter_values(state, SLOW_ROW_COUNT if with_cycles else ROW_COUNT)
     keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
@@ -129,6 +133,9 @@ def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def _of_thresholds(state: PageState) -> dict[str, Any]:
+    """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram`, from
+    the task `thresholds`.
+    """
     keywords: dict[str, Any] = {**_fixed(state), state.second: second_parameter_values(state, SLOW_ROW_COUNT)}
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
@@ -139,6 +146,9 @@ def _of_thresholds(state: PageState) -> dict[str, Any]:
 
 
 def _of_arm(state: PageState) -> dict[str, Any]:
+    """Diagram of arms, with the variables of `diagram`, from the task `thresholds` for values around the
+    second quantity of `state`.
+    """
     given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
     quantity = QUANTITIES[state.second]
     middle = in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
@@ -155,7 +165,8 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
     """Diagram, with the variables of `diagram`, from a result of the task `thresholds` for arms. values:
     values of the second quantity, (rows,).
 
-    The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure.
+    The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure. If there is
+    neither a pressure nor flutter, the load extends to the largest searched pressure.
     """
     flutter = data["pressure_hopf"].values
     known = flutter[np.isfinite(flutter)]

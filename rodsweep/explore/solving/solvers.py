@@ -1,5 +1,5 @@
-"""Solver processes, one for each group of kinds of questions. A new question of a kind replaces the older
-question of the same kind.
+"""Solver processes, one for each group of kinds of questions. A new question replaces the older question of
+the same session and kind.
 """
 
 import os

@@ -53,7 +53,8 @@ BRANCH_COLOURS = (
 
 def draw_branch(request: FigureRequest) -> str:
     """Draws the largest y of the tip and the period of cycles against the followed parameter, for one or
-    several rods; returns a sentence.
+    several rods; returns a sentence. Raises InputError for options that the task does not have, and if
+    nothing can be drawn.
     """
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
@@ -156,7 +157,7 @@ def _pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
-    neighbouring vertices, (n - 1,).
+    neighbouring vertices, (n - 1,). colour, marker: of the curve, for matplotlib.
     """
     for vertices, kind in runs_of(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)

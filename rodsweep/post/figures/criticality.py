@@ -53,7 +53,8 @@ LINEAR_FRACTION = 0.1
 
 def draw_criticality(request: FigureRequest) -> str:
     """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
-    parameter, or else predicted amplitudes against F; returns a sentence.
+    parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
+    the task does not have, and if nothing can be drawn.
     """
     view = request.only_view()
     style.require_content(
@@ -71,7 +72,7 @@ def draw_criticality(request: FigureRequest) -> str:
 
 def _along(view: View, name: str) -> Figure:
     """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
-    `name`. Markers show the criticality.
+    `name`. Markers show the criticality. Raises InputError if nothing can be drawn.
     """
     x = view.point_columns[name]
     keep = np.isfinite(x)
@@ -108,7 +109,7 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. narrow:
-    whether the maps are stacked.
+    whether the maps are stacked. Raises InputError if nothing can be drawn.
     """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
@@ -146,7 +147,7 @@ def _classes(side: Array) -> Array:
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
-    rods.
+    rods. Raises InputError if nothing can be drawn.
     """
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))

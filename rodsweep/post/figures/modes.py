@@ -23,7 +23,8 @@ MODE_PANELS = (
 
 def draw_modes(request: FigureRequest) -> str:
     """Draws a row of panels for each point: leading mode, deformations of this mode, and adjoint mode;
-    returns a sentence.
+    returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
+    drawn.
     """
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()

@@ -60,8 +60,8 @@ entry."""
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Colours for a map of an integer variable. words: (integer, word) of each value. colours: colour of each
-    word.
+    """Colours for a map of an integer variable. variable: name of the variable. words: (integer, word) of
+    each value. colours: colour of each word.
     """
 
     variable: str
@@ -97,7 +97,8 @@ BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
 
 def draw_phase_diagram(request: FigureRequest) -> str:
     """Draws the class or the stable states of the rod over two parameters, with boundary curves, or along
-    single rows if fewer than two rows are at finite values; returns a sentence.
+    single rows if fewer than two rows are at finite values; returns a sentence. Raises InputError for options
+    that the task does not have, and if nothing can be drawn.
     """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
@@ -152,8 +153,8 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 
 def _crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the axes are F and k1 and the rods are crushed at F = k1, as uniform rods of linear material
-    are.
+    """Whether the axes `line` and `row` are F and k1 and the rods are crushed at F = k1, as uniform rods of
+    linear material are.
     """
     return (line, row) == CRUSHING and has_covering(view.config)
 
@@ -172,8 +173,8 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite
-    values.
+    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite values.
+    line, row: parameters along a row, and constant on a row.
     """
     x = view.variables[line]
     y = view.axes[row]
@@ -199,7 +200,8 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
     curves of the file. Crushed points are ignored if the rods are crushed at F = k1.
 
-    table: classes at the computed points, (rows with a finite value, columns).
+    line, row: parameters along a row, and constant on a row. table: classes at the computed points, (rows
+    with a finite value, columns).
     """
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])

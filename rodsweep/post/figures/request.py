@@ -67,7 +67,9 @@ class FigureLook:
         return self.inches is not None and self.inches < NARROW_WIDTH
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-        """Scales a figure to the width `inches` and lays out the figure, see `fitting.fit`."""
+        """Scales a figure to the width `inches` and lays out the figure, see `fitting.fit`. min_aspect:
+        smallest ratio of height to width of a panel.
+        """
         if self.inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)

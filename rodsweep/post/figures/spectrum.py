@@ -58,7 +58,7 @@ GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 def draw_spectrum(request: FigureRequest) -> str:
     """Draws spectra along lines, a map, or the eigenvalues of single points, depending on the files; returns
-    a sentence.
+    a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn.
     """
     if len(request.views) > 1:
         return _several(request)
@@ -159,7 +159,7 @@ def _map(view: View, names: list[str]) -> Figure:
 
 def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
     """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
-    growth: values, (nx, ny).
+    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny).
     """
     limits = axes.axis()
     across, up = np.meshgrid(x, y, indexing="ij")

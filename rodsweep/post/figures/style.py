@@ -100,8 +100,8 @@ def file_label(view: View, views: Sequence[View]) -> str:
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives 200. digits:
-    largest number of significant digits.
+    """The number `value` as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives
+    200. digits: largest number of significant digits.
     """
     if isinf(value):
         return r"\infty" if value > 0 else r"-\infty"
@@ -118,7 +118,9 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with their symbols and values, as one line of TeX."""
+    """Parameters with their symbols and values, as one line of TeX. parameters: values by name. digits:
+    largest number of significant digits.
+    """
     return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
@@ -147,7 +149,9 @@ def require_content(view: View, available: object, what: str) -> None:
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """Draws one legend, with up to `columns` columns, below the panels of the figure."""
+    """Draws one legend, with up to `columns` columns, below the panels of the figure. handles: legend
+    entries.
+    """
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
@@ -208,8 +212,8 @@ def colour_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws coloured cells with a labelled colour bar. edges: edges of the cells along x and along y. values:
-    (ny, nx); a cell with NaN has no colour. colours: name of a colour map.
+    """Draws coloured cells with a colour bar. edges: edges of the cells along x and along y. values: (ny,
+    nx); a cell with NaN has no colour. label: label of the colour bar. colours: name of a colour map.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """

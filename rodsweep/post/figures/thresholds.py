@@ -32,7 +32,8 @@ SEARCH_DIGITS = 4
 
 def draw_thresholds(request: FigureRequest) -> str:
     """Draws the first thresholds against one parameter or over two parameters, or a bar of classes for each
-    rod; returns a sentence.
+    rod; returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
+    drawn.
     """
     if request.views[1:]:
         return _of_files(request)
@@ -92,6 +93,7 @@ def searched(*views: View) -> str:
 def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, left_out). The figure has a map over two parameters for each kind of threshold in
     `names`. left_out: clause on infinite values of the parameters. narrow: whether the maps are stacked.
+    Raises InputError if nothing can be drawn.
     """
     points = point_map(view)
     figure, panels = map_panels(len(names), narrow)

@@ -118,7 +118,7 @@ class OneRod:
 
     def _threshold_errors(self) -> Mapping[str, np.ndarray]:
         """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
-        crossings.
+        crossings. Empty if the result has no list of crossings.
         """
         if CROSSINGS not in self.lists or "crossing_error" not in self.lists[CROSSINGS].columns:
             return {}

@@ -50,7 +50,7 @@ class HoverPoint:
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
     """Texts for n values of a curve. places: positions relative to the lower left corner of the figure, in
-    pixels, (n, 2).
+    pixels, (n, 2). texts: texts of the values.
     """
 
     places: Array
@@ -106,6 +106,7 @@ def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
 
 def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """Texts for the points of a scatter plot, with the value that is shown by the colour of a point, if any.
+    names: labels of the two axes.
 
     An invisible scatter plot contains the points between which filled contours are interpolated.
     """
@@ -128,7 +129,7 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
 
 def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
-    colour, and coordinates.
+    colour, and coordinates. names: labels of the two axes. words: legend entries by colour.
     """
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
@@ -151,7 +152,9 @@ def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterato
 
 
 def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends."""
+    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends. names:
+    labels of the two axes. words: legend entries by colour.
+    """
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -217,7 +220,9 @@ def _texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
 
 
 def _text(names: tuple[str, str], at: Array) -> str:
-    """Coordinates of a point as text, one line each. at: point in data coordinates, (2,)."""
+    """Coordinates of a point as text, one line each. names: labels of the axes. at: point in data
+    coordinates, (2,).
+    """
     return "\n".join(f"{name} = {_number(value)}" for name, value in zip(names, at, strict=True))
 
 

@@ -31,7 +31,9 @@ class CaptionedPicture:
 
 @dataclass(frozen=True, slots=True)
 class Pictures:
-    """Pictures of a result. refusal: reason for which there is no picture; empty if there are pictures."""
+    """Pictures of a result. shown: pictures in their order on the page. refusal: reason for which there is no
+    picture; empty if there are pictures.
+    """
 
     shown: tuple[CaptionedPicture, ...]
     refusal: str = ""

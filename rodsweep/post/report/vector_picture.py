@@ -26,7 +26,7 @@ ElementTree.register_namespace("xlink", XLINK)
 
 @dataclass(frozen=True, slots=True)
 class VectorPicture:
-    """Figure as an SVG element of an HTML page.
+    """Figure as an SVG element of an HTML page. svg: text of the element.
 
     colours: colours of the picture, as six hexadecimal digits, which a dark page replaces. Empty for a
     picture that contains a bitmap, because the colours of a bitmap cannot be replaced; the background then

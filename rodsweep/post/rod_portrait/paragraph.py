@@ -28,7 +28,7 @@ THRESHOLD_CLAUSES = {
     "restabilization": "it is stable again from {F}",
     "real_again": "decaying disturbances stop oscillating at {F}",
     "real_leads": "a real eigenvalue becomes the leading eigenvalue at {F}",
-    "pair_leads": "a complex pair becomes the leading pair at {F}",
+    "pair_leads": "a complex pair overtakes the leading real eigenvalue at {F}",
 }
 """Clause on the straight rod at a threshold, by kind of threshold."""
 SEARCH_TASKS = ("thresholds", "criticality", "branch")
@@ -176,7 +176,9 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
+    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
+    branches of the rod.
+    """
     found = {
         rounded(factor * special.at, factor * special.error): None
         for curve in curves

@@ -24,7 +24,9 @@ LABELLED_NUMBERS = (1.0, 2.0, 5.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unit:
-    """Unit of a portrait. factor: value, in this unit, of a quantity whose dimensionless value is 1."""
+    """Unit of a portrait. name: symbol of the unit. factor: value, in this unit, of a quantity whose
+    dimensionless value is 1.
+    """
 
     name: str
     factor: float = 1.0

@@ -138,8 +138,8 @@ def _sizes(view: View, done: np.ndarray) -> str:
 
 
 def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines on the number and range of special points of each kind, and of branch ends, over all
-    rods.
+    """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods.
+    along: followed parameter.
     """
     found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *BRANCH_END_WORDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
@@ -167,7 +167,9 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
 
 
 def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods."""
+    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
+    along: followed parameter.
+    """
     complete = [rod for rod in rods if not rod.hidden]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
@@ -195,7 +197,9 @@ def _rods_with(
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points."""
+    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points. done:
+    mask of the computed points.
+    """
     start, stop = ends_of(view)
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")

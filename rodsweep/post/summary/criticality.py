@@ -149,7 +149,9 @@ def _counts(side: np.ndarray) -> str:
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """Line on the searched range of F, and on the completeness of the list of Hopf points."""
+    """Line on the searched range of F, and on the completeness of the list of Hopf points. done: mask of the
+    computed points.
+    """
     v = view.variables
     certified = int(v["certified"][done].sum())
     rods = int(done.sum())

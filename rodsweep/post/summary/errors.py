@@ -65,7 +65,7 @@ def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, which is not a part of a complex variable. The errors have the
-    shape of the variable. NumPy may warn of infinite values.
+    shape of the variable. NumPy may warn of infinite values. v: variables of the file.
     """
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:

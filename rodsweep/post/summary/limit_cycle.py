@@ -98,7 +98,7 @@ def _proof_lines(view: View) -> list[str]:
     if not lines:
         return []
     proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"the list of Hopf points between the points {proof_clause(view)} on {proved}"]
+    return [f"the list of Hopf points between neighbouring points {proof_clause(view)} on {proved}"]
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:

@@ -115,7 +115,8 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 def stability_line(view: View, done: np.ndarray) -> str:
     """Line on the largest number of unstable modes, and on the numbers of points at which the number is
-    proved or unknown. done: mask of the computed points, of the shape of the points.
+    proved (for arms that vary: counted by an estimate) or unknown. done: mask of the computed points, of the
+    shape of the points.
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())

@@ -18,7 +18,9 @@ from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table of results. columns: columns of equal length. empty_points: number of points without a row."""
+    """Table of results. name: name of the table. columns: columns of equal length. empty_points: number of
+    points without a row.
+    """
 
     name: str
     columns: tuple[Column, ...]

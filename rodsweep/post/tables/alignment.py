@@ -61,7 +61,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
     """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
-    `point_aligned`.
+    `point_aligned`. heads: texts of the heading lines.
     """
     aligned = point_aligned(cells)
     width = max(map(len, (*heads, *aligned)))
@@ -92,7 +92,7 @@ def _lines(columns: Sequence[Sequence[str]]) -> list[str]:
 
 def rows_with_prose(rows: Sequence[Line], width: int = WIDTH) -> list[str]:
     """Lines of a table whose last column is prose. The prose is wrapped to the right of the other columns, or
-    below the row if less than MIN_PROSE_WIDTH remains.
+    below the row if less than MIN_PROSE_WIDTH remains. width: largest length of a line.
     """
     if not rows:
         return []

@@ -92,8 +92,8 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
-    """Column of a parameter or another coordinate. values: (rows,); NaN, a missing value, stands for an arm
-    to which no rod corresponds.
+    """Column of a parameter or another coordinate, with its name, unit and meaning. values: (rows,); NaN, a
+    missing value, stands for an arm to which no rod corresponds.
     """
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 

@@ -52,8 +52,8 @@ def variable_digest(
     attributes: Mapping[str, Any],
     blocks: Iterable[Any],
 ) -> str:
-    """Digest of a variable of the NumPy type `kind`. dimensions: names of its dimensions. blocks: its numbers
-    as buffers in row-major order.
+    """Digest of a variable of the NumPy type `kind` and the shape `shape`. dimensions: names of its
+    dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order.
     """
     described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
     digest = sha256(json.dumps(described, sort_keys=True).encode())

@@ -80,7 +80,9 @@ def create_file(path: Path, plan: Plan) -> None:
 
 
 def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
-    """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions."""
+    """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions. filled:
+    (variable, values) pairs.
+    """
     for variable, values in filled:
         for name, extent in zip(variable.extra, values.shape, strict=True):
             if name not in file:

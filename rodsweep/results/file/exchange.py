@@ -24,7 +24,7 @@ file."""
 
 
 def identity(path: Path) -> Identity:
-    """Identity of the file at `path`, read from the disk."""
+    """Identity of the file at `path`, read from the disk. Empty if there is no file."""
     try:
         status = path.stat()
     except OSError:

@@ -64,7 +64,7 @@ def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
 
 
 def merged_blas_kernels(*several: Iterable[str]) -> str:
-    """Value of KERNELS_ATTRIBUTE for a file with points computed by all these BLAS kernels."""
+    """Value of KERNELS_ATTRIBUTE for a file with points computed by the kernels in the lists `several`."""
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
@@ -96,7 +96,9 @@ def reasons_added(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, 
 
 
 def kernels_sentence(attribute: str) -> str:
-    """Warning that several BLAS kernels computed the points of a file; empty for a single kernel."""
+    """Warning that several BLAS kernels computed the points of a file; empty for a single kernel. attribute:
+    value of KERNELS_ATTRIBUTE.
+    """
     kernels = attribute.splitlines()
     if len(kernels) < 2:
         return ""

@@ -24,7 +24,7 @@ def require_room(path: Path, plan: Plan) -> None:
     free = shutil.disk_usage(path.parent).free
     if free < size:
         raise EnvironmentIncomplete(
-            f"{path} needs {size / 1e6:.3g} MB of disk space during the run, and {free / 1e6:.3g} MB are free"
+            f"{path} needs {size / 1e6:.3g} MB of disk space, but {free / 1e6:.3g} MB are free; make room"
         )
 
 

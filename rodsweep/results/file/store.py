@@ -203,8 +203,8 @@ class Store:
         attributes: dict[str, Any],
         additions: Callable[[h5py.File], Sequence[Filled]] | None = None,
     ) -> None:
-        """Writes records, (n,) in each block, of journals with the fingerprint into the file; deletes the
-        journals.
+        """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
+        the journals.
 
         layout: layout of the records. attributes, additions: as in `add_journals`.
         """

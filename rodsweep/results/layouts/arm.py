@@ -160,8 +160,8 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
 
 
 def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
-    """Returns (variable, values, (n,)) converted to SI units. quantities: the quantities of the arm by name,
-    () or (n,) each.
+    """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
+    quantities: the quantities of the arm by name, () or (n,) each.
     """
     si = si_unit_of(variable, "force" in quantities)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))

@@ -72,7 +72,8 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(
             "unstable_multipliers",
-            "number of Floquet multipliers outside the unit circle; 0: stable; -1: undecided within error",
+            "number of nontrivial Floquet multipliers outside the unit circle; 0: stable; -1: undecided "
+            "within error",
         ),
         *(real(name, "1", f"estimate of {error}, at branch_{parameter}") for name, error in ERRORS),
     )
@@ -101,7 +102,7 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
         integer("special_branch", "number of the branch, from 1"),
         integer(
             "special_point",
-            "number, from 1, of the branch_point before the special point; 0: before the first of its branch",
+            "number, from 1, of the branch_point before the special point; 0: the branch has none before",
         ),
         word("special_reason", "reason for the end of the branch", END_REASONS),
         integer(

@@ -1,4 +1,6 @@
-"""Layout of the task limit_cycle: the cycle at each point, and Hopf points between the points."""
+"""Layout of the task limit_cycle: the cycle at each point, and Hopf points located between neighbouring
+points.
+"""
 
 from collections.abc import Collection
 from typing import Any

@@ -66,8 +66,8 @@ INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
 
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
-    """Returns ((parameter along a row, parameter across rows), number of values by parameter) for a resolved
-    config.
+    """Returns ((line, row), number of values by parameter) for a resolved config. line: parameter that varies
+    along each row. row: parameter that differs between rows.
     """
     axes = config["parameters"]
     names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)
@@ -78,7 +78,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together, including variables that the config does
-    not request.
+    not request. config: the resolved config. is_grid: not used.
     """
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
@@ -130,7 +130,8 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
 
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables of the curves of folds of cycles and torus points, by name, for `phase_diagram.cycles`."""
+    """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
+    line, row: as in `curve_variables`."""
     at = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
@@ -164,9 +165,8 @@ def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> t
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables of the boundary curves of a phase diagram and their folds, by name.
-
-    line, row: parameters along and across the rows.
+    """Variables of the boundary curves of a phase diagram and their folds, by name. line, row: parameters
+    that vary along a row, and between rows.
     """
     kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
     units = {name: PARAMETERS[name].unit for name in (line, row)}
@@ -197,7 +197,8 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def criticality_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables of the sign of Re c along Hopf curves, and of its zeros, for `phase_diagram.criticality`."""
+    """Variables, by name, of the sign of Re c along Hopf curves, and of its zeros, for
+    `phase_diagram.criticality`. line, row: as in `curve_variables`."""
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     error = "estimate of the error of bautin_"
     variables = (

@@ -26,7 +26,9 @@ from .variables import (
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
-    """Variables for the real and the imaginary part of a complex field of every mode, along the rod."""
+    """Variables for the real and the imaginary part of a complex field of every mode, along the rod. name:
+    name of the field. units, long_name: as in `Variable`.
+    """
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
         real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
@@ -69,9 +71,9 @@ VECTORS = (
 
 
 def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
-    """Variables of the longitudinal eigenvalues, with an error estimate unless there is a closed form.
-
-    along: dimensions of the parameters on which the rates depend, or the dimension of all points.
+    """Variables of the longitudinal eigenvalues, with an error estimate unless `in_closed_form`: the
+    eigenvalues then have a closed form. gamma1: axial drag of all rods. along: dimensions of the parameters
+    on which the rates depend, or the dimension of all points.
     """
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
     rate = real("longitudinal_rate", "1/tau2", meaning, *along, "mode")
@@ -112,7 +114,9 @@ INCREASES = dict.fromkeys(SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file of the task spectrum that belong to all points together."""
+    """Variables of a file of the task spectrum that belong to all points together. config: the resolved
+    config. is_grid: whether the points are a grid.
+    """
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGES

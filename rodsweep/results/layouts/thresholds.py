@@ -46,7 +46,9 @@ CROSSING_KINDS = tuple(CROSSING_MEANINGS)
 
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of the crossings along the parameter `line`; at: name of the variable for its value there."""
+    """Variables of the crossings along the parameter `line`. at: name of the variable with the value of this
+    parameter at a crossing.
+    """
     units = PARAMETERS[line].unit
     return (
         real(at, units, f"{line} at the crossing", "crossing"),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
 NO_NAMES: Mapping[str, str] = {}
-"""No exceptions: in `outcome_values`, a field has the name of its variable."""
+"""Empty mapping for the argument `names` of `outcome_values`: every field has the name of its variable."""
 TYPED_UNIT = "typed_unit"
 """Name of the attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
@@ -25,21 +25,21 @@ ANGULAR_UNIT = "rad/tau2"
 pi/period. For an arm a second variable, with a name ending in `_hz`, has cycles per second."""
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "point": ("1", "row of the point list, from 1"),
-    "mode": ("1", "order by descending growth rate; in a pair the positive frequency comes first"),
+    "mode": ("1", "number of the eigenvalue, by descending growth rate; in a pair, positive frequency first"),
     "u": ("1", "material coordinate along the rod"),
-    "crossing": ("1", "order by increasing value of the varied parameter"),
-    "curve_point": ("1", "order along all curves, curve by curve"),
-    "fold": ("1", "number of the fold, where a curve turns back"),
-    "branch_point": ("1", "order along all branches of a rod, branch by branch"),
-    "special": ("1", "order along all branches of a rod, branch by branch"),
-    "cycle_special": ("1", "order along the branches of a row, branch by branch"),
+    "crossing": ("1", "number of the crossing, by increasing value of the varied parameter"),
+    "curve_point": ("1", "number of the point on all boundary curves, curve by curve"),
+    "fold": ("1", "number of the fold, at which a boundary curve turns back"),
+    "branch_point": ("1", "number of the cycle on all branches of a rod, branch by branch"),
+    "special": ("1", "number of the special point on all branches of a rod, branch by branch"),
+    "cycle_special": ("1", "number of the special point on all branches of cycles of a row"),
     "cycle_curve_point": ("1", "number of the point on all curves of folds and torus points, curve by curve"),
     "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),
-    "change": ("1", "number of the change on the lines over F between the points, line by line"),
-    "hopf": ("1", "number of the Hopf point on the lines between the points, line by line"),
+    "change": ("1", "number of the change located between neighbouring points along F, line by line"),
+    "hopf": ("1", "number of the Hopf point located between neighbouring points, line by line"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
-    "multiplier_number": ("1", "order by descending modulus, without the trivial Floquet multiplier"),
+    "multiplier_number": ("1", "number of the nontrivial Floquet multiplier, by descending modulus"),
     "sample": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
     "shape": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
     "transient": ("1", "time since the start, in units of the last stored time of the motion"),
@@ -92,7 +92,9 @@ def flag_attributes(flags: Iterable[tuple[int, str]]) -> dict[str, Any]:
 
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
-    """Description of a variable of floating-point numbers; nan stands for a missing number."""
+    """Description of a variable of floating-point numbers; nan stands for a missing number. extra: as in
+    `Variable`.
+    """
     return Variable(name, "<f8", np.nan, units, long_name, extra)
 
 
@@ -101,14 +103,14 @@ NOT_KNOWN = "; -1: not known"
 
 
 def integer(name: str, long_name: str, *extra: str) -> Variable:
-    """Description of a variable of counts; -1 stands for an unknown count."""
+    """Description of a variable of counts; -1 stands for an unknown count. extra: as in `Variable`."""
     return Variable(name, "<i4", -1, "1", long_name, extra)
 
 
 def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
-    """Description of a variable whose numbers stand for words: positions in a list, or given numbers.
-
-    The fill value is -1 if a word has the number -1, which means a missing value; otherwise 0.
+    """Description of a variable whose numbers stand for words. words: words, numbered from 0, or pairs
+    (stored number, word). extra: as in `Variable`. The fill value is -1 if a word has the number -1, which
+    means a missing value; otherwise 0.
     """
     flags = tuple(each if isinstance(each, tuple) else (index, each) for index, each in enumerate(words))
     fill = -1 if any(value == -1 for value, _ in flags) else 0

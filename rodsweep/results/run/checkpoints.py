@@ -1,8 +1,8 @@
-"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of items
-(work items for variables that depend on all points).
+"""Checkpoints of unfinished work in the journal directory: solver states of chains, and results of work items
+for variables that depend on all points.
 
 Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A damaged
-file, or a file of another run, is ignored: the chain starts again, the item is solved again.
+file, or a file of another run, is ignored: the chain starts again, the work item is solved again.
 """
 
 import io
@@ -19,7 +19,7 @@ from .journal import drop_files
 CHECKPOINTS = "chain-*"
 """Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
 ITEM_RESULTS = "unit-*"
-"""Pattern of the file names of results of items, including files that a kill left unfinished."""
+"""Pattern of the file names of results of work items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 6\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
@@ -41,12 +41,13 @@ class HasArrays(Protocol):
 
 class KeptArrays:
     """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
-    identified by a number.
+    identified by a number. pattern: pattern of the names of the files.
     """
 
     pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, head: bytes):
+        """directory: journal directory. fingerprint: of config and points. head: first line of each file."""
         self.directory = directory
         self.header = head + fingerprint.encode() + b"\n"
 
@@ -84,7 +85,9 @@ class Checkpoints(KeptArrays):
     pattern = CHECKPOINTS
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
-        """state_of: makes a solver state from its arrays (the result of the state's method `arrays`)."""
+        """directory, fingerprint: as in `KeptArrays`. state_of: makes a solver state from its arrays (the
+        result of the state's method `arrays`).
+        """
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
@@ -108,19 +111,22 @@ class Checkpoints(KeptArrays):
 
 
 class ItemResults(KeptArrays):
-    """Store of the results of finished items, until the variables that depend on all items are computed."""
+    """Store of the results of finished work items, until the variables that depend on all points are
+    computed.
+    """
 
     pattern = ITEM_RESULTS
 
     def __init__(self, directory: Path, fingerprint: str):
+        """directory, fingerprint: as in `KeptArrays`."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:
-        """Stores the result of the item number `item`, as arrays by name."""
+        """Stores the result of the work item number `item`, as arrays by name."""
         self.put(item, arrays)
 
     def read(self) -> dict[int, Arrays]:
-        """Results of all items with an intact file, by number of the item."""
+        """Results of all work items with an intact file, by number of the work item."""
         names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULTS))
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
         return {item: arrays for item, arrays in found.items() if arrays is not None}

@@ -62,9 +62,8 @@ class Journal:
     def append_all(
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
-        """Writes the records of finished points: flat indices `index`, (n,), and variables by name, (n, ...).
-
-        reasons: as in `append`.
+        """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
+        name, (n, ...). reasons: as in `append`.
         """
         records = np.zeros(len(index), self.page.dtype)
         records["index"] = index
@@ -162,7 +161,7 @@ def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 def kept_sentence(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
-    points.
+    points. fingerprint: of config and points.
     """
     return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
 

@@ -63,7 +63,9 @@ class OutcomeWithoutRod:
 
 @dataclass(frozen=True, slots=True)
 class RepeatedOutcome:
-    """Outcome of a point whose rod was already solved at an earlier point."""
+    """Outcome of a point whose rod was already solved at an earlier point. outcome: outcome of the earlier
+    solve.
+    """
 
     outcome: Any
 

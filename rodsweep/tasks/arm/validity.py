@@ -74,8 +74,8 @@ def _of_modes(record: Record) -> ArmMotion:
 
 
 def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
-    """Function from a record to the motion at the first Hopf point. at: name of the variable with the force
-    at crossings.
+    """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
+    point. at: name of the variable with the force at crossings.
     """
 
     def found(record: Record) -> ArmMotion:
@@ -106,11 +106,13 @@ def _of_flutter(record: Record) -> ArmMotion:
 
 
 def _of_cycle(record: Record) -> ArmMotion:
+    """Motion on the limit cycle. If there is no cycle, the amplitude is 0 and the frequency NaN."""
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
 def _of_branches(record: Record) -> ArmMotion:
+    """Motions on the cycles of all branches."""
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
 
@@ -194,7 +196,7 @@ class ArmValidity:
 
     def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load.
+        if the arm has no load. index: as in `of`.
         """
         own = self._column("k1", index)
         F = self._column("F", index) if "F" in self.points.names else motion.F
@@ -208,7 +210,8 @@ class ArmValidity:
     def _compressing(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section.
 
-        NaN for rubber, whose constitutive law includes large compression.
+        NaN for rubber, whose constitutive law includes large compression. F, index: forces, and indices of
+        their points, as in `of`.
         """
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
@@ -219,7 +222,7 @@ class ArmValidity:
 
     def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
-        have this parameter.
+        have this parameter. index: as in `of`.
         """
         if name not in self.points.names:
             return None

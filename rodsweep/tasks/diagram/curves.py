@@ -205,7 +205,7 @@ class DiagramCurves:
         self, plane: "Plane", criticalities: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> list[Filled]:
         """Curves of generalised Hopf points along the third parameter `name`, as variables of the file. axis:
-        values of the third parameter.
+        values of the third parameter. criticalities: as from `_criticality`.
         """
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 
 
 def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
-    """Variables of the boundary curves and of their folds. more: values of the variables on the partial beam
-    limit, by name.
+    """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
+    differs between rows). more: values of the variables on the partial beam limit, by name.
     """
     points = []
     folds = []
@@ -56,8 +56,8 @@ def criticality_record(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[Filled]:
     """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
-
-    criticalities: in the order of the boundary curves. gamma1: axial drag of all rods.
+    criticalities: in the order of the boundary curves. plane: (parameter along a row, parameter that differs
+    between rows). gamma1: axial drag of all rods.
     """
     rows = []
     start = 0
@@ -75,7 +75,9 @@ def criticality_record(
 
 
 def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
-    """Variables of the curves of generalised Hopf points along the third parameter `third`."""
+    """Variables of the curves of generalised Hopf points along the third parameter `third`. plane: (parameter
+    along a row, parameter that differs between rows).
+    """
     rows = [
         _located(point, (*plane, third), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
@@ -86,7 +88,9 @@ def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str],
 
 
 def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
-    """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends."""
+    """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
+    (parameter along a row, parameter that differs between rows).
+    """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)

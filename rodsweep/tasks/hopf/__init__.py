@@ -1,1 +1,1 @@
-"""Hopf points and other thresholds of the straight rod at parameter values between the points of a file."""
+"""Hopf points and other thresholds of the straight rod, located between neighbouring points of a file."""

@@ -56,7 +56,9 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
 
 
 def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points."""
+    """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
+    as in `force_changes`.
+    """
     along = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != along]
     widest = max(others, key=lambda axis: points.shape[axis])
@@ -77,7 +79,9 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
 
 
 def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Yields the lines of points along F in a list of points, one line at a time."""
+    """Yields the lines of points along F in a list of points, one line at a time. values: as in
+    `force_changes`.
+    """
     w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_over(points.by_name, "F"):

@@ -104,7 +104,7 @@ def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[Hop
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
-    """Smallest and largest finite value, (n,); (0, 0) if no value is finite."""
+    """(smallest, largest) of the finite values in `values`, (n,); (0, 0) if no value is finite."""
     finite = values[np.isfinite(values)]
     return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
 

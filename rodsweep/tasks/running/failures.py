@@ -10,7 +10,7 @@ from ...sweep.points.stretches import StretchResult
 
 
 def parameters_in_words(values: Mapping[str, float]) -> str:
-    """Text with the parameters of a point: `F=40.0, k1=200.0`."""
+    """Text with the parameters of a point: `F=40.0, k1=200.0`. values: parameters by name."""
     return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
 

@@ -194,7 +194,9 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
 
 
 def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
-    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points."""
+    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points.
+    statuses: all statuses that a point can have.
+    """
     from ...solve.backend import petsc
 
     attributes = {

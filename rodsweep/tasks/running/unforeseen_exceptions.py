@@ -60,7 +60,9 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
 
 @dataclass(frozen=True, slots=True)
 class _Guard:
-    """Implementation of `guarded_solver`. inner: the solver whose exceptions are caught."""
+    """Implementation of `guarded_solver`. inner: the solver whose exceptions are caught. layout: variables of
+    a point. note_exception: function called with every exception that is caught.
+    """
 
     inner: Solver
     layout: Layout
@@ -132,8 +134,8 @@ class TracebackLog:
     """
 
     def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
-        """output: the result file. where: function from the flat index of a point to a text with its
-        parameters. strict: whether every exception is raised again after it is logged.
+        """output: the result file. rank: number of this rank. where: function from the flat index of a point
+        to a text with its parameters. strict: whether every exception is raised again after it is logged.
         """
         self.strict = strict
         self.path = log_file(output)

@@ -55,7 +55,8 @@ MAP_HATCH_COLOUR = "0.35"
 
 def draw_arm_map(request: FigureRequest) -> str:
     """Draws the main results of a task over one or two quantities of an arm, with a panel of lines or a map
-    for each result; returns a sentence.
+    for each result; returns a sentence. Raises InputError for options that the task does not have, and if
+    nothing can be drawn.
     """
     view = replace(request, what=None).only_view()
     long = [name for name in view.arm_axes if len(view.variables[name]) > 1]
@@ -154,8 +155,9 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, index: Any) -> list[
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
-    """Draws the range of a result over the drags as a band; returns the legend entry as a list. x: name of
-    the quantity on the horizontal axis. values: the result at all points. index: as in `_lines`.
+    """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
+    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: as in
+    `_lines`. The list is empty if the drag does not vary, or is the quantity on the horizontal axis.
     """
     if DRAG not in view.arm_axes or x == DRAG or len(view.variables[DRAG]) < 2:
         return []

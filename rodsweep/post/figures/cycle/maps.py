@@ -67,7 +67,8 @@ panel."""
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
-    Hopf points. narrow: whether the panels are stacked.
+    Hopf points, unstable cycles, and the statuses of cells without a cycle. narrow: whether the panels are
+    stacked. Raises InputError if no point has a cycle.
     """
     points = point_map(view)
     words = view.outcomes[points.at]
@@ -144,7 +145,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
 
 def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
     """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
-    entry.
+    entry. The list is empty if no cell is marked.
     """
     if not unstable.any():
         return []

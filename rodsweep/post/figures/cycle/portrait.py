@@ -98,7 +98,8 @@ def _panels(
     """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
 
     The panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
-    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank.
+    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank. narrow: whether the
+    page is narrow.
     """
     count = len(cycles)
     (left, right), (low, high) = region(cycles)
@@ -160,9 +161,9 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
-    """Draws the follower force as an arrow that ends at the tip, along -(cos theta, sin theta) with theta at
-    the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length: L, in the unit of the
-    axes.
+    """Draws the follower force as an arrow of the colour `colour` that ends at the tip, along -(cos theta,
+    sin theta) with theta at the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length:
+    L, in the unit of the axes.
     """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     along = -ARROW_LENGTH * length * e1

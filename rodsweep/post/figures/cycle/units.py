@@ -97,7 +97,7 @@ class CycleUnits:
         return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
-        """Variables of a point, of any shape, by name, converted to these units."""
+        """The variables `values` of a point, of any shape, by name, converted to these units."""
         factors: dict[str, Factor] = (
             dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
             | dict.fromkeys(TIME_VARIABLES, self.time)

@@ -182,7 +182,9 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height."""
+    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height.
+    min_aspect: smallest ratio of height to width of a panel.
+    """
     width, height = figure.get_size_inches()
     spare = [height]
     for axes in figure.axes:

@@ -26,7 +26,7 @@ MAX_NUMBERED = 8
 
 def draw_eigenvalues(view: View) -> Figure:
     """Figure of the stored eigenvalues of the only point in a file, in the complex plane, with the numbers of
-    the modes.
+    the modes. Raises InputError if nothing can be drawn.
     """
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))

@@ -91,7 +91,7 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 
 def _followed(view: View, roots: str) -> Complex:
-    """Roots at the points of a line, as from `select_roots`."""
+    """Roots at the points of a line, as from `select_roots`. roots: choice of the roots."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 

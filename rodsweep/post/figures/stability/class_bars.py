@@ -76,7 +76,8 @@ THRESHOLD_DIGITS = 6
 
 
 def draw_class_bars(view: View) -> Figure:
-    """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods."""
+    """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods. Raises
+    InputError if nothing can be drawn."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
     require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
@@ -231,7 +232,9 @@ def class_along_row(
 
 
 def _changes(view: View, variable: str, line: str, index: int) -> Array:
-    """Positions of the changes of class along a row, in increasing order, (m,). index: index of the row."""
+    """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
+    `stable_states`. line: parameter along the row. index: index of the row.
+    """
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[index] for name in names if name in view.variables}
     at = v["crossing_at"]

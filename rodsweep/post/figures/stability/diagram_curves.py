@@ -82,7 +82,7 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
 
 
 def force_of_plane(view: View, line: str, row: str) -> str:
-    """Text " = F" with the constant F of a plane, to follow a symbol; empty if F is on an axis."""
+    """Text " = F" with the constant F of a plane; empty if F is on an axis. line, row: see the module."""
     return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
 
 
@@ -110,7 +110,7 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the curves of folds and of torus points of cycles; returns legend entries."""
+    """Draws curves of folds and torus points of cycles; returns legend entries. line, row: see the module."""
     v = view.variables
     handles = []
     for kind, (word, colour) in CYCLE_CURVES.items():
@@ -183,7 +183,7 @@ def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the curves of generalised Hopf points along a third parameter; returns legend entries."""
+    """Draws curves of generalised Hopf points; returns legend entries. line, row: see the module."""
     v = view.variables
     drawn = []
     third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))
@@ -198,7 +198,7 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
-    """(sign of Re c, points, (n, 2)) of each part of a Hopf curve between generalised Hopf points."""
+    """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
     v = view.variables
     rows = np.flatnonzero(v["curve_number"] == curve)
     on = np.flatnonzero(v["bautin_curve"] == curve)
@@ -214,7 +214,8 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
 
 
 def _first_over_force(paths: list[Array], force: int) -> list[Array]:
-    """Parts of curves, (n, 2) each, that have the smallest F of all curves. force: column with F."""
+    """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
+    column with F."""
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
@@ -231,9 +232,8 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes the symbol `name` next to the path, (points, 2), with the greatest visible length. share:
-    position of the symbol, as a fraction of this length.
-    """
+    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `share` of
+    this length. paths: curves, (points, 2) each."""
     lengths = []
     seen = []
     for path in paths:

@@ -40,7 +40,7 @@ HEADROOM = 1.05
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
     a line for each value of the other parameter. long: the one or two parameters with several values.
-    searched: clause on the searched range.
+    searched: clause on the searched range. Raises InputError if nothing can be drawn.
     """
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)
@@ -91,8 +91,8 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
-    parameters `long` as abscissa, with curves for some values of the other parameter. narrow: whether the
-    panels are stacked.
+    parameters `long` as abscissa, with curves for some values of the second parameter. narrow: whether the
+    panels are stacked. searched: clause on the searched range.
     """
     rows, columns = (2, 1) if narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")

@@ -1,7 +1,5 @@
 """First lines of `rodsweep show` for an arm: validity of the model, flutter load, frequency of beating.
-
-Quantities are in the units typed by the user, frequencies in Hz. rods: mask of the points with a rod.
-"""
+Quantities are in the units typed by the user, frequencies in Hz."""
 
 from collections.abc import Callable
 
@@ -73,9 +71,8 @@ def load_spanned(view: View, loads: np.ndarray) -> str:
 
 
 def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
-    """Function that returns the lines of a task that searches along the load, with a line on failed searches.
-
-    answer: function of the view and the mask of points with a result; returns (answer, further lines).
+    """Function from (view, mask of the points with a rod) to the answer's lines, with a line on failed
+    searches. answer: function from (view, mask of the solved points) to (answer, further lines).
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
@@ -90,7 +87,8 @@ def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Cal
 
 
 def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about flutter, lines about onset of oscillation and return to stability)."""
+    """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
+    to stability). rods: mask of the points with a result."""
     load = load_of(view)
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
@@ -123,7 +121,7 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
 
 
 def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about the loads and frequencies at the first Hopf points, empty list)."""
+    """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the points."""
     v = view.variables
     load = load_of(view)
     end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
@@ -132,7 +130,9 @@ def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _share(some: np.ndarray, rods: np.ndarray) -> str:
-    """Clause on the number of points in `rods` that are also in `some` (masks); empty for a single point."""
+    """Clause on the number of points in `rods` that are also in `some` (masks); empty if `rods` has one
+    point.
+    """
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
@@ -151,8 +151,8 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
 
 
 def _of_cycles(view: View, rods: np.ndarray) -> Lines:
-    """Lines about the frequency and the amplitude of limit cycles and their variation with drag, or about the
-    outcomes if there is no cycle."""
+    """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
+    outcomes. rods: mask of the points with a rod."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
@@ -172,8 +172,8 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
 
 
 def _decided(view: View, rods: np.ndarray) -> Lines:
-    """Line with the numbers of arms (with load) that beat for all, some or no drags of their range; an empty
-    list if drag is not varied or an outcome is undecided.
+    """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
+    list if drag is not varied or an outcome is undecided. rods: mask of the points with a rod.
     """
     arms = arms_of_drags(view)
     if arms is None:
@@ -191,7 +191,7 @@ def _decided(view: View, rods: np.ndarray) -> Lines:
 
 
 def _of_modes(view: View, rods: np.ndarray) -> Lines:
-    """Lines about the stability of the straight arms and the frequency of their leading modes."""
+    """Lines about stability and leading frequency of the straight arms. rods: mask of the points."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
     unknown = rods & (count < 0)
@@ -207,7 +207,7 @@ def _of_modes(view: View, rods: np.ndarray) -> Lines:
 
 
 def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about the loads and the frequencies of the cycles on branches, empty list)."""
+    """Returns (lines about loads and frequencies of cycles on branches, []). rods: mask of the points."""
     loads = view.variables[f"branch_{load_of(view)}"][rods]
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
@@ -217,7 +217,7 @@ def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies at the first Hopf points on rows along F, empty list)."""
+    """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
     v = view.variables
     scale = np.broadcast_to(v[SCALE_OF[load_of(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
@@ -226,8 +226,8 @@ def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm, (n,)
-    each; NaN for an arm without a Hopf point.
+    """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm in the
+    mask `rods`, (n,) each; NaN for an arm without a Hopf point.
     """
     hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
     at = np.arange(len(hopf)), np.argmax(hopf, axis=-1)

@@ -129,7 +129,8 @@ def _unit(view: View, name: str) -> str:
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines with the ranges of all variables in SI units, over the points in the mask `done`, (...,)."""
+    """Lines with the ranges of all variables in SI units, over the points in the mask `done`, (...,). Empty
+    list for a rod."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)
@@ -177,7 +178,8 @@ def wrapped(text: str) -> list[str]:
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
     """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
-    `own`. v: variables of the file. The errors have the shape of the two variables.
+    `own`; 0 where `own` is 0 or infinite. v: variables of the file. The errors have the shape of the two
+    variables.
     """
     known = np.isfinite(v[own]) & (v[own] != 0)
     scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)

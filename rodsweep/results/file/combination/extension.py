@@ -168,7 +168,7 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
 def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
     """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
 
-    Raises InputError for an old value that is not on the new axis.
+    Raises InputError for an old value that is not on the new axis. name: name of the axis.
     """
     right = np.searchsorted(new, old).clip(max=len(new) - 1)
     left = (right - 1).clip(min=0)

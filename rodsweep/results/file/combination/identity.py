@@ -91,7 +91,9 @@ def config_difference(
 
 
 def _list_difference(theirs: list[Any], ours: list[Any], places: tuple[str, str]) -> str:
-    """Difference of two lists that are too long to show: their lengths, and the first pair that differs."""
+    """Difference of two lists that are too long to show: their lengths, and the first pair that differs.
+    places: names of the origins of `theirs` and `ours`.
+    """
     sizes = f"{len(theirs)} values in {places[0]} and {len(ours)} in {places[1]}"
     pairs = enumerate(zip_longest(theirs, ours), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])

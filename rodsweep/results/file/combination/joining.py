@@ -124,7 +124,9 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedF
         if apart:
             raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
         if points.is_grid != grids[0].is_grid:
-            raise InputError(f"{first.path} and {other.path} cannot be joined: a grid and a list")
+            raise InputError(
+                f"{first.path} and {other.path} cannot be merged: one has a grid of points, the other a list"
+            )
     if "arm" in meant:
         raise InputError(
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
@@ -153,7 +155,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(
-                f"the files have {name} = {values}, which differ by rounding only; make them equal"
+                f"the files have {name} = {values}, which differ by rounding only; make these values equal"
             )
         axes.append(axis)
     whole = Points(grids[0].names, tuple(axes), is_grid=True)
@@ -190,7 +192,9 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
-    """Config of the first file with the axes of the joined points; meant: the `meaning` of this config."""
+    """Config of the first file, for grids with the axes of the joined points. meant:
+    `Config.settings_of_results` of the first file's config.
+    """
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
@@ -217,7 +221,8 @@ def _axis(own: Axis, values: Array) -> Axis:
 
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: Plan) -> None:
-    """Raises InputError if the points of a chain of the joined file would come from several files."""
+    """Raises InputError if the points of a chain of the joined file would come from several files. sources,
+    grids: source files and their grids. plan: plan of the joined file."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]
@@ -225,7 +230,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
         if not np.array_equal(grid.by_name[name], plan.points.by_name[name]):
             raise InputError(
                 f"{source.path} differs from the other files in {name}, along which each point starts from "
-                "its neighbour; pieces of chains cannot be joined; use run --extend"
+                "its neighbour; parts of chains cannot be merged; use run --extend"
             )
 
 

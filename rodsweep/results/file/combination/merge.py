@@ -81,9 +81,7 @@ def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
 
 def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
-    returns the outcome of the merge.
-
-    gave: sources of the stored points.
+    returns the outcome of the merge. copy: path of the merged file. gave: sources of the stored points.
     """
     left = missing_ranges(copy)
     finished = not left and not plan.layout.needs_all_points

@@ -137,8 +137,8 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
-    """Draws an arrow on a line, in each panel, in the direction of continuation. upward: whether the
-    parameter increased.
+    """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
+    upward: whether the parameter increased.
     """
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):

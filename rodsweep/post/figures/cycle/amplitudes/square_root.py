@@ -63,7 +63,7 @@ def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareR
     """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law.
 
     To leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this
-    ratio at distance 0 is extrapolated from the two nearest cycles.
+    ratio at distance 0 is extrapolated from the two nearest cycles. F, amplitude: as in `square_root_laws`.
     """
     distance = side * (F - point.position) / abs(point.position)
     # If two cycles exist at one F, only the smaller cycle can shrink to zero at the Hopf point.
