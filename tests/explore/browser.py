@@ -1,5 +1,6 @@
 """A headless Chromium, driven through Debian's chromedriver by the W3C protocol."""
 
+import base64
 import json
 import shutil
 import socket
@@ -8,9 +9,11 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Sequence
+from io import BytesIO
 from typing import Any
 
 import pytest
+from PIL import Image
 
 NEEDED = ("chromium", "chromedriver")
 LONGEST = 180.0
@@ -48,9 +51,13 @@ class Browser:
             self._driver.terminate()
             self._driver.wait()
 
+    def show(self, url: str) -> None:
+        """Opens any page."""
+        self._call("POST", "/url", {"url": url})
+
     def open(self, url: str) -> None:
         """Opens a page, and waits until Bokeh has drawn it."""
-        self._call("POST", "/url", {"url": url})
+        self.show(url)
         self.wait_for("window.Bokeh && Bokeh.documents.length && Bokeh.documents[0].is_idle")
 
     def run(self, script: str, *arguments: object) -> Any:
@@ -93,6 +100,11 @@ class Browser:
             y,
         )
         return {"type": "pointerMove", "duration": 30, "x": round(place[0]), "y": round(place[1])}
+
+    def screenshot(self) -> Image.Image:
+        """The visible part of the page."""
+        taken = base64.b64decode(self._call("GET", "/screenshot"))
+        return Image.open(BytesIO(taken)).convert("RGB")
 
     def complaints(self) -> list[str]:
         """Warnings and errors on the console since the last call."""
