@@ -12,8 +12,17 @@ from .contents import PageContents
 from .idle_timer import IdleTimer
 from .scales import SCALES
 from .sharing import state_of_text
-from .solving.diagrams import Dataset, has_uniform_rods
-from .solving.needs import IDLE_KINDS, INSTANT_KINDS, MANUAL_KINDS, STOPPABLE_KINDS, TIP_KINDS, Needs, needs
+from .solving.diagrams import has_uniform_rods
+from .solving.needs import (
+    IDLE_KINDS,
+    INSTANT_KINDS,
+    MANUAL_KINDS,
+    STOPPABLE_KINDS,
+    TIP_KINDS,
+    Needs,
+    needs,
+    state_to_solve,
+)
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .solving.solving_status import progress_text, solving_text
@@ -45,6 +54,8 @@ class Page:
         self.asked: dict[str, Needs] = {}
         """Part of the state, and dragged tip, on which the latest question of each kind depends, see
         `needs`."""
+        self.drawn_around: PageState | None = None
+        """State around which the drawn diagram was solved; None before the first answer of a solver."""
         self.contents = PageContents(self.change, self.load)
         self.idle = IdleTimer(document, self._ask_slow_questions)
         self.contents.connect(document, self._connections())
@@ -81,8 +92,6 @@ class Page:
 
     def solve(self, kind: str, tip: Tip | None = None) -> None:
         """Sends a question of the kind `kind` to its solver process, even if the answer is already shown."""
-        if kind == "cycles" and "diagram" in self.solving:
-            self._drop("diagram")
         self._drop(kind)
         self._ask(kind, tip, is_solved_again=True)
         self._show_solving()
@@ -172,7 +181,9 @@ class Page:
 
     def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
         """Sends a new question. A stored answer replaces the solve, unless `is_solved_again`."""
-        question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
+        state = state_to_solve(kind, self.state, self.drawn_around)
+        filmed = self.stored if (kind, tip) == ("film", None) else None
+        question = Question(kind, state, tip, None if filmed is None else filmed.cycle_to_film(state))
         wanted = needs(question)
         if self.asked.get(kind) == wanted:
             return
@@ -191,12 +202,6 @@ class Page:
 
         self.solvers.ask(self.session, question, receive, receive)
 
-    def _cycle_to_film(self, kind: str, tip: Tip | None) -> Dataset | None:
-        """Stored cycle of which the film is made; None for a film that needs a solve, or another `kind`."""
-        if kind != "film" or tip is not None or self.stored is None:
-            return None
-        return self.stored.cycle_to_film(self.state)
-
     def _receive(self, question: Question, reply: Reply) -> None:
         """Passes a reply to the event loop of the document; only this loop may change the document."""
         if self.is_open:
@@ -204,8 +209,7 @@ class Page:
 
     def _on_answer(self, question: Question, reply: Reply) -> None:
         kind = question.kind
-        newest = self.asked.get(kind)
-        if newest is None:  # the user has entered invalid values meanwhile
+        if (newest := self.asked.get(kind)) is None:  # the user has entered invalid values meanwhile
             return
         is_newest = newest == needs(question)
         if reply.outcome == "progress":
@@ -220,6 +224,8 @@ class Page:
         if reply.outcome == "answer":
             if kind == "cycles":
                 self.asked["diagram"] = needs(replace(question, kind="diagram"))
+            if kind in ("cycles", "diagram"):
+                self.drawn_around = question.state
             self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.show_message(kind, reply.content["sentence"])
