@@ -60,6 +60,12 @@ class Browser:
         self.show(url)
         self.wait_for("window.Bokeh && Bokeh.documents.length && Bokeh.documents[0].is_idle")
 
+    def resize(self, width: int, height: int) -> None:
+        """Changes the size of the visible part of the page; a window is at least 500 pixels wide."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        body = {"cmd": "Emulation.setDeviceMetricsOverride", "params": size}
+        self._call("POST", "/goog/cdp/execute", body)
+
     def run(self, script: str, *arguments: object) -> Any:
         """The value that JavaScript returns."""
         return self._call("POST", "/execute/sync", {"script": script, "args": list(arguments)})

@@ -262,6 +262,13 @@ def test_the_arrow_of_a_menu_is_seen_on_light_and_on_dark_pages(browser):
     assert re.findall(r'fill=\W*"(\w+)', arrow) == ["gray"]
 
 
+def test_no_window_has_to_be_scrolled_sideways(browser):
+    for width in (320, 500, 800, 1280):
+        browser.resize(width, 1300)
+        browser.wait_for(f"innerWidth == {width} && Bokeh.documents[0].is_idle")
+        browser.wait_for("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
 def test_nothing_is_on_the_console(browser):
     assert browser.complaints() == []
 
