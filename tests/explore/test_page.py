@@ -308,6 +308,16 @@ def test_folds_are_added_to_the_drawn_diagram_while_the_rod_is_inside():
     assert solvers.questions[-1].state.values["k2"] == "300"
 
 
+def test_folds_of_an_arm_are_asked_around_the_arm_and_refused():
+    solvers = ImmediateSolvers(("diagram", "cycles"))
+    page = page_with(solvers, "tab=arm&F_max=20")
+    run_callbacks(page.document, seconds=True)
+    run_callbacks(page.document)
+    page.solve("cycles")  # a click that comes when the tab has just changed
+    run_callbacks(page.document)
+    assert "on the tab Rod" in page.contents.diagram.card.message.text
+
+
 def test_folds_of_a_solved_diagram_are_all_that_is_solved():
     state = PageState(F_max="30")
     drawn, found = (answer_to(Question(kind, state)) for kind in ("diagram", "cycles"))

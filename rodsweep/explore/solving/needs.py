@@ -49,7 +49,7 @@ def state_to_solve(kind: str, state: PageState, drawn: PageState | None) -> Page
     state: state of the page. drawn: state around which the drawn diagram was solved; None if there is no
     diagram.
     """
-    if kind != "cycles" or drawn is None:
+    if kind != "cycles" or drawn is None or state.tab != "rod":
         return state
     if needs(Question("diagram", state)) != needs(Question("diagram", drawn)):
         return state
