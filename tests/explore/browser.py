@@ -87,7 +87,21 @@ class Browser:
 
     def drag(self, figure: str, places: Sequence[tuple[float, float]]) -> None:
         """Drags through places in a figure, given in data coordinates."""
-        moves = [self._move_to(figure, *place) for place in places]
+        self._drag([self._move_to(figure, *place) for place in places])
+
+    def drag_at_shares(self, figure: str, shares: Sequence[tuple[float, float]]) -> None:
+        """Drags through places in a figure, given as shares of the width and the height of its frame."""
+        box = self.run(
+            "const view = Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name(arguments[0]));"
+            "view.el.scrollIntoView({block: 'center'});"
+            "const {left, top} = view.canvas_view.el.getBoundingClientRect(), {bbox} = view.frame;"
+            "return [left + bbox.x, top + bbox.y, bbox.width, bbox.height]",
+            figure,
+        )
+        places = [(box[0] + x * box[2], box[1] + y * box[3]) for x, y in shares]
+        self._drag([self._move(*place) for place in places])
+
+    def _drag(self, moves: list[dict[str, Any]]) -> None:
         press, release = ({"type": f"pointer{what}", "button": 0} for what in ("Down", "Up"))
         actions = [moves[0], press, *moves[1:], release]
         pointer = {"type": "pointer", "id": "mouse", "actions": actions}
@@ -105,7 +119,10 @@ class Browser:
             x,
             y,
         )
-        return {"type": "pointerMove", "duration": 30, "x": round(place[0]), "y": round(place[1])}
+        return self._move(*place)
+
+    def _move(self, x: float, y: float) -> dict[str, Any]:
+        return {"type": "pointerMove", "duration": 30, "x": round(x), "y": round(y)}
 
     def screenshot(self) -> Image.Image:
         """The visible part of the page."""

@@ -53,12 +53,6 @@ ACTIONS = {
 }  # fmt: skip
 """Relative frequency of each action, a method of `RandomUser`."""
 MODEL = "Bokeh.documents[0].get_model_by_name"
-PLACE = f"""
-const view = Bokeh.index.find_one({MODEL}(arguments[0] + "_figure")), [u, v] = arguments[1]
-if (!view.model.visible) return null
-const {{x_scale, y_scale, bbox}} = view.frame
-return [x_scale.invert(bbox.x + u * bbox.width), y_scale.invert(bbox.y + v * bbox.height)]
-"""
 PRESS = f"""
 document.querySelector("details").open = true
 HTMLAnchorElement.prototype.click = () => {{}}
@@ -117,28 +111,25 @@ class RandomUser:
         self.browser.run(f"{MODEL}(arguments[0]).value = arguments[1]", name, value)
         return f"{name} = {value}"
 
-    def places(self, figure: str, count: int) -> list[tuple[float, float]]:
-        """Random places in a figure, in its coordinates; empty if the figure is hidden."""
-        shares = (0.03 + 0.94 * self.random.random((count, 2))).tolist()
-        found = [self.browser.run(PLACE, figure, share) for share in shares]
-        return [(x, y) for x, y in found if x is not None] if None not in found else []
+    def drag_in(self, figure: str, count: int) -> str:
+        """A drag through random places in a figure, if the figure is visible."""
+        places = (0.03 + 0.94 * self.random.random((count, 2))).tolist()
+        if not self.browser.model(f"{figure}_figure", "visible"):
+            return f"{figure} is hidden"
+        self.browser.drag_at_shares(f"{figure}_figure", places)
+        return f"{figure} {places}"
 
     def click(self) -> str:
         """A click into a figure."""
-        return self.drag(1)
+        return self.drag_in(self.one_of(FIGURES), 1)
 
-    def drag(self, count: int = 4) -> str:
+    def drag(self) -> str:
         """A drag through a figure."""
-        figure = self.one_of(FIGURES)
-        if places := self.places(figure, count):
-            self.browser.drag(f"{figure}_figure", places)
-        return f"{figure} {places}"
+        return self.drag_in(self.one_of(FIGURES), 4)
 
     def let_go(self) -> str:
         """A drag of the tip."""
-        if places := self.places("beating", 5):
-            self.browser.drag("beating_figure", places)
-        return str(places)
+        return self.drag_in("beating", 5)
 
     def value(self, name: str) -> float:
         """A random value of a control, in its unit."""
