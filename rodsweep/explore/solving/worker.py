@@ -129,6 +129,6 @@ def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]",
     while True:
         try:
             question = connection.recv()
-        except EOFError:
+        except (EOFError, OSError):  # the page has ended, perhaps before it read the last reply
             return
         send(reply_to(question, cancellation, send))
