@@ -38,11 +38,13 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
     complete section may be given as a mapping. Raises InputError for a masked value, and for a key that is
     not similar to any known key.
     """
-    tree: ConfigTree = {"task": plain_keyword("task", task)}
+    task = plain_keyword("task", task)
+    tree: ConfigTree = {"task": task}
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
     sections = _sections(task)
-    for name, value in keywords.items():
+    for given, value in keywords.items():
+        name = plain_value(given)
         if name in sections and isinstance(value, Mapping):
             tree.setdefault(name, {}).update(plain_keyword(name, dict(value)))
             continue
@@ -176,14 +178,14 @@ def _range(start: float | str, stop: float | str, num: int, spacing: str) -> Axi
 
 
 def plain_value(value: Any) -> Any:
-    """A value in the types of a YAML config: arrays and tuples become lists, NumPy scalars numbers, paths
-    text.
+    """A value in the types of a YAML config: arrays and tuples become lists, NumPy scalars, as values or as
+    keys, Python's numbers, booleans and texts, and paths text.
 
     pint quantities become texts with units, and arrays of pint quantities lists of texts. Raises ValueError
     for masked values.
     """
     if isinstance(value, dict):
-        return {key: plain_value(item) for key, item in value.items()}
+        return {plain_value(key): plain_value(item) for key, item in value.items()}
     if isinstance(value, list | tuple | range):
         return [plain_value(item) for item in value]
     if isinstance(value, os.PathLike):

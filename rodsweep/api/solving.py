@@ -25,6 +25,7 @@ from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointNote, guarded_solver
 from ..watch import reporting_to, solve_part
+from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
 
 Display = ProgressReporter | SilentProgress
@@ -197,6 +198,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     progress: whether to display progress; None: only in a terminal or a notebook. total: number of points,
     None if unknown. title: text before the bar. Raises InputError for any other value of `progress`.
     """
+    progress = plain_keyword("progress", progress)
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
     shown = sys.stderr.isatty() or in_notebook() if progress is None else progress

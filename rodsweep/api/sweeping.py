@@ -18,7 +18,7 @@ from ..config.document.reading import yaml_of
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from .dataset import open_result
-from .keyword_arguments import ConfigTree, config_tree, job_from, require_allowed_keys
+from .keyword_arguments import ConfigTree, config_tree, job_from, plain_keyword, require_allowed_keys
 from .solving import Display, progress_display, solve_here
 
 COMPLETE_STATUSES = (0, 1)
@@ -54,6 +54,8 @@ def sweep(
     Raises InputError for bad input, with the command line's message, and EnvironmentIncomplete if software is
     missing. A point that fails has a status other than success.
     """
+    ranks = plain_keyword("ranks", ranks)
+    strict = plain_keyword("strict", strict)
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)

@@ -12,8 +12,9 @@ from .contents import PageContents
 from .idle_timer import IdleTimer
 from .scales import SCALES
 from .sharing import state_of_text
-from .solving.diagrams import Dataset, has_uniform_rods
-from .solving.needs import IDLE_KINDS, INSTANT_KINDS, MANUAL_KINDS, STOPPABLE_KINDS, TIP_KINDS, Needs, needs
+from .solving import needs as kinds
+from .solving.diagrams import has_uniform_rods
+from .solving.needs import Needs, needs, state_to_solve
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .solving.solving_status import progress_text, solving_text
@@ -45,6 +46,8 @@ class Page:
         self.asked: dict[str, Needs] = {}
         """Part of the state, and dragged tip, on which the latest question of each kind depends, see
         `needs`."""
+        self.drawn_around: PageState | None = None
+        """State around which the drawn diagram was solved; None before the first answer of a solver."""
         self.contents = PageContents(self.change, self.load)
         self.idle = IdleTimer(document, self._ask_slow_questions)
         self.contents.connect(document, self._connections())
@@ -81,28 +84,24 @@ class Page:
 
     def solve(self, kind: str, tip: Tip | None = None) -> None:
         """Sends a question of the kind `kind` to its solver process, even if the answer is already shown."""
-        if kind == "cycles" and "diagram" in self.solving:
-            self._drop("diagram")
         self._drop(kind)
         self._ask(kind, tip, is_solved_again=True)
         self._show_solving()
 
     def stop(self) -> None:
         """Cancels long solves, with a sentence in their pictures. A dragged arm returns to its motion."""
-        for kind in STOPPABLE_KINDS:
+        for kind in kinds.STOPPABLE_KINDS:
             if kind in self.solving:
                 self._drop(kind)
-                if kind in TIP_KINDS:
+                if kind in kinds.TIP_KINDS:
                     self.contents.beating.remove_dragged_shape()
-                elif kind not in MANUAL_KINDS:
+                elif kind not in kinds.MANUAL_KINDS:
                     self.contents.show_message(kind, STOPPED_SENTENCE)
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Requests the shape with the tip held at `tip`, in L, or the motion after release; see TIP_KINDS.
-        kind: "bent" or "motion".
-        """
-        for other in TIP_KINDS:
+        """Requests the shape with the tip held at `tip`, in L ("bent"), or the motion after release."""
+        for other in kinds.TIP_KINDS:
             if other != kind:
                 self._drop(other)
         self._ask(kind, tip)
@@ -138,9 +137,9 @@ class Page:
         except InputError as error:
             self._show_error(str(error))
             return
-        for kind in (*TIP_KINDS, *MANUAL_KINDS):
+        for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
             self._drop(kind)
-        for kind in INSTANT_KINDS:
+        for kind in kinds.INSTANT_KINDS:
             self._ask(kind)
         self.contents.show_point(state, F)
         self._show_solving()
@@ -151,9 +150,9 @@ class Page:
         diagram.
         """
         self.idle.cancel()
-        for kind in (*TIP_KINDS, *MANUAL_KINDS):
+        for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
             self._drop(kind)
-        for kind in (*INSTANT_KINDS, *IDLE_KINDS):
+        for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
                 self._drop(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
@@ -162,7 +161,7 @@ class Page:
 
     def _ask_slow_questions(self) -> None:
         self.contents.sharing.write()
-        for kind in IDLE_KINDS:
+        for kind in kinds.IDLE_KINDS:
             if needs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
             if self.state.tab == "rod" and not has_uniform_rods(self.state):
@@ -178,7 +177,9 @@ class Page:
         """Sends a new question of the kind `kind`. A stored answer replaces the solve, unless
         `is_solved_again`. tip: position of the dragged tip, in L.
         """
-        question = Question(kind, self.state, tip, self._cycle_to_film(kind, tip))
+        state = state_to_solve(kind, self.state, self.drawn_around)
+        filmed = self.stored if (kind, tip) == ("film", None) else None
+        question = Question(kind, state, tip, None if filmed is None else filmed.cycle_to_film(state))
         needed = needs(question)
         if self.asked.get(kind) == needed:
             return
@@ -197,12 +198,6 @@ class Page:
 
         self.solvers.ask(self.session, question, receive, receive)
 
-    def _cycle_to_film(self, kind: str, tip: Tip | None) -> Dataset | None:
-        """Stored cycle of which the film is made; None for a film that needs a solve, or another `kind`."""
-        if kind != "film" or tip is not None or self.stored is None:
-            return None
-        return self.stored.cycle_to_film(self.state)
-
     def _receive(self, question: Question, reply: Reply) -> None:
         """Passes a reply to the event loop of the document; only this loop may change the document."""
         if self.is_open:
@@ -210,8 +205,7 @@ class Page:
 
     def _on_answer(self, question: Question, reply: Reply) -> None:
         kind = question.kind
-        newest = self.asked.get(kind)
-        if newest is None:  # the user has entered invalid values meanwhile
+        if (newest := self.asked.get(kind)) is None:  # the user has entered invalid values meanwhile
             return
         is_newest = newest == needs(question)
         if reply.outcome == "progress":
@@ -221,21 +215,24 @@ class Page:
             return
         if is_newest:
             self.solving.discard(kind)
-        elif kind in TIP_KINDS:
+        elif kind in kinds.TIP_KINDS:
             return
         if reply.outcome == "answer":
             if kind == "cycles":
                 self.asked["diagram"] = needs(replace(question, kind="diagram"))
+            if kind in ("cycles", "diagram"):
+                self.drawn_around = question.state
             self.contents.show(kind, reply.content, question.state)
         else:
             self.contents.show_message(kind, reply.content["sentence"])
         self._show_solving()
 
     def _show_solving(self) -> None:
-        kinds = [kind for kind in (*INSTANT_KINDS, *IDLE_KINDS, *MANUAL_KINDS) if kind in self.solving]
-        is_stoppable = any(kind in STOPPABLE_KINDS for kind in kinds)
-        text = solving_text(kinds, self.progress)
-        self.contents.sign.update(text=text, kinds=kinds, is_stoppable=is_stoppable)
+        shown = (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
+        solving = [kind for kind in shown if kind in self.solving]
+        is_stoppable = any(kind in kinds.STOPPABLE_KINDS for kind in solving)
+        text = solving_text(solving, self.progress)
+        self.contents.sign.update(text=text, kinds=solving, is_stoppable=is_stoppable)
 
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:

@@ -1,6 +1,7 @@
 """Web server of the page, which only browsers on the same machine can reach."""
 
 import asyncio
+import logging
 import signal
 import socket
 import sys
@@ -111,6 +112,8 @@ class ExploreServer:
         """Starts the server and the solver processes. The server answers browsers once the event loop
         runs.
         """
+        # A browser that leaves a page while an answer is being sent is no reason for a warning.
+        logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
         self.server.start()
         self.solvers.warm_up()
 

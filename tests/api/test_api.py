@@ -221,6 +221,31 @@ def test_axes_may_be_what_python_has(axis):
     assert [column.tolist() for column in job.points.columns] == [[10, 20], [1e4], [np.inf], [0]]
 
 
+def test_numpy_scalars_as_values_and_as_names_are_those_of_python():
+    asked = {"F": [10, 20], "k1": 1e4, "k2": 100.0, "gamma3": 0.01, "law": "neo_hookean", "modes": 3}
+    own = {
+        np.str_(name): np.str_(value) if isinstance(value, str) else value for name, value in asked.items()
+    }
+    own |= {"k1": np.float32(1e4), "modes": np.int64(3), "certify": np.bool_(False)}
+    plain = job_from(config_tree("spectrum", asked | {"certify": False}))
+    assert job_from(config_tree(np.str_("spectrum"), own)).text == plain.text
+    arm = {np.str_(name): np.str_(text) for name, text in SILICONE.items()}
+    plain = job_from(config_tree("thresholds", {"arm": SILICONE}))
+    assert job_from(config_tree("thresholds", {"arm": arm})).text == plain.text
+    assert rs.Arm(**arm) == rs.Arm(**SILICONE)
+
+
+def test_numpy_scalars_are_taken_by_every_door():
+    off, once = np.bool_(False), np.int64(1)
+    rod = rs.Rod(**{np.str_(name): np.float64(value) for name, value in ROD.items()}, law=np.str_("linear"))
+    assert rod == rs.Rod(**ROD)
+    options = {np.str_("modes"): once, np.str_("progress"): off}
+    assert rod.spectrum(**options).growth_rate.shape == (1,)
+    assert rs.sweep("spectrum", ranks=once, strict=off, progress=off, **ROD, modes=once).sizes["mode"] == 1
+    portrait = rod.portrait(F_max=np.float32(20), accuracy=np.float32(2.0**-7), progress=off)
+    assert portrait.results.F_max == 20
+
+
 def test_a_rods_numbers_are_those_of_the_sweep():
     rod, data = rs.Rod(**ROD), rs.sweep("spectrum", **ROD)
     answer = rod.spectrum(modes=4)

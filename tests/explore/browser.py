@@ -1,5 +1,6 @@
 """A headless Chromium, driven through Debian's chromedriver by the W3C protocol."""
 
+import base64
 import json
 import shutil
 import socket
@@ -8,9 +9,11 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Sequence
+from io import BytesIO
 from typing import Any
 
 import pytest
+from PIL import Image
 
 NEEDED = ("chromium", "chromedriver")
 LONGEST = 180.0
@@ -48,10 +51,20 @@ class Browser:
             self._driver.terminate()
             self._driver.wait()
 
+    def show(self, url: str) -> None:
+        """Opens any page."""
+        self._call("POST", "/url", {"url": url})
+
     def open(self, url: str) -> None:
         """Opens a page, and waits until Bokeh has drawn it."""
-        self._call("POST", "/url", {"url": url})
+        self.show(url)
         self.wait_for("window.Bokeh && Bokeh.documents.length && Bokeh.documents[0].is_idle")
+
+    def resize(self, width: int, height: int) -> None:
+        """Changes the size of the visible part of the page; a window is at least 500 pixels wide."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        body = {"cmd": "Emulation.setDeviceMetricsOverride", "params": size}
+        self._call("POST", "/goog/cdp/execute", body)
 
     def run(self, script: str, *arguments: object) -> Any:
         """The value that JavaScript returns."""
@@ -74,7 +87,21 @@ class Browser:
 
     def drag(self, figure: str, places: Sequence[tuple[float, float]]) -> None:
         """Drags through places in a figure, given in data coordinates."""
-        moves = [self._move_to(figure, *place) for place in places]
+        self._drag([self._move_to(figure, *place) for place in places])
+
+    def drag_at_shares(self, figure: str, shares: Sequence[tuple[float, float]]) -> None:
+        """Drags through places in a figure, given as shares of the width and the height of its frame."""
+        box = self.run(
+            "const view = Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name(arguments[0]));"
+            "view.el.scrollIntoView({block: 'center'});"
+            "const {left, top} = view.canvas_view.el.getBoundingClientRect(), {bbox} = view.frame;"
+            "return [left + bbox.x, top + bbox.y, bbox.width, bbox.height]",
+            figure,
+        )
+        places = [(box[0] + x * box[2], box[1] + y * box[3]) for x, y in shares]
+        self._drag([self._move(*place) for place in places])
+
+    def _drag(self, moves: list[dict[str, Any]]) -> None:
         press, release = ({"type": f"pointer{what}", "button": 0} for what in ("Down", "Up"))
         actions = [moves[0], press, *moves[1:], release]
         pointer = {"type": "pointer", "id": "mouse", "actions": actions}
@@ -92,7 +119,15 @@ class Browser:
             x,
             y,
         )
-        return {"type": "pointerMove", "duration": 30, "x": round(place[0]), "y": round(place[1])}
+        return self._move(*place)
+
+    def _move(self, x: float, y: float) -> dict[str, Any]:
+        return {"type": "pointerMove", "duration": 30, "x": round(x), "y": round(y)}
+
+    def screenshot(self) -> Image.Image:
+        """The visible part of the page."""
+        taken = base64.b64decode(self._call("GET", "/screenshot"))
+        return Image.open(BytesIO(taken)).convert("RGB")
 
     def complaints(self) -> list[str]:
         """Warnings and errors on the console since the last call."""

@@ -99,6 +99,32 @@ def test_the_animation_advances_without_painting_the_figure_again(browser):
     )
 
 
+TIPS = """
+const tip = Bokeh.documents[0].get_model_by_name("arm_source").data
+const path = Bokeh.documents[0].get_model_by_name("path_source").data
+window.distances = []
+function measure() {
+  const [px, py] = [tip.x.at(-1), tip.y.at(-1)]
+  let least = Infinity
+  for (let k = 1; k < path.x.length; k++) {
+    const [x, y] = [path.x[k - 1], path.y[k - 1]], [dx, dy] = [path.x[k] - x, path.y[k] - y]
+    const share = Math.min(1, Math.max(0, ((px - x) * dx + (py - y) * dy) / (dx * dx + dy * dy)))
+    least = Math.min(least, Math.hypot(px - x - share * dx, py - y - share * dy))
+  }
+  window.distances.push(least)
+  if (window.distances.length < 100) requestAnimationFrame(measure)
+}
+measure()
+"""
+"""Measures, for 100 frames of the animation, the distance of the tip from its drawn path."""
+
+
+def test_the_tip_of_the_animated_arm_runs_along_its_drawn_path(browser):
+    browser.run(TIPS)
+    browser.wait_for("window.distances.length == 100")
+    assert max(browser.run("return window.distances")) < 1e-3  # straight lines between shapes: 3e-3
+
+
 def test_a_saved_picture_has_the_arm_that_is_animated(browser):
     browser.run(
         "Bokeh.documents[0].get_model_by_name('picture').value = 'beating';"
@@ -234,6 +260,13 @@ def test_the_arrow_of_a_menu_is_seen_on_light_and_on_dark_pages(browser):
     menu = "Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name('across')).el.shadowRoot"
     arrow = browser.run(f"return getComputedStyle({menu}.querySelector('select')).backgroundImage")
     assert re.findall(r'fill=\W*"(\w+)', arrow) == ["gray"]
+
+
+def test_no_window_has_to_be_scrolled_sideways(browser):
+    for width in (320, 500, 800, 1280):
+        browser.resize(width, 1300)
+        browser.wait_for(f"innerWidth == {width} && Bokeh.documents[0].is_idle")
+        browser.wait_for("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
 
 
 def test_nothing_is_on_the_console(browser):

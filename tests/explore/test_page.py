@@ -12,8 +12,9 @@ import rodsweep as rs
 from rodsweep.errors import Refusal
 from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page import INSTANT_KINDS, STOPPED_SENTENCE, Page
-from rodsweep.explore.pictures.card import AXIS_ALPHAS
-from rodsweep.explore.pictures.diagram import DiagramCell, cells, unstable_count_words
+from rodsweep.explore.page_style import template_text
+from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
+from rodsweep.explore.pictures.diagram import BOUNDARY_COLOURS, DiagramCell, cells, unstable_count_words
 from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
@@ -291,6 +292,42 @@ def test_a_search_that_finds_no_folds_says_so_above_the_diagram_as_fine_as_befor
     assert (card.message.visible, card.message.text) == (True, NO_CYCLE_CURVES_SENTENCE)
     assert card.figure.visible
     assert page.contents.diagram.cells.data == drawn
+
+
+def test_folds_are_added_to_the_drawn_diagram_while_the_rod_is_inside():
+    solvers = ImmediateSolvers(("diagram",))
+    page = page_with(solvers, "F_max=30")
+    run_callbacks(page.document, seconds=True)
+    run_callbacks(page.document)
+    for k2, around in (("300", "100"), ("2e3", "2e3")):
+        page.change({"k2": k2})
+        page.solve("cycles")
+        assert (solvers.questions[-1].kind, solvers.questions[-1].state.values["k2"]) == ("cycles", around)
+    page.change({"k2": "300", "gamma3": "0.02"})
+    page.solve("cycles")
+    assert solvers.questions[-1].state.values["k2"] == "300"
+
+
+def test_folds_of_an_arm_are_asked_around_the_arm_and_refused():
+    solvers = ImmediateSolvers(("diagram", "cycles"))
+    page = page_with(solvers, "tab=arm&F_max=20")
+    run_callbacks(page.document, seconds=True)
+    run_callbacks(page.document)
+    page.solve("cycles")  # a click that comes when the tab has just changed
+    run_callbacks(page.document)
+    assert "on the tab Rod" in page.contents.diagram.card.message.text
+
+
+def test_folds_of_a_solved_diagram_are_all_that_is_solved():
+    state = PageState(F_max="30")
+    drawn, found = (answer_to(Question(kind, state)) for kind in ("diagram", "cycles"))
+    assert found["unstable_count"] is drawn["unstable_count"]
+
+
+def test_a_legend_names_all_colours_of_boundaries():
+    looks = template_text("page.css")
+    colours = re.findall(r"#\w+", "".join(re.findall(r"^\.lines .*$", looks, re.MULTILINE)))
+    assert {*colours} == {*BOUNDARY_COLOURS.values(), STABLE_COLOUR}
 
 
 def test_a_failure_takes_the_sign_and_the_button_away():

@@ -15,6 +15,7 @@ from rodsweep.explore.solving.questions import SHAPE_COUNT, Question, Reply, ans
 from rodsweep.explore.solving.tip_release import motion_in_page_units
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.motion_film import motion_film
+from rodsweep.post.figures.cycle.tip_path import PATH_SEGMENT_COUNT, smooth_tip_path
 
 KINDS = (*INSTANT_KINDS, "bent", "motion", "film")
 
@@ -50,6 +51,18 @@ def test_a_fluttering_arm_that_is_let_go_moves_from_there_into_its_cycle():
     assert period == PERIOD_SECONDS
     # Returns of a motion that is not settled yet differ from the period by some percent.
     assert per_shape == pytest.approx(PERIOD_SECONDS / 32, rel=0.1)
+
+
+def test_the_drawn_path_of_the_tip_is_smooth_and_leads_through_the_shapes():
+    page = page_with(ImmediateSolvers(KINDS))
+    picture = page.contents.beating
+    for each in (picture.shapes, picture.motion):
+        path = np.stack([picture.path.data[name] for name in "xy"], axis=1)
+        assert path[::PATH_SEGMENT_COUNT][: len(ends(each))] == pytest.approx(ends(each), abs=1e-6)
+        steps = np.diff(path, axis=0)
+        turns = np.angle(np.exp(1j * np.diff(np.arctan2(steps[:, 1], steps[:, 0]))))
+        assert np.degrees(np.abs(turns).max()) < 12  # 44 degrees in a path of straight lines between shapes
+        drag(page, "let go", 0.6, 0.5)
 
 
 def test_an_arm_below_flutter_that_is_let_go_comes_to_rest():
@@ -135,6 +148,23 @@ def test_the_film_of_a_motion_is_in_the_units_of_the_page():
     assert motion.y[:, -1] == pytest.approx([1, 2])
     film = Image.open(BytesIO(motion_film(motion)))
     assert (film.format, film.n_frames) == ("GIF", 2)
+
+
+@pytest.mark.parametrize("is_closed", [True, False])
+def test_the_path_between_shapes_is_that_of_a_smooth_motion(is_closed):
+    turns = 1.0 if is_closed else 0.6
+    phase = 2 * np.pi * np.linspace(0, turns, 33)
+    places = np.stack([np.cos(phase), np.sin(2 * phase)], axis=1)
+    path = smooth_tip_path(places[: 32 if is_closed else 33], is_closed)
+    fine = 2 * np.pi * np.linspace(0, turns, len(path))
+    # Central differences of sin(2 phase) have the error h^2/6 (2 w)^3, of which a cubic has a quarter of h.
+    assert path == pytest.approx(np.stack([np.cos(fine), np.sin(2 * fine)], axis=1), abs=4e-3)
+    assert len(path) == 32 * PATH_SEGMENT_COUNT + 1
+
+
+def test_two_shapes_have_a_straight_path():
+    places = np.array([[0.0, 0.0], [1.0, 2.0]])
+    assert smooth_tip_path(places, is_closed=False).tolist() == places.tolist()
 
 
 def test_a_rod_without_a_cycle_has_no_film():

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from explore.browser import Browser, needs_browser
 from faults import small
 from pages import read_page
 from surveyed import RODS, only
@@ -252,6 +253,19 @@ def test_centres_of_cells_are_the_values_that_made_the_edges():
 def test_colours_are_lightened_until_they_stand_out_on_a_dark_page(colour):
     found = dark_page_colour(colour)
     assert _contrast([int(found[place : place + 2], 16) for place in (0, 2, 4)]) >= MIN_CONTRAST
+
+
+@needs_browser
+def test_a_figure_with_a_bitmap_is_dark_on_a_dark_page(command):
+    reported(command, "phase_diagram")
+    with Browser(dark=True) as browser:
+        browser.show((command.directory / "phase_diagram.html").as_uri())
+        box = "document.querySelector('.bitmap svg').getBoundingClientRect()"
+        corner = browser.run(f"const box = {box}; return [box.left + 3, box.top + 3]")
+        paper, figure = ([*browser.screenshot().getpixel(place)] for place in ((2, 2), tuple(corner)))
+        assert figure == pytest.approx(paper, abs=2)
+        assert max(paper) < 40
+        assert browser.complaints() == []
 
 
 def test_white_paper_becomes_the_dark_page():

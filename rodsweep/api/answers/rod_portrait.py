@@ -1,7 +1,7 @@
 """`rod.portrait()`: all results for one rod, as a picture, a paragraph and an `Answer` for each result."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
@@ -19,6 +19,7 @@ from ...solve.exclusive import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
 from ..dataset import named_file_path, view_of_dataset
+from ..keyword_arguments import plain_keyword
 from ..solving import solve_here
 from .answer import Answer
 
@@ -116,11 +117,12 @@ def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> Ro
     progress: as in `rod.portrait`. Raises InputError for an invalid request.
     """
     answers: dict[str, Answer] = {}
+    own = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
 
     def solve(job: Job) -> View:
         solved = solve_here(job, progress=progress)
         answers[job.text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.name))
 
-    results = rod_results(request, solve)
+    results = rod_results(replace(request, **own), solve)
     return RodPortrait(rod, results, answers)

@@ -10,6 +10,7 @@ from bokeh.events import Pan, PanEnd
 from bokeh.models import CustomJS, Range1d
 
 from ...arrays import Array
+from ...post.figures.cycle.tip_path import smooth_tip_path
 from ..page_style import template_text
 from ..scales import PictureAxis
 from ..solving.tip_release import Tip
@@ -95,10 +96,7 @@ class BeatingPicture:
         if not has_cycle:
             x, y = (found[name][None] * length.factor for name in "xy")
         self.shapes.data = source_of(x, y)
-        tips = (x[:, -1], y[:, -1]) if has_cycle else (x[:0, -1], y[:0, -1])
-        self.path.data = columns(
-            **{name: np.append(tip, tip[:1]) for name, tip in zip("xy", tips, strict=True)}
-        )
+        self._draw_path(x[: len(x) * has_cycle], y[: len(y) * has_cycle], is_closed=True)
         self._fit(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
             f"{n} ({length.label})" for n in "xy"
@@ -130,7 +128,7 @@ class BeatingPicture:
         self.motion.tags = [PERIOD_SECONDS * step / turn, PERIOD_SECONDS]
         self.reached.data = source_of(shape_x, shape_y)
         self.motion.data = source_of(x, y)
-        self.path.data = columns(x=x[:, -1], y=y[:, -1])
+        self._draw_path(x, y, is_closed=False)
         self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = END_WORDS.get(found["status"], found["sentence"])
@@ -147,6 +145,13 @@ class BeatingPicture:
         """Removes all shapes from the picture, so that the animation stops."""
         self.remove_dragged_shape()
         self.shapes.data = {name: [] for name in SHAPE_COLUMNS}
+
+    def _draw_path(self, x: Array, y: Array, is_closed: bool) -> None:
+        """Draws the path of the tip through shapes, (shapes, nodes). is_closed: whether the last shape is
+        followed by the first.
+        """
+        path = smooth_tip_path(np.stack([x[:, -1], y[:, -1]], axis=1), is_closed)
+        self.path.data = columns(x=path[:, 0], y=path[:, 1])
 
     def _fit(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit

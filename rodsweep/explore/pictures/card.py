@@ -47,8 +47,9 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     made.toolbar.logo = None
     made.toolbar.active_drag = None
     made.min_border_right = 10
-    # The outermost half pixel of a canvas is white even on a dark page, so clip it.
-    made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(1px); }")]
+    # The outermost half pixel of a canvas is white even on a dark page, so clip it. The canvas begins up to
+    # half a pixel beside its layout.
+    made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(2px); }")]
     made.xaxis.ticker.desired_num_ticks = TICK_COUNT
     made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
     return made

@@ -2,6 +2,8 @@
 parameter.
 """
 
+from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,9 @@ ARM_ROW_COUNT = 12
 ARM_SPAN_RATIO = 2.0
 """The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the present
 value; the ratio is small, so that all arms are slender."""
+KEPT_DIAGRAM_COUNT = 8
+"""Number of solved diagrams that a solver process keeps, some 100 kB each: the search of folds and torus
+points adds to the diagram that is drawn."""
 CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
@@ -58,7 +63,9 @@ def diagram(state: PageState) -> dict[str, Any]:
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
     """The result of `diagram` with curves of folds and torus points of cycles, which are searched on
-    SLOW_ROW_COUNT rows. Raises InputError for rods that are not uniform or not of linear material.
+    SLOW_ROW_COUNT rows. A diagram that this process has already solved is not solved again.
+
+    Raises InputError for rods that are not uniform or not of linear material.
     """
     state.subject()
     if not can_follow_cycle_curves(state):
@@ -66,7 +73,8 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
             "folds and torus points of cycles are followed for uniform rods of linear material only, "
             "on the tab Rod"
         )
-    found = _of_phases(state, with_cycles=True)
+    cycles = {"cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"]}
+    found = _of_phases(state, SLOW_ROW_COUNT, cycles)
     curves = {name: values for name, values in found.items() if name.startswith("cycle_")}
     return _of_phases(state) | curves
 
@@ -98,21 +106,26 @@ def _fixed(state: PageState) -> dict[str, Any]:
     return {n: v for n, v in state.parameters().items() if n not in ("F", "gamma1", state.second)}
 
 
-def _of_phases(state: PageState, with_cycles: bool = False) -> dict[str, Any]:
-    """Diagram of uniform rods, with the variables of `diagram`, from the task `phase_diagram`. with_cycles:
-    whether folds and torus points of cycles are followed.
+def _of_phases(
+    state: PageState, row_count: int = ROW_COUNT, cycles: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Diagram of uniform rods, with the variables of `diagram`, from the task `phase_diagram`. cycles:
+    further keywords of the sweep, which request folds and torus points of cycles."""
+    rows = tuple(second_parameter_values(state, row_count).tolist())
+    keywords = {**_fixed(state), **(cycles or {})}
+    return _solved_phases(state.second, rows, state.largest_force(), tuple(keywords.items()))
+
+
+@lru_cache(maxsize=KEPT_DIAGRAM_COUNT)
+def _solved_phases(
+    second: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
+) -> dict[str, Any]:
+    """Diagram up to the load `F_max` on the values `rows` of the parameter `second`; callers must not change
+    it. keywords: further keywords of the sweep.
     """
-    F = np.linspace(0, state.largest_force(), LOAD_COUNT)
-    rows = second_parameter_values(state, SLOW_ROW_COUNT if with_cycles else ROW_COUNT)
-    keywords: dict[str, Any] = {"F": F, state.second: rows, **_fixed(state)}
-    if with_cycles:
-        keywords |= {
-            "cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"],
-        }  # fmt: skip
-    data = sweep("phase_diagram", progress=False, **keywords)
-    return diagram_from_phase_result(
-        data.squeeze([n for n in ("k1", "k2", "gamma3") if n != state.second]), state.second
-    )
+    axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second: list(rows)}
+    data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
+    return diagram_from_phase_result(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != second]), second)
 
 
 def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:

@@ -8,6 +8,7 @@ button.
 from dataclasses import replace
 
 from ..state import PageState
+from .diagrams import second_parameter_values
 from .questions import Question
 from .tip_release import Tip
 
@@ -39,3 +40,18 @@ def needs(question: Question) -> Needs:
     if kind in ("diagram", "cycles"):
         return state.with_values(**blank, **{state.second: ""}), None
     return replace(state.with_values(**blank), across=""), None
+
+
+def state_to_solve(kind: str, state: PageState, drawn: PageState | None) -> PageState:
+    """State for a question of the kind `kind`: the state of the page, but `drawn` for curves of cycles if the
+    rod lies in the drawn diagram, to which the curves are then added.
+
+    state: state of the page. drawn: state around which the drawn diagram was solved; None if there is no
+    diagram.
+    """
+    if kind != "cycles" or drawn is None or state.tab != "rod":
+        return state
+    if needs(Question("diagram", state)) != needs(Question("diagram", drawn)):
+        return state
+    low, high = second_parameter_values(drawn, 2)
+    return drawn if low <= float(state.values[state.second]) <= high else state

@@ -118,10 +118,17 @@ def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]",
     cancellation = Cancellation()
     for number in (signal.SIGINT, signal.SIGALRM):
         signal.signal(number, cancellation)
-    connection.send(Reply("ready", {}, 0.0))
+
+    def send(reply: Reply) -> None:
+        try:
+            connection.send(reply)
+        except OSError:  # the page has ended
+            os._exit(0)
+
+    send(Reply("ready", {}, 0.0))
     while True:
         try:
             question = connection.recv()
-        except EOFError:
+        except (EOFError, OSError):  # the page has ended, perhaps before it read the last reply
             return
-        connection.send(reply_to(question, cancellation, connection.send))
+        send(reply_to(question, cancellation, send))

@@ -29,8 +29,8 @@ class VectorPicture:
     """Figure as an SVG element of an HTML page. svg: text of the element.
 
     colours: colours of the picture, as six hexadecimal digits, which a dark page replaces. Empty for a
-    picture that contains a bitmap, because the colours of a bitmap cannot be replaced; the background then
-    stays white.
+    picture that contains a bitmap, because the colours of a bitmap cannot be replaced; a dark page inverts
+    the lightness of the whole picture instead.
     """
 
     svg: str

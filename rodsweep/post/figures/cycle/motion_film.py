@@ -4,6 +4,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,6 +13,7 @@ from ....arrays import Array
 from ....watch import SolvePosition, report
 from ..style import BLUE
 from .portrait import SHAPE_MARGIN, WALL_DEPTH, draw_clamp
+from .tip_path import PATH_SEGMENT_COUNT, smooth_tip_path
 
 FRAME_SIZE = (3.6, 4.0)
 """Width and height of a frame, in inches."""
@@ -46,6 +48,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
     _frame(axes, motion)
     (path,) = axes.plot([], [], color="0.6", lw=0.8)
     (rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
+    tip = smooth_tip_path(np.stack([motion.x[:, -1], motion.y[:, -1]], axis=1), is_closed=False)
     with TemporaryDirectory() as directory:
         output = Path(directory) / "film.gif"
         writer = PillowWriter(fps=FRAME_RATE)
@@ -53,7 +56,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
             for k in range(frames):
                 report(lambda k=k: SolvePosition(f"frame {k + 1} of {frames}", k / frames))  # type: ignore[misc]
                 rod.set_data(motion.x[k], motion.y[k])
-                path.set_data(motion.x[: k + 1, -1], motion.y[: k + 1, -1])
+                path.set_data(*tip[: k * PATH_SEGMENT_COUNT + 1].T)
                 axes.set_title(f"$t$ = {k * motion.step:.3g} {motion.units[1]}")
                 writer.grab_frame()
         return output.read_bytes()

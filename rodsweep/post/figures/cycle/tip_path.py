@@ -1,0 +1,39 @@
+"""Smooth path of the tip through the shapes of an animation."""
+
+import numpy as np
+
+from ....arrays import Array
+
+PATH_SEGMENT_COUNT = 8
+"""Number of straight segments that are drawn between two shapes. With 32 shapes per return of the tip, two
+segments enclose an angle of 1.4 degrees on average, and of 12 degrees at sharp turns."""
+
+
+def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
+    """Path through the tips of shapes at equal distances in time, (n, 2): PATH_SEGMENT_COUNT segments between
+    two tips, (vertices, 2).
+
+    Each coordinate is a cubic polynomial between two shapes, and its rate at a shape is the central
+    difference of the neighbouring shapes. is_closed: whether the last shape is followed by the first; the
+    path then ends where it begins. Otherwise the second difference at an end equals that of the next shape.
+    """
+    if len(tips) < 3:
+        return tips
+    if is_closed:
+        p = np.concatenate([tips[-1:], tips, tips[:2]])
+    else:
+        before = 3 * (tips[0] - tips[1]) + tips[2]
+        after = 3 * (tips[-1] - tips[-2]) + tips[-3]
+        p = np.concatenate([[before], tips, [after]])
+    part = np.arange(PATH_SEGMENT_COUNT)[:, None] / PATH_SEGMENT_COUNT
+    slopes = (p[2:] - p[:-2]) / 2
+    start, end = p[1:-2, None], p[2:-1, None]
+    start_slope, end_slope = slopes[:-1, None], slopes[1:, None]
+    rest = 1 - part
+    between = (
+        rest**2 * (1 + 2 * part) * start
+        + part**2 * (1 + 2 * rest) * end
+        + part * rest * (rest * start_slope - part * end_slope)
+    )
+    path: Array = np.concatenate([between.reshape(-1, 2), p[-2:-1]])
+    return path
