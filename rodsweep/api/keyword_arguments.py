@@ -195,7 +195,8 @@ def plain_value(value: Any) -> Any:
     if np.ma.is_masked(value):
         raise ValueError("a value of the array is masked, so it is not a number; leave it out")
     if hasattr(value, "__array__"):
-        return np.asarray(value).tolist()
+        array = np.asarray(value)
+        return (array.astype(float) if array.dtype == np.longdouble else array).tolist()
     return value
 
 

@@ -88,7 +88,7 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
             f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
         )
     try:
-        if isinstance(given, bool | complex) or np.ma.is_masked(given):
+        if isinstance(given, bool | np.bool_ | complex) or np.ma.is_masked(given):
             raise TypeError
         return float(given)
     except (TypeError, ValueError, OverflowError):

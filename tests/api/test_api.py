@@ -244,6 +244,16 @@ def test_numpy_scalars_are_taken_by_every_door():
     assert rs.sweep("spectrum", ranks=once, strict=off, progress=off, **ROD, modes=once).sizes["mode"] == 1
     portrait = rod.portrait(F_max=np.float32(20), accuracy=np.float32(2.0**-7), progress=off)
     assert portrait.results.F_max == 20
+    assert rs.Rod(**ROD | {"k1": np.longdouble(ROD["k1"])}) == rod
+    assert rs.Arm(**SILICONE, poisson=np.array(0.49)) == rs.Arm(**SILICONE, poisson=0.49)
+    with pytest.raises(rs.InputError, match="length = True is not one quantity"):
+        rs.Arm(**SILICONE | {"length": np.bool_(True)})
+
+
+def test_a_wrong_item_of_a_list_of_words_is_refused_with_the_words_that_are_allowed(tmp_path):
+    (tmp_path / "points.csv").write_text("F,k1,k2,gamma3\n5,1e3,1e3,1e-3\n")
+    with pytest.raises(rs.InputError, match="columns.0 = 'F' is not allowed; it should be 'taper'$"):
+        rs.sweep("spectrum", points=tmp_path / "points.csv", columns=["F"])
 
 
 def test_a_rods_numbers_are_those_of_the_sweep():

@@ -48,7 +48,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
         return f"{short_repr(value)} is not a key; keys are words"
     key_alone = location[-1] if location else ""
     field = _section(config, location[:-1]).model_fields.get(key_alone)
-    allowed = allowed_values_text(field) if field else problem["msg"]
+    allowed = allowed_values_text(field) if field else problem["msg"].removeprefix("Input should be ")
     return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 
 

@@ -61,6 +61,7 @@ class SlenderArm:
 
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
+        object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
         numbers = {name: number_in_si(name, getattr(self, name)) for name in UNITS}
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**numbers))

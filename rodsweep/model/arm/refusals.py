@@ -4,6 +4,8 @@ from math import inf
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ...errors import InputError
 from ..material.laws import law_of
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
@@ -35,7 +37,7 @@ def refuse_words(arm: "SlenderArm") -> None:
     A swelling section requires a Poisson's ratio of 0.5.
     """
     ratio: Any = arm.poisson
-    is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
+    is_number = isinstance(ratio, Real) and not isinstance(ratio, bool | np.bool_)
     if not is_number or not -1 < ratio <= INCOMPRESSIBLE:
         try:
             text = repr(ratio) if isinstance(ratio, str) else str(ratio)
