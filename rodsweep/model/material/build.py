@@ -113,6 +113,11 @@ class Build:
         """
         return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
 
+    def relative_load(self, F: float, k1: float, taper: float) -> float:
+        """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: at the
+        base."""
+        return F / (k1 * self.relative_crushing_force(taper))
+
     def relative_least_drag(self, taper: float) -> float:
         """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
         base.

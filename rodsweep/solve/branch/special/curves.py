@@ -50,7 +50,7 @@ class CurveEndSettings:
     edge_bracket: float = 1e-10
     """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
     crushing_margin: float = 1e-3
-    """A curve ends where the relative distance 1 - F/k1 of F from the crushing force k1 is this number."""
+    """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
     crushing_accuracy: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
@@ -154,8 +154,9 @@ class SpecialCurveProblem:
             rod = known[-1].orbit.form.rod
             at = float(np.dot(weights, [point.parameter for point in known]))
             at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
-            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(at_row)}
-            return 1 - END_SETTINGS.crushing_margin / 2 - values["F"] / values["k1"]
+            values = {**rod.values, self.line.name: at, self.rows.name: self.rows.value(at_row)}
+            load = rod.build.relative_load(values["F"], values["k1"], values["taper"])
+            return 1 - END_SETTINGS.crushing_margin / 2 - load
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
@@ -174,12 +175,12 @@ class SpecialCurveProblem:
         return orbit_with_parameters(orbit, changed), at_row
 
     def margins(self, point: SolvedPoint) -> Array:
-        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 - F/k1
-        minus `crushing_margin`, smallest h1, and largest tip y minus `min_amplitude`."""
+        """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
+        `Build.relative_load` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
-        crushing = 1 - END_SETTINGS.crushing_margin - rod.F / rod.k1
+        crushing = 1 - END_SETTINGS.crushing_margin - rod.build.relative_load(rod.F, rod.k1, rod.taper)
         stretch = least_stretch_of_orbit(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
 
