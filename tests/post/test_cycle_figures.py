@@ -315,11 +315,11 @@ def test_other_tasks_refuse_the_options_of_limit_cycle(command):
     )
     command("run", "c.yaml")
     for words, name in ((("--what", "cycle"), "--what"), (("--point", 1), "--point")):
-        refused = command("plot", "c.h5", *words)
+        refused = command.drawn("plot", "c.h5", *words)
         assert refused.returncode == 2
         assert f"{name}" in refused.stderr
         assert len(refused.stderr.splitlines()) == 1
-    assert command("plot", "c.h5").returncode == 0
+    assert command.drawn("plot", "c.h5").returncode == 0
 
 
 def test_no_arrow_of_a_film_is_over_the_running_time():

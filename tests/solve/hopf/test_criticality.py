@@ -341,7 +341,7 @@ def test_figure_over_two_parameters(command):
 
 def test_figure_of_rods_without_hopf_points_is_refused(command):
     shown(command, CONFIG.format(k1="[50, 60]"))
-    refused = command("plot", "c.h5", "-o", "c.png")
+    refused = command.drawn("plot", "c.h5", "-o", "c.png")
     assert refused.returncode == 2
     assert "c.h5 holds no Hopf point with a normal form that could be drawn" in refused.stderr
 
