@@ -263,6 +263,13 @@ def command(tmp_path, request):
 
 
 @pytest.fixture
+def not_fitted(monkeypatch):
+    """Figures are drawn but not laid out, for tests that ignore the layout; `make survey` lays them out."""
+    if not RODS:
+        monkeypatch.setattr("rodsweep.post.figures.request.fit", lambda *_: None)
+
+
+@pytest.fixture
 def drawn(monkeypatch):
     """The figures that are drawn, in place of their files, and not laid out."""
     from matplotlib.figure import Figure

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import ROOT
+from surveyed import few
 
 import rodsweep as rs
 
@@ -143,9 +144,9 @@ def test_figure_5(command):
 
 
 def test_beating_arm(command):
-    """By collocation, and by time integration alone; the config states 17.7890 s and 6.46957 cm too."""
+    """By collocation, in the survey by integration too; the config states 17.7890 s and 6.46957 cm too."""
     of_period, seconds, of_height, centimetres = stated("beating_arm")[-4:]
-    for method, accuracy in (("collocation", "1e-6"), ("integration", "1e-5")):
+    for method, accuracy in few((("collocation", "1e-6"), ("integration", "1e-5")), 1):
         overrides = f"limit_cycle.method={method}", "limit_cycle.shapes=8", f"accuracy={accuracy}"
         with run(command, "beating_arm", *overrides) as file:
             period, y, period_si, y_si = (

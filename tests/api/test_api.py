@@ -29,6 +29,8 @@ from rodsweep.model.parameters import PARAMETERS
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.request import KINDS, ROOTS
 
+pytestmark = pytest.mark.usefixtures("not_fitted")
+
 NAMES = [
     "Answer",
     "Arm",

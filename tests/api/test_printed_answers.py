@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from printed import WINDOW, flaws_of_columns, flaws_of_layout, unit_of
+from surveyed import few
 
 import rodsweep as rs
 from rodsweep.api.answers.frames import frame_of
@@ -148,7 +149,7 @@ def test_an_answer_that_failed_begins_with_the_meaning_of_its_status():
     assert not list(flaws_of_layout(answer))
 
 
-@pytest.mark.parametrize("width", [80, 120])
+@pytest.mark.parametrize("width", few([80, 120], 1))
 @pytest.mark.parametrize(
     ("task", "asked"),
     [

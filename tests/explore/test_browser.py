@@ -301,6 +301,7 @@ def test_the_same_file_can_be_loaded_twice(browser):
 ROD_43 = "task: limit_cycle\nparameters: {F: 43, k1: 1.0e4, k2: 100, gamma3: 0.01}\n"
 
 
+@survey_only
 def test_a_page_that_was_left_ends_its_solves_and_the_way_back_leads_to_a_page_that_solves(url):
     with Browser() as other:
         other.open(f"{url}?F_max=1e9&F=47")  # thresholds up to this force take minutes

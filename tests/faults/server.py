@@ -293,8 +293,8 @@ def end_as(main: Callable[[], object]) -> NoReturn:
     os._exit(code)
 
 
-def load(solving: bool, configs: list[str]) -> None:
-    """Imports everything and compiles what is compiled at first use for some configs."""
+def import_all() -> None:
+    """Imports what all runs need and what starts neither MPI nor PETSc."""
     import email.parser  # noqa: F401
     import encodings.ascii  # noqa: F401
 
@@ -306,12 +306,19 @@ def load(solving: bool, configs: list[str]) -> None:
     import rodsweep.post.figures
     import rodsweep.post.summary
     import rodsweep.tasks.cycle_shapes  # noqa: F401
+    from rodsweep.model.units import registry
+
+    for name in ("interpolate", "ndimage", "spatial"):
+        getattr(scipy, name)
+    registry()
+
+
+def load(solving: bool, configs: list[str]) -> None:
+    """Compiles what is compiled at first use for some configs, after `import_all`."""
     from rodsweep.errors import EnvironmentIncomplete
     from rodsweep.sweep.team import Team
     from rodsweep.tasks.running.job import make_job
 
-    for name in ("interpolate", "ndimage", "spatial"):
-        getattr(scipy, name)
     for path in configs:
         job = make_job(Path(path), ())
         job.task.cost()
@@ -322,6 +329,7 @@ def load(solving: bool, configs: list[str]) -> None:
     find_provenance(solving)
     if solving:
         load_changes()
+        load_arms()
         draw()
     else:
         sys.meta_path.insert(0, NoSolver())
@@ -336,6 +344,15 @@ def load_changes() -> None:
 
     rod, w = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), np.ones(1, complex)
     stability_change_between((rod.coefficients, rod.direction("F")), (1.0, 2.0), -w, w, 2)
+
+
+def load_arms() -> None:
+    """Loads what arms that vary along their length call beside, and keeps no solver for them."""
+    from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
+    from rodsweep.solve.seldom_used_kernels import warm_up_arms
+
+    warm_up_arms()
+    destroy_pooled_solvers()
 
 
 def find_provenance(solving: bool) -> None:
@@ -381,8 +398,6 @@ def loaded_kernels() -> bytes:
 
 def load_for_ranks(kernels: bytes) -> None:
     """Loads what the process that solves has loaded, but what starts MPI or PETSc."""
-    from rodsweep.model.units import registry
-
     refusal = NoSolver()
     sys.meta_path.insert(0, refusal)
     for name, functions in pickle.loads(kernels).items():
@@ -392,13 +407,13 @@ def load_for_ranks(kernels: bytes) -> None:
                 for signature in signatures:
                     getattr(module, function).compile(signature)
     sys.meta_path.remove(refusal)
-    registry()
     assert not {"mpi4py.MPI", "petsc4py.PETSc"} & set(sys.modules)
 
 
 def main() -> None:
     solving = sys.argv[1] == "solving"
-    if solving:
+    import_all()
+    if solving:  # the fork has no solver yet
         reading, writing = os.pipe()
         if not os.fork():
             os.close(writing)

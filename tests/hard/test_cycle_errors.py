@@ -11,7 +11,7 @@ from math import inf
 
 import pytest
 from rods import rod_of
-from surveyed import few
+from surveyed import only
 
 import rodsweep as rs
 from rodsweep.discretization.elements.mesh import mesh
@@ -108,8 +108,9 @@ def test_meshes_that_agree_by_luck_are_not_believed(point, accuracy, parameter):
     assert broken_promises(found, accuracy) == []
 
 
-@pytest.mark.parametrize("case, phases", few([*FOURIER.values()], 1), ids=few([*FOURIER], 1))
-def test_fourier_collocation_of_the_mixed_form_has_the_same_cycle(case, phases):
+@pytest.mark.parametrize("name", only(["stiff without rotational drag"], FOURIER))
+def test_fourier_collocation_of_the_mixed_form_has_the_same_cycle(name):
+    case, phases = FOURIER[name]
     found = cycle_of(case)
     exact = finer(found.orbit).orbit
     period, y = period_and_largest_y(exact, phases)

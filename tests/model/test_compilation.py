@@ -10,6 +10,7 @@ import numba
 import numpy as np
 import pytest
 from numba.core import event
+from surveyed import few
 
 from rodsweep.model.compiled import compilation
 from rodsweep.model.rod import Rod
@@ -195,7 +196,9 @@ def test_numba_looks_for_caches_where_ours_is():
     assert kernel.stats.cache_path == str(compilation.cache_directories()[0])
 
 
-@pytest.mark.parametrize("spoil", [lambda held: held[:100], lambda held: b"garbage", lambda held: b""])
+@pytest.mark.parametrize(
+    "spoil", few([lambda held: held[:100], lambda held: b"garbage", lambda held: b""], 1)
+)
 def test_damaged_files_are_compiled_and_written_again(made, tmp_path, spoil):
     made()
     files = sorted((tmp_path / "cache").rglob("*.kernel"))

@@ -61,7 +61,7 @@ LINE = "task: spectrum\nparameters: {F: {start: 0, stop: 30, num: 16}, k1: 1e4, 
 def test_line_of_spectra_is_drawn(command, suffix, roots):
     command.write("c.yaml", LINE)
     command.solved("c.yaml")
-    run = command("plot", "c.h5", "-o", f"f.{suffix}", "--roots", roots)
+    run = command.drawn("plot", "c.h5", "-o", f"f.{suffix}", "--roots", roots)
     assert run.returncode == 0, run.stderr
     assert roots in run.stdout
     assert (command.directory / f"f.{suffix}").stat().st_size > 5000
@@ -72,10 +72,10 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
     command(
         "run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 5e3, num: 7, spacing: log}", "-o", "map.h5"
     )
-    assert "growth rate" in command("plot", "map.h5").stdout
+    assert "growth rate" in command.drawn("plot", "map.h5").stdout
     three = ["--set", "parameters.F=[1, 2]", "--set", "parameters.k1=[1e4, 2e4]"]
     command("run", "c.yaml", *three, "--set", "parameters.k2=[50, 100]", "-o", "three.h5")
-    refused = command("plot", "three.h5")
+    refused = command.drawn("plot", "three.h5")
     assert refused.returncode == 2
     assert "one or two" in refused.stderr
     with pytest.raises(InputError, match="must end in"):
@@ -153,13 +153,13 @@ def test_infinite_axis_values_and_odd_titles_are_drawn_or_refused_in_a_sentence(
     command.write("c.yaml", LINE)
     both = ["--set", "parameters.k2=[50, 100, .inf]", "--set", "title=cost in $ and \\frac"]
     command("run", "c.yaml", *both, "-o", "map.h5")
-    assert command("plot", "map.h5").returncode == 0
-    at = command("plot", "map.h5", "--at", "k2=inf", "-o", "at.png")
+    assert command.drawn("plot", "map.h5").returncode == 0
+    at = command.drawn("plot", "map.h5", "--at", "k2=inf", "-o", "at.png")
     assert (at.returncode, "panel" in at.stdout) == (0, False)
     command("run", "c.yaml", *both, "--set", "parameters.F=3", "-o", "line.h5")
-    assert command("plot", "line.h5").returncode == 0
+    assert command.drawn("plot", "line.h5").returncode == 0
     for output in ("map.h5", ".", "figure"):
-        refused = command("plot", "map.h5", "-o", output)
+        refused = command.drawn("plot", "map.h5", "-o", output)
         assert refused.returncode == 2
         assert len(refused.stderr.splitlines()) == 1
     assert read_view(command.directory / "map.h5").variables["k2"][-1] == np.inf
@@ -287,7 +287,7 @@ def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, drawn):
         draw(read_view(path), path.with_suffix(".png"), look=FigureLook(style=style))
     assert [to_hex(figure.axes[0].get_facecolor()) for figure in drawn] == ["#e5e5e5", "#123456"]
     for wrong in ("nosuch", "c.h5"):
-        done = command("plot", "c.h5", "--style", wrong)
+        done = command.drawn("plot", "c.h5", "--style", wrong)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
         assert f"{wrong} is neither a style of matplotlib nor a style file" in done.stderr
 
@@ -461,7 +461,7 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
         (("--width", "1 km"), "from 64 to 508 mm"),
         (("--what", "map"), "is for results of thresholds"),
     ):
-        refused = command("plot", "grid.h5", *words)
+        refused = command.drawn("plot", "grid.h5", *words)
         assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
         assert said in refused.stderr
 
@@ -532,14 +532,14 @@ def test_several_lines_of_spectra_are_panels_of_one_figure(command, drawn):
     command.solved("m.yaml")
     command.write("t.yaml", "task: thresholds\nparameters: {k1: 200, k2: 1.0e4, gamma3: 1.0e-4}\n")
     command.solved("t.yaml")
-    refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
+    refused = command.drawn("plot", "a.h5", "t.h5", "-o", "x.png")
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
     assert "only lines of spectra" in refused.stderr
     assert (
         "only results of limit_cycle, spectrum or thresholds can share a figure"
-        in command("plot", "m.h5", "m.h5", "-o", "x.png").stderr
+        in command.drawn("plot", "m.h5", "m.h5", "-o", "x.png").stderr
     )
-    alone = command("plot", "t.h5", "t.h5", "-o", "x.png")
+    alone = command.drawn("plot", "t.h5", "t.h5", "-o", "x.png")
     assert (alone.returncode, alone.stderr.count("\n")) == (2, 1)
 
 
@@ -562,7 +562,7 @@ def test_thresholds_of_several_files_are_lines_of_one_figure(command, drawn):
     assert labels[-2:] == ["linear", "neo-Hookean, fixed section"]
     command.write("t.yaml", "task: thresholds\nparameters: {k1: 200, k2: [1.0e3, 1.0e4], gamma3: 1.0e-4}\n")
     command.solved("t.yaml")
-    refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
+    refused = command.drawn("plot", "a.h5", "t.h5", "-o", "x.png")
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
     assert "grids over one parameter, the same in every file" in refused.stderr
 

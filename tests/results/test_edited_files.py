@@ -1,6 +1,6 @@
 """Result files that another program, a disk or a user changed: refused in a sentence, or the same numbers.
 
-A dozen random edits of a file of each task here; RODSWEEP_CASES=N asks for N times as many.
+Eight random edits of a file of each task here; RODSWEEP_CASES=N asks for N times as many.
 """
 
 import os
@@ -42,7 +42,7 @@ limit_cycle: {start: neighbour, samples: 8}
 accuracy: 1.0e-3
 """,
 }
-EDITS = 15 * int(os.environ.get("RODSWEEP_CASES", "1"))
+EDITS = 8 * int(os.environ.get("RODSWEEP_CASES", "1"))
 LONGEST_REFUSAL = 600
 """Characters of a refusal in a directory with a long name."""
 

@@ -58,9 +58,10 @@ RANGE = "{start: 0, stop: 40, num: 5}"
     ("text", "parts"),
     [
         pytest.param(SPECTRA, [[(RANGE, "[0, 20, 40]")], [(RANGE, "[10, 30]")]], marks=survey_only),
-        (
+        pytest.param(
             SPECTRA,
             [[("100, 1.0e3, .inf", "1.0e3")], [("1.0e3, .inf", "1.0e3")], [("100, 1.0e3, .inf", ".inf")]],
+            marks=survey_only,
         ),
         (SPECTRA, [[(RANGE, f"[{F}]"), ("[0, 1.0e-4]", gamma3)] for F, gamma3 in QUARTERS]),
         pytest.param(

@@ -12,6 +12,7 @@ import sys
 import threading
 
 import pytest
+from conftest import NOT_FITTED
 
 from rodsweep import watch
 from rodsweep.solve.exclusive import DeferredSignals, one_at_a_time
@@ -47,6 +48,7 @@ def bits(task):
 ALL_IN_ONE = f"""
 import json, random, signal, sys, threading, time
 {TASKS}
+{"" if INTERRUPTS > 1 else NOT_FITTED}
 alone, seconds = {{}}, {{}}
 for task in TASKS:
     began = time.perf_counter()

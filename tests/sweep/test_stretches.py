@@ -235,22 +235,26 @@ def test_python_gives_the_numbers_of_the_command(command):
             assert name == "seconds" or np.array_equal(here[name], file[name], equal_nan=True), name
 
 
+FEW_FORCES = "F: {start: 0, stop: 49.75, num: 20}"
+"""Fewer than values of k2, along which the larger grid is followed then."""
+
+
 @pytest.mark.parametrize(
-    ("larger", "kept"),
+    ("first", "larger", "kept"),
     [
-        ("F: {start: 0, stop: 66.25, num: 266}", STRETCH_POINTS),
-        ("F: {start: 0, stop: 49.75, num: 200}\n  k1: [100, 200, 1.0e4, .inf]", 200),
-        ("F: {start: 0, stop: 49.75, num: 200}\n  k2: {start: 50, stop: 600, num: 211}", 0),
-        ("F: {start: -0.25, stop: 49.75, num: 201}", 0),
+        ("", "F: {start: 0, stop: 66.25, num: 266}", STRETCH_POINTS),
+        ("", "F: {start: 0, stop: 49.75, num: 200}\n  k1: [100, 200, 1.0e4, .inf]", 200),
+        (FEW_FORCES, f"{FEW_FORCES}\n  k2: {{start: 50, stop: 600, num: 31}}", 0),
+        ("", "F: {start: -0.25, stop: 49.75, num: 201}", 0),
     ],
     ids=["longer", "another line", "along another axis", "shifted"],
 )
-def test_extended_grid_keeps_what_a_run_of_the_whole_gives_to_the_last_bit(command, larger, kept):
+def test_extended_grid_keeps_what_a_run_of_the_whole_gives_to_the_last_bit(command, first, larger, kept):
     """Of each of the three lines as many points as are in stretches of the same points."""
     parameters = {"F": "{start: 0, stop: 49.75, num: 200}", "k1": "[100, 1.0e4, .inf]"}
     parameters |= {"k2": "50", "gamma3": "1.0e-4"}
     texts = []
-    for more in ("", larger):
+    for more in (first, larger):
         given = parameters | dict(line.strip().split(": ", 1) for line in more.split("\n") if line)
         lines = "".join(f"  {name}: {value}\n" for name, value in given.items())
         texts.append(f"task: spectrum\nparameters:\n{lines}spectrum: {{modes: 2}}\n")

@@ -254,7 +254,7 @@ def test_show_of_a_diagram_without_flutter_says_up_to_which_load(command):
 def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     command.write("a.yaml", MAP)
     command.solved("a.yaml")
-    refused = command("plot", "a.h5", "--what", "lines")
+    refused = command.drawn("plot", "a.h5", "--what", "lines")
     assert refused.returncode == 2
     assert (
         "--what lines is not for a grid over an arm's quantities; remove --what or draw lines over"

@@ -45,7 +45,7 @@ def test_show_tells_branches_special_points_and_where_two_states_coexist(command
 
 
 def test_show_of_many_rods_names_those_with_two_stable_states(command):
-    told = shown(command, CONFIG.format(k1="[100, 150]", stop=100))
+    told = shown(command, CONFIG.format(k1="[100, 150]", stop=90))
     assert "1 branch at 1 of 2 rods" in told
     assert re.search(r"1 fold: F = 85\.6056", told)
     assert "stable cycles beside a stable straight rod at 1 of 2 rods" in told
@@ -87,7 +87,7 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
 
 
 def test_file_has_the_branches_in_order_and_nothing_behind_them(command):
-    shown(command, CONFIG.format(k1="[100, 150]", stop=200))
+    shown(command, CONFIG.format(k1="[100, 150]", stop=90))
     view = read_view(command.directory / "c.h5")
     v = {name: view.variables[name] for name in view.variables}
     assert v["hopf_count"].ravel().tolist() == [0, 2]
@@ -210,7 +210,7 @@ def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(comma
 
 
 def test_rods_that_are_missing_are_not_said_to_have_no_branch(command):
-    shown(command, CONFIG.format(k1="[100, 150]", stop=80))
+    shown(command, CONFIG.format(k1="[100, 150]", stop=90))
     view = read_view(command.directory / "c.h5")
     view.variables["status"][0] = MISSING
     assert "none" not in draw(view, command.directory / "c.png")

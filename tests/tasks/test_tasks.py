@@ -10,6 +10,7 @@ import pytest
 import xarray
 from contents import content
 from faults import small
+from surveyed import few
 
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
@@ -433,7 +434,7 @@ def test_crossings_beyond_a_full_list_count_as_untraced(command):
     assert untraced == [0, 3]
 
 
-@pytest.mark.parametrize("task", ["spectrum", "modes", "thresholds", "phase_diagram", "limit_cycle"])
+@pytest.mark.parametrize("task", few(["limit_cycle", "thresholds", "spectrum", "modes", "phase_diagram"], 2))
 def test_a_taper_of_one_that_is_written_changes_nothing(command, task):
     """Also where stability changes between points of a grid, whose lines then have a further parameter."""
     text = small.CONFIGS[task].lstrip()

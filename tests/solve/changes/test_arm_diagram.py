@@ -151,14 +151,14 @@ def test_a_plane_that_is_crushed_everywhere_is_refused():
 
 
 def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
-    text = "task: phase_diagram\nparameters: {F: {start: 0, stop: 450, num: 10}, k1: [300, 400, 500], "
+    text = "task: phase_diagram\nparameters: {F: {start: 0, stop: 450, num: 4}, k1: [360, 400], "
     command.write(
         "rubber.yaml",
         f"{text}k2: 1.0e4, gamma3: 1.0e-4}}\nmaterial: {{law: neo_hookean, section: swelling}}\n",
     )
     assert command("run", "rubber.yaml").returncode == 0
     said = command("show", "rubber.h5").stdout
-    assert "is confirmed by counts of unstable modes on 3 of 3 rows" in said
+    assert "is confirmed by counts of unstable modes on 2 of 2 rows" in said
     assert "fold of the curve of Hopf points, where k1 is extremal: k1 = 366.4520346" in said
     assert "partial beam" not in said
     assert "crushed" not in said

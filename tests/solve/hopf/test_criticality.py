@@ -10,7 +10,7 @@ from mixed_motion import mixed_form
 from scipy.interpolate import BarycentricInterpolator
 from second_normal_form import coefficients
 from shown import shown
-from surveyed import survey_only
+from surveyed import few, survey_only
 from test_paper import run, stated
 
 import rodsweep as rs
@@ -320,7 +320,7 @@ def test_file_has_a_value_where_there_is_a_hopf_point_and_none_elsewhere(command
         assert np.isnan(v[name][1, 0, 0, 0, 2:]).all()
 
 
-@pytest.mark.parametrize("k1", ["[120, 150, 200, 400]", "[150, 200, .inf]"])
+@pytest.mark.parametrize("k1", few(["[150, 200, .inf]", "[120, 150, 200, 400]"], 1))
 def test_figure_over_one_parameter(command, k1):
     shown(command, CONFIG.format(k1=k1))
     drawn = command.drawn("plot", "c.h5", "-o", "c.svg")
@@ -341,7 +341,7 @@ def test_figure_over_two_parameters(command):
 
 def test_figure_of_rods_without_hopf_points_is_refused(command):
     shown(command, CONFIG.format(k1="[50, 60]"))
-    refused = command("plot", "c.h5", "-o", "c.png")
+    refused = command.drawn("plot", "c.h5", "-o", "c.png")
     assert refused.returncode == 2
     assert "c.h5 holds no Hopf point with a normal form that could be drawn" in refused.stderr
 

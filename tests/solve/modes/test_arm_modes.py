@@ -6,7 +6,7 @@ from reference.dense_arm import in_energy_norm, matrices, nodes
 from reference.random_arms import random_arm
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from surveyed import RODS
+from surveyed import RODS, few
 
 from rodsweep.discretization.straight.dense_form import dense_form
 from rodsweep.discretization.straight.tip_layer import tip_layer_ratio
@@ -181,7 +181,7 @@ SLAVED = [
 ]
 
 
-@pytest.mark.parametrize("rod", SLAVED, ids=str)
+@pytest.mark.parametrize("rod", few(SLAVED, 2), ids=str)
 def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
     """T' = c3 - (g nu/c2) T^2, T(0) = 0, from break to break; of T = tan(phi) where T has poles."""
 

@@ -201,7 +201,7 @@ def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
 
 
 @pytest.mark.kernel
-@pytest.mark.parametrize("parameters", RODS)
+@pytest.mark.parametrize("parameters", few(RODS, 5))
 def test_modes_are_those_of_appendix_c(parameters):
     """The closed form, deformations included, and condition numbers."""
     rod = rod_of(*parameters)
@@ -458,7 +458,7 @@ def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
             (37.6559, 1e4, 1e4, 1e-4),
             (15.0, 1e4, 200.0, 0.0),
         ],
-        4,
+        2,
     ),
 )
 def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters):
