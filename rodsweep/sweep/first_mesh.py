@@ -64,8 +64,10 @@ def _corners(points: Points) -> Iterator[int]:
     """Yields the flat indices of the corners of a grid at which the rod model applies; nothing for a list of
     points.
     """
-    ends = [sorted({0, size - 1}) for size in points.shape] if points.axes else []
+    if not points.axes:
+        return
+    ends = [sorted({0, size - 1}) for size in points.shape]
     for corner in product(*ends):
         index = int(np.ravel_multi_index(corner, points.shape))
-        if points.axes and points.has_rod(index):
+        if points.has_rod(index):
             yield index

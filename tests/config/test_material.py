@@ -261,3 +261,17 @@ def test_check_states_the_first_mesh_of_cycles(tmp_path, start):
         r"a cone of radius ratio 0.5 of linear material; at first 1 element of order \d+",
         make_job(tmp_path / "a.yaml", ()).task.arms(),
     )
+
+
+@pytest.mark.parametrize("task", ["spectrum", "modes", "limit_cycle", "thresholds", "criticality", "branch"])
+def test_check_states_the_mesh_of_a_list_of_arms(tmp_path, task):
+    forces = task in {"spectrum", "modes", "limit_cycle"}
+    rows = ["F,k1,k2,gamma3,taper,gamma1", "15,1e4,1e3,1e-3,0.6,1", "15,1e3,1e2,1e-2,1,1"]
+    rows = rows if forces else [row.split(",", 1)[1] for row in rows]
+    rows = (
+        rows if task in {"limit_cycle", "criticality", "branch"} else [row[: row.rindex(",")] for row in rows]
+    )
+    (tmp_path / "list.csv").write_text("\n".join(rows) + "\n")
+    (tmp_path / "a.yaml").write_text(f"task: {task}\nparameters: {{points: list.csv}}\n")
+    said = make_job(tmp_path / "a.yaml", ()).task.arms()
+    assert said.startswith("cones of radius ratios 0.6 to 1 of linear material; at first ")
