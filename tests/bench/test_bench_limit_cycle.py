@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from surveyed import survey_only
 
 from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
 from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
@@ -135,6 +136,7 @@ def test_a_point_without_a_cycle_is_shown_as_failed():
     assert "| rod | sweep over F | failed (ArithmeticError) |  |" in sweep_table([failed])
 
 
+@survey_only
 def test_the_benchmark_times_rodsweep_alone(tmp_path):
     study = limit_cycle_study(quick=True, peers=NO_PEERS)
     text = study.text
