@@ -35,7 +35,7 @@ from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import stress_at_jump, stress_change_at_jump
-from ...model.material.response import LINEAR_LAW, LocalSection, stress, stress_change
+from ...model.material.response import LINEAR_LAW, LocalSection, stress_beyond_rest, stress_change
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalChange, NodalRod
 from ..state_layout import stress_index, velocity_index
@@ -66,7 +66,7 @@ def apply_law(S: Array, c: NodalRod) -> None:
             k += 1
         else:
             at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
-            S[0, i], S[2, i] = stress(c.law, at, S[0, i], S[2, i])
+            S[0, i], S[2, i] = stress_beyond_rest(c.law, at, S[0, i], S[2, i])
 
 
 @UnrolledOverAlgebra

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress, stress_change, tangent
+from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress_beyond_rest, stress_change, tangent
 
 COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
 """Columns of the array that describes both sides of a jump: fields of `LocalSection`, weights w of q1 and q3
@@ -91,8 +91,8 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
     a = q
     for _ in range(MOST_ITERATIONS):
         b = unknowns_behind_jump(sides, q, a)
-        s = stress(law, one, a.q1, a.q3)
-        t = stress(law, other, b.q1, b.q3)
+        s = stress_beyond_rest(law, one, a.q1, a.q3)
+        t = stress_beyond_rest(law, other, b.q1, b.q3)
         S = tangent(law, one, a.q1, a.q3)
         T = tangent(law, other, b.q1, b.q3)
         # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
@@ -120,7 +120,7 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     the constitutive law. sides: (2, 7).
     """
     a = unknowns_before_jump(law, sides, Unknowns(q1, q3))
-    return stress(law, _section(sides[0]), a.q1, a.q3)
+    return stress_beyond_rest(law, _section(sides[0]), a.q1, a.q3)
 
 
 @compiled

@@ -63,7 +63,7 @@ def _secant(nu: float, h: float) -> float:
 
 
 @compiled
-def stress(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
+def stress_beyond_rest(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
     """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
     the law.
     """

@@ -19,7 +19,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import STANDARD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTORS, Profile
-from rodsweep.model.material.response import LocalSection, stress
+from rodsweep.model.material.response import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -273,7 +273,7 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     ((before, behind),) = stresses_beside_jumps(form.nodal, S)
     (node,), (sides,) = form.nodal.jumps, form.nodal.sides
     both = list(zip(sides, (before, behind), strict=True))
-    stresses = [stress(2, LocalSection(*side[:3]), *q) for side, q in both]
+    stresses = [stress_beyond_rest(2, LocalSection(*side[:3]), *q) for side, q in both]
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)
     for component, place, own in ((0, 1, 0), (2, 2, 1)):
         mean = sum(side[5] * side[place] * q[own] for side, q in both)

@@ -72,7 +72,9 @@ def refined_at_period(
             stages = stages_for(accuracy)
             if parameter is None:
                 first = wanted_mesh(near, REFINEMENT.first_mesh_accuracy * aim, stages)
-                first = replace(first, intervals=max(first.intervals, REFINEMENT.min_predicted_intervals))
+                first = replace(
+                    first, intervals=max(first.intervals, REFINEMENT.min_intervals_for_prediction)
+                )
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
             found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)

@@ -42,7 +42,7 @@ class RefinementSettings:
     first_mesh_accuracy: float = 0.5
     """Accuracy for which the first mesh of a single cycle is chosen, divided by the requested accuracy: a
     second mesh costs more than a finer first mesh."""
-    min_predicted_intervals: int = 6
+    min_intervals_for_prediction: int = 6
     """Smallest number of time intervals of a fine mesh whose cycle coarser meshes predict. With 5 intervals,
     the coarser meshes would have 4 and 5 intervals, where errors in time do not decrease as a power yet: the
     error of the largest y was four times its estimate."""
