@@ -10,7 +10,7 @@ import click
 
 from ..config.schema import Config
 from ..results.file.creation import Plan
-from ..solve.backend.availability import require_solvers
+from ..solve.backend.availability import require_solvers, start_solvers
 from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod
 from ..sweep.points.grid import flutter_rods
 from ..sweep.stop import StopRequest
@@ -58,8 +58,9 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
     None if a stop signal came before the computation ended.
     """
     rods = team.on_first(lambda: flutter_rods(config))
-    if not all(rod.standard for rod in rods):  # PETSc must start on all ranks together
+    if not all(rod.standard for rod in rods):  # a rank without a rod must start PETSc with the others
         team.require_on_all_ranks(require_solvers)
+        team.require_on_all_ranks(start_solvers)
     shared = _SharedWork(team, stop)
     found = shared.gather_in_order(rods, flutter_of_rod)
     return None if shared.any_rank_stopped else dict(zip(rods, found, strict=True))

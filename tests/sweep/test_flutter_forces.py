@@ -137,3 +137,11 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
         relative.FlutterSearchFailed, match="relative load refers fails: (too large|ZeroDivisionError)"
     ):
         relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))
+
+
+def test_a_rank_without_an_arm_to_search_waits_for_no_other(command):
+    """PETSc, which the search needs, starts on all ranks together."""
+    arm = "length: 14 cm, radius: 4 mm, young: 100 kPa, viscosity: 20 Pa s, law: neo_hookean"
+    command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}, pressure: 1.3 of flutter}}}}\n")
+    run = command("run", "a.yaml", ranks=2)
+    assert run.returncode == 0, run.stderr

@@ -1,6 +1,7 @@
-"""Tests whether PETSc can start in this process, without starting PETSc: a start involves all MPI ranks."""
+"""Whether PETSc can start in this process, and its start, which involves all MPI ranks."""
 
 import os
+from importlib import import_module
 
 from ...errors import EnvironmentIncomplete, InputError, import_refusal
 from .debian import add_debian_modules, is_found
@@ -31,3 +32,9 @@ def require_solvers() -> None:
     for name in ("petsc4py", "slepc4py"):
         if not is_found(name):
             raise import_refusal(name, "not found")
+
+
+def start_solvers() -> None:
+    """Starts PETSc and SLEPc. Collective: the start of PETSc waits for all ranks, so `require_solvers` must
+    have succeeded on all ranks. Raises EnvironmentIncomplete if PETSc or SLEPc cannot be loaded."""
+    import_module(f"{__package__}.petsc")
