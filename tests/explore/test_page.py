@@ -11,12 +11,13 @@ from bokeh.models import HoverTool
 import rodsweep as rs
 from rodsweep.errors import Refusal
 from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
-from rodsweep.explore.page import INSTANT_KINDS, STOPPED_SENTENCE, Page
+from rodsweep.explore.page import STOPPED_SENTENCE, Page
 from rodsweep.explore.page_style import template_text
 from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
 from rodsweep.explore.pictures.diagram import BOUNDARY_COLOURS, DiagramCell, cells, unstable_count_words
 from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
+from rodsweep.explore.solving.needs import INSTANT_KINDS
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
 from rodsweep.explore.state import PageState
 from rodsweep.explore.stored import page_state_of_file
