@@ -27,7 +27,7 @@ class EvenFunctionSettings(CompiledSettings):
     by_squares_below: float = 0.1
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
-    rounding_of_scale: float = 2.0
+    rounding_of_scale: float = 3.0
     """Bound of the relative rounding error of the scale S, in units of NOISE_UNIT. Only where a strong pull
     makes an eigenvalue exponentially small is exp(-S) large enough to matter."""
 
