@@ -26,8 +26,12 @@ def on_terminal() -> bool:
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
-    under_mpi = any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"))
-    return under_mpi and os.path.realpath(launcher).startswith(("/dev/pts/", "/dev/tty"))
+    if not any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")):
+        return False
+    try:
+        return os.readlink(launcher).startswith(("/dev/pts/", "/dev/tty"))
+    except OSError:  # the launcher was killed, and its parent belongs to somebody else
+        return False
 
 
 @cache

@@ -1,10 +1,12 @@
 """The time left that a run tells: near the truth and without jumps, for made-up costs of points, no clock."""
 
+import io
 from itertools import accumulate
 
 import numpy as np
 import pytest
 
+from rodsweep.sweep.progress import on_terminal
 from rodsweep.sweep.remaining_time import RECORD_RATIO, Pace, in_words, rate_in_words
 
 RANDOM = np.random.default_rng(3)
@@ -123,3 +125,15 @@ def test_rates_are_said_by_the_point_where_it_is_slow():
     assert rate_in_words(700, 20.0) == "35/s"
     assert rate_in_words(2, 24.0) == "12 s a point"
     assert rate_in_words(0, 3.0) == ""
+
+
+def test_a_launcher_that_was_killed_is_no_terminal(monkeypatch):
+    """The parent is then process 1, whose files may not be read."""
+
+    def refuse(path):
+        raise PermissionError(path)
+
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    monkeypatch.setattr("os.readlink", refuse)
+    monkeypatch.setattr("sys.stderr", io.StringIO())
+    assert not on_terminal()
