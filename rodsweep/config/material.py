@@ -107,6 +107,8 @@ def with_profile_read(tree: Any, directory: Path) -> Any:
     name = tree["material"].get("profile")
     if not isinstance(name, str):
         return tree
+    if not name.strip():
+        raise InputError("material.profile is empty; it should be the name of a CSV file")
     return tree | {"material": tree["material"] | {"profile": read_profile(directory / name)}}
 
 

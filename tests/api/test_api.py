@@ -252,6 +252,15 @@ def test_numpy_scalars_are_taken_by_every_door():
         rs.Arm(**SILICONE | {"length": np.bool_(True)})
 
 
+def test_an_empty_profile_and_an_empty_list_of_segments_are_called_empty():
+    with pytest.raises(
+        rs.InputError, match=r"material\.profile is empty; it should be the name of a CSV file"
+    ):
+        rs.Rod(**ROD, profile="")
+    with pytest.raises(rs.InputError, match="segments has no segment; write each segment as in '4 cm"):
+        rs.Arm(segments=[], viscosity="1 Pa s")
+
+
 def test_a_wrong_item_of_a_list_of_words_is_refused_with_the_words_that_are_allowed(tmp_path):
     (tmp_path / "points.csv").write_text("F,k1,k2,gamma3\n5,1e3,1e3,1e-3\n")
     with pytest.raises(rs.InputError, match="columns.0 = 'F' is not allowed; it should be 'taper'$"):

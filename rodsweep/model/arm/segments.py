@@ -51,7 +51,9 @@ def segment_texts(given: Any) -> tuple[str, ...]:
         given = [given]
     if hasattr(given, "tolist"):  # an array of texts
         given = given.tolist()
-    if not isinstance(given, Sequence) or not given:
+    if isinstance(given, Sequence) and not given:
+        raise InputError(f"segments has no segment; write each segment as in '{EXAMPLE}'")
+    if not isinstance(given, Sequence):
         raise InputError(f"segments = {str(given):.60} is not a list; write each segment as in '{EXAMPLE}'")
     if len(given) > MAX_SEGMENTS:
         raise InputError(f"segments: {len(given)} are given; an arm has at most {MAX_SEGMENTS}")
