@@ -82,7 +82,7 @@ class Boundary:
 
     def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
         """The point of the boundary on the plane through `guess`, (3,), perpendicular to `normal`, (3,); None
-        if Newton's method fails.
+        if Newton's method fails. guess: start of Newton's method, in the coordinates of `equations`.
         """
         v = guess.copy()
         last = math.inf

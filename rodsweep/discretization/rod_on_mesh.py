@@ -140,8 +140,8 @@ class RodOnMesh(ABC):
         return energy
 
     def _strain_energy_density(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
-        """Energy per length of stretching and bending, without shear, from the nodal values nu, c1, c3 and
-        the stresses q1 = S1, q3 = S3.
+        """Energy per length of stretching and bending, without shear, at the nodes. nu: stretch of the
+        straight rod. c1, c3: compliances of stretching and bending. q1, q3: stresses S1 and S3.
         """
         F = self.rod.F
         law = self.rod.build.constitutive_law

@@ -90,7 +90,8 @@ class FirstRankRequests:
         return chunk
 
     def close(self) -> None:
-        """Waits until all other ranks have finished and the thread has ended."""
+        """Waits until all other ranks have finished and the thread has ended, then receives the progress
+        reports that still wait. Without other ranks it does nothing."""
         if self.thread is not None:
             self.thread.join()
             self._receive_positions()

@@ -13,8 +13,8 @@ from rodsweep.bench.limit_cycle.study import (
     FOLLOWING,
     WAITING,
     limit_cycle_study,
-    target_table,
     time_at_error,
+    time_at_error_table,
     work_table,
 )
 from rodsweep.bench.limit_cycle.sweeping import (
@@ -82,7 +82,7 @@ def test_table_at_equal_error_states_the_ratios():
             for factor, error in ((0.5, 1e-5), (2, 1e-7))
         ]
 
-    text = target_table([*pair(DEFAULT.name, 10.0), *pair("slow", 25.0), *pair("rough", 8.0)[:1]])
+    text = time_at_error_table([*pair(DEFAULT.name, 10.0), *pair("slow", 25.0), *pair("rough", 8.0)[:1]])
     assert f"| {DEFAULT.name} | 10.00 | 1.00 | 1.00 |" in text
     assert "| slow | 25.00 | 2.50 | 2.50 |" in text
     assert "| rough |  |  |  |" in text

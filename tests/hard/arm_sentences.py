@@ -340,7 +340,7 @@ def _drag_sentences(view, page, start, chosen, numbers):
     true = {
         "with every drag": sum(b.all() for b in of_each),
         "with part of the range of drag": sum(b.any() and not b.all() for b in of_each),
-        "with none": sum(not b.any() for b in of_each),
+        "with no drag": sum(not b.any() for b in of_each),
     }
     for line, match in read(page, rf"{start}of NUMBER combinations? of arm and load: beats (.*)$"):
         told = {

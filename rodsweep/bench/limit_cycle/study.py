@@ -53,7 +53,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
     at = solve_reference()
     followers = every_nth_setting([*DEFAULT.following_contenders(), *peers.of(FOLLOWING)], stride)
     found = measure_following(at, followers, rounds)
-    blocks = [introduction(rounds), *peers.notes, work_table(found), target_table(found)]
+    blocks = [introduction(rounds), *peers.notes, work_table(found), time_at_error_table(found)]
     blocks.append(compare_settling(at, [*DEFAULT.settling_contenders(), *peers.of(WAITING)], rounds))
     undrawn = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
     blocks += [sweep_introduction(), sweep_table(undrawn)]
@@ -100,7 +100,7 @@ def work_table(measurements: Sequence[Measurement]) -> str:
     )
 
 
-def target_table(measurements: Sequence[Measurement]) -> str:
+def time_at_error_table(measurements: Sequence[Measurement]) -> str:
     """Table of the race FOLLOWING at equal error: time of every method, interpolated at the error
     TARGET_ERROR."""
     at = {}

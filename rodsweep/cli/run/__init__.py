@@ -1,1 +1,3 @@
-"""The command `run`: solves points on all ranks, computes variables of all points, completes the file."""
+"""The command `run`: solves points on all ranks, computes variables that depend on all points, completes the
+file.
+"""

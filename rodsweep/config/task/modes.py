@@ -9,7 +9,8 @@ from ..values import StrictSection
 
 
 class ModesOptions(StrictSection):
-    """Options of the task modes: number of modes at each point, number of nodes, and transient growth."""
+    """Options of the task modes: numbers of modes and of nodes, numerical abscissa and transient growth,
+    certificate."""
 
     modes: Modes = 2
     """Number of leading modes at each point."""

@@ -1,7 +1,8 @@
 """Upper bounds of |D(w, p) exp(-L (w - c) - K (p - p_c))| over a bidisc about (c, p_c), for Cauchy's
 estimate.
 
-p is the path variable (`parameter_path`); for a single rod the disc of p has radius 0.
+p is the path variable (`parameter_path`); for a single rod the disc of p has radius 0. L and K are
+logarithmic growth rates of D by w and by p, which are split off.
 """
 
 import cmath

@@ -12,7 +12,7 @@ from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ..elements.elements import ELEMENT_SETTINGS, Elements
 from .arm_pencil import ArmPencil
-from .pencil import Pencil, derivatives_at, fields_of_vectors, shear_force
+from .pencil import Pencil, field_derivatives_at, fields_of_vectors, shear_force
 
 AnyPencil = Pencil | ArmPencil
 """The pencil of a uniform rod of linear material, or of an arm."""
@@ -47,7 +47,7 @@ class DenseForm:
         """
         c2 = self.rod.local(_inside(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
-        return np.stack([shear.T, derivatives_at(self.mesh, self.fields(vectors)[1], points).T])
+        return np.stack([shear.T, field_derivatives_at(self.mesh, self.fields(vectors)[1], points).T])
 
     def with_tip_terms(self, pair: float, tip: float) -> Array:
         """A plus the matrix of the tip term pair (a theta - b y) - tip a y at u = 1, (unknowns, unknowns); a,

@@ -167,7 +167,7 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     return result
 
 
-def derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
+def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
     """Derivatives d/du at points, (points,), of k fields, shape (points, k). values: the fields at all nodes,
     (nodes + 1, k).
     """

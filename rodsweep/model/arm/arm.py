@@ -55,7 +55,7 @@ class SlenderArm:
     density_difference: Given | None = None
     drag: str = DRAGS[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
-    """Each quantity of UNITS as a number in SI units; nan for a quantity that is not given."""
+    """Quantities of UNITS in SI units; nan if not given. `length`, `young` (base): of segments, if any."""
     pieces: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
     """The segments of the arm in SI units; empty for an arm without segments."""
 

@@ -46,7 +46,8 @@ def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = 
 
 def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
     """Ranges of a parameter as text; NONE for an empty list. errors: absolute errors of ends of ranges, by
-    end; other ends are exact.
+    end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS
+    digits at most.
     """
     ends = [[_rounded(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
     return ", ".join(" to ".join(pair) for pair in ends) or NONE

@@ -134,9 +134,10 @@ def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, (n,) in any order, into a result file; returns whether there were any records.
+    """Writes records into a result file; returns whether there were any records. blocks: arrays of records,
+    (n,) each, in any order; of several records of a point the last one counts.
 
-    Records of consecutive points are written by a single call.
+    Values of a variable at consecutive points are written by a single call.
     """
     offsets = _offsets(path, layout)
     any_written = False

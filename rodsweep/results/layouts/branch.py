@@ -23,7 +23,7 @@ ALONG = "branch_point"
 SPECIAL = "special"
 """Dimension of the special points of all branches."""
 SPECIAL_MEANINGS = {
-    "none": "no special point: the list has more room than points",
+    "none": "unused entry: the list is longer than the number of special points",
     "hopf": "Hopf point: a branch of cycles begins or ends at the straight rod",
     "fold": "the branch turns back in the parameter; a multiplier is 1",
     "torus": "a complex pair of multipliers crosses the unit circle; a motion with two frequencies begins",

@@ -31,7 +31,7 @@ THRESHOLDS = (
     integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
 CROSSING_MEANINGS = {
-    "none": "no crossing: the list has more room than crossings",
+    "none": "unused entry: the list is longer than the number of crossings",
     "onset": "two real leading eigenvalues merge into a complex pair: oscillations set in",
     "hopf": "a pair becomes unstable",
     "hopf_reverse": "an unstable pair becomes stable, and other modes stay unstable",

@@ -135,7 +135,8 @@ class ModeCounter:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
         the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
-        unstable: number of unstable modes at the start. Resets `doubts`.
+        unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` are those of this
+        call only.
         """
         self.doubts = []
         out: list[Crossing] = []

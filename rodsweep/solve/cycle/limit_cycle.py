@@ -233,8 +233,8 @@ def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> C
 
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
-    """The outcome `cycle` with the stored multipliers of the solved cycle `found`, and the error of the
-    multipliers."""
+    """The outcome `cycle` with multipliers of the solved cycle `found`: the largest modulus, the stored list
+    (cut or padded, small ones NO_MULTIPLIER), and their errors."""
     mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
     mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(

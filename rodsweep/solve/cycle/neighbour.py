@@ -91,7 +91,8 @@ class Neighbour:
 
     def arrays(self) -> Arrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
-        orders (m,), eigenvalues (n,), meshes, rod and calibration; N, m: as in `CyclePredictor`."""
+        orders (m,), eigenvalues (n,), meshes, symmetry, rod with its build, and calibration; N, m: as in
+        `CyclePredictor`."""
         branch = self.predictor
         orbit = branch.orbit
         return {

@@ -34,7 +34,8 @@ class ArmCountSettings(CompiledSettings):
     """A known eigenvalue is divided out of D only if its distance from the line is below this number times
     max(|Im w|, |line|). D without farther eigenvalues would not follow the dominant wave."""
     min_reach: float = 1e-12
-    """The count fails if the reach of a node is below this number times |w|: a zero of D is too close."""
+    """The count fails if the reach of a node w, the distance within which the phase of D is known, is below
+    this number times |w|: a zero of D is too close."""
     max_level_ratio: float = 16.0
     """Existing propagators for |w| <= W serve a node if W <= this number times the |w| needed. Otherwise
     propagators on fewer elements are made, because a count evaluates D many times."""

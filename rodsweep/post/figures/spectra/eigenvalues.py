@@ -12,8 +12,8 @@ from ..lists import number_points, shared_parameters
 from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
-"""An axis is symmetric logarithmic if the ratio of the largest to the smallest modulus exceeds this
-number."""
+"""An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
+this number."""
 LINEAR_RANGE_FRACTION = 1e-6
 """A symmetric logarithmic axis is linear at least up to this fraction of the largest modulus."""
 LINEAR_FRACTION = 0.1
@@ -79,7 +79,7 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
 
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
-    """Makes an axis symmetric logarithmic if the ratio of its largest to smallest modulus exceeds
+    """Makes an axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
     SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged.
     """
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):

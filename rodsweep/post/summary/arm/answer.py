@@ -39,7 +39,7 @@ def arm_answer(view: View, done: np.ndarray) -> Lines:
 
 
 def _validity_lines(view: View, done: np.ndarray) -> Lines:
-    """Answer about the points in the mask `done`, with a line on the validity of the model."""
+    """Answer about the points in `done` to which the model applies, or else about all; a line on validity."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return (
@@ -185,7 +185,7 @@ def _decided(view: View, rods: np.ndarray) -> Lines:
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)
     some = len(of_arms) - always - never
-    numbers = {"with every drag": always, "with part of the range of drag": some, "with none": never}
+    numbers = {"with every drag": always, "with part of the range of drag": some, "with no drag": never}
     counts = ", ".join(f"{words} at {count}" for words, count in numbers.items() if count)
     return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 

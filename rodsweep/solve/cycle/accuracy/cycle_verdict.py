@@ -66,8 +66,10 @@ class RefinedCycle:
         if self.errors.largest > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
         if self.divisor != 1:
-            shorter = f"the minimal period may be {self.divisor} times shorter"
-            return CycleStatus.not_settled, shorter
+            several = (
+                f"the period found may be {self.divisor} minimal periods, within the errors of its harmonics"
+            )
+            return CycleStatus.not_settled, several
         if self.stable is None:
             return CycleStatus.not_settled, f"the cycle's largest |multiplier| is 1 within {self.margin:.0e}"
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

@@ -214,8 +214,8 @@ def reduced_variations(
 
 @compiled_for_vectors
 def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Newton's step, (N,), at the orbit values `values`, (N,). factors, by_period: from `linearise` at a
-    nearby orbit."""
+    """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors, by_period:
+    from `linearise` at a nearby orbit."""
     K, s, n = by_period.shape
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.parts
