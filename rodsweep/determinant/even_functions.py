@@ -28,8 +28,10 @@ class EvenFunctionSettings(CompiledSettings):
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
     rounding_of_scale: float = 3.0
-    """Bound of the relative rounding error of the scale S, in units of NOISE_UNIT. Only where a strong pull
-    makes an eigenvalue exponentially small is exp(-S) large enough to matter."""
+    """Bound of the relative rounding error of the scale S, in units of NOISE_UNIT."""
+    scale_without_rounding: float = 8.0
+    """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S, exp(-S)
+    matters only where a strong pull makes an eigenvalue exponentially small."""
 
     def __post_init__(self) -> None:
         n = self.series_terms

@@ -150,5 +150,6 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
         even, total, noise = even_sum_by_squares(w, coefficients, blur_M, blur_square)
-    scale_noise = 1 + EVEN_FUNCTION_SETTINGS.rounding_of_scale * even.S
+    beyond = even.S - EVEN_FUNCTION_SETTINGS.scale_without_rounding
+    scale_noise = max(1.0, EVEN_FUNCTION_SETTINGS.rounding_of_scale * beyond)
     return even, total, NOISE_UNIT * (scale_noise * math.exp(-even.S) + size / 2 * noise)
