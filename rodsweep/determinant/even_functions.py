@@ -30,8 +30,8 @@ class EvenFunctionSettings(CompiledSettings):
     rounding_of_scale: float = 3.0
     """Bound of the relative rounding error of the scale S, in units of NOISE_UNIT."""
     scale_without_rounding: float = 8.0
-    """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S, exp(-S)
-    matters only where a strong pull makes an eigenvalue exponentially small."""
+    """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S only
+    the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
 
     def __post_init__(self) -> None:
         n = self.series_terms
