@@ -234,7 +234,7 @@ SEGMENTS = {"radius": None, "length": None}
             {"radius": None, "tip_radius": "3 mm", "segments": ["10 cm: radius 5 mm"]},
             "tip_radius = '3 mm' and segments are both given",
         ),
-        (SEGMENTS | {"segments": []}, "segments = \\[\\] is not a list"),
+        (SEGMENTS | {"segments": []}, "segments has no segment"),
         (SEGMENTS | {"segments": 3}, "segments = 3 is not a list"),
         (SEGMENTS | {"segments": ["9 cm: radius 6 mm"] * 101}, "segments: 101 are given; .* at most 100"),
         (
