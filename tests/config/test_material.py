@@ -275,3 +275,14 @@ def test_check_states_the_mesh_of_a_list_of_arms(tmp_path, task):
     (tmp_path / "a.yaml").write_text(f"task: {task}\nparameters: {{points: list.csv}}\n")
     said = make_job(tmp_path / "a.yaml", ()).task.arms()
     assert said.startswith("cones of radius ratios 0.6 to 1 of linear material; at first ")
+
+
+def test_check_foresees_minutes_where_many_modes_of_an_arm_grow(tmp_path):
+    """24 points with up to 160 growing modes took 95 s; cones with few growing modes take milliseconds."""
+    arms = "F: {{start: 0, stop: {stop}, num: 24}}, k1: 1.0e5, k2: {k2}, gamma3: 1.0e-3, taper: {taper}"
+    seconds = []
+    for numbers in ({"stop": 40, "k2": 5, "taper": 0.1}, {"stop": 20, "k2": 1000, "taper": 0.6}):
+        (tmp_path / "a.yaml").write_text(f"task: spectrum\nparameters: {{{arms.format(**numbers)}}}\n")
+        seconds.append(make_job(tmp_path / "a.yaml", ()).task.cost().seconds)
+    assert 95 / 3 < seconds[0] < 95 * 3
+    assert seconds[1] < 1

@@ -102,7 +102,7 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
         integer("special_branch", "number of the branch, from 1"),
         integer(
             "special_point",
-            "number, from 1, of the branch_point before the special point; 0: the branch has none before",
+            "number, from 1, of the branch_point before the special point; 0: no branch_point is before it",
         ),
         word("special_reason", "reason for the end of the branch", END_REASONS),
         integer(
