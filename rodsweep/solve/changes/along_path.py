@@ -202,7 +202,8 @@ def _covered(path: Path, low: float, high: float) -> AxisCrossings:
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
     zeros, left, examined = cover_with_boxes(boxes, path.origin, path.direction)
-    hopfs = [_hopf(path, zero) for zero in zeros if low <= zero.p <= high]
+    within = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
+    hopfs = [_hopf(path, zero) for zero in within]
     return AxisCrossings(path, hopfs, _gaps(path, left), SearchEnd(high), examined)
 
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
+from ..spectrum.status import SpectrumStatus
 from .anchors import Anchor, next_anchor
 from .path_problem import PathProblem
 from .search_range import SearchedIntervals, SearchEnd
@@ -98,7 +99,8 @@ class Tracer:
     def _solve(self, p: float) -> Anchor:
         request = SpectrumRequest(ANCHOR_MODES, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
-        self.proved = self.proved and found.certified
+        # With a mode on the imaginary axis the status is undecided, but no mode is missing.
+        self.proved &= found.certified or found.status == SpectrumStatus.undecided
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
@@ -107,10 +109,8 @@ class Tracer:
             # Newton's method may jump to another eigenvalue, for example in a cluster; then the first value
             # stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            if abs(polished - guess) <= max(
-                LEADING_EIGENVALUE_SETTINGS.same_errors * found.error_estimate[i],
-                LEADING_EIGENVALUE_SETTINGS.same * abs(guess),
-            ):
+            error = LEADING_EIGENVALUE_SETTINGS.same_errors * found.error_estimate[i]
+            if abs(polished - guess) <= max(error, LEADING_EIGENVALUE_SETTINGS.same * abs(guess)):
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 

@@ -229,11 +229,11 @@ def _result(best: CheckedCandidates, problem: TransverseProblem, request: Spectr
     undecided = any(on_the_axis)
     message = ""
     if status == SpectrumStatus.ok and request.certify:
-        if undecided:
-            status = SpectrumStatus.undecided
-        elif not proved:
+        if not proved:
             status = SpectrumStatus.not_certified
             message = comparison.count.why_not if comparison else ""
+        elif undecided:
+            status = SpectrumStatus.undecided
     unstable = sum(value.real > 0 for value in w)
     # Without a request for a proof, the unstable modes are known if the search went beyond them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))

@@ -205,9 +205,10 @@ def test_errors_of_double_eigenvalues_hold_in_the_last_digit():
         assert abs(Decimal(crossing.at) - Decimal(at)) <= Decimal(crossing.error) <= 1e-12 * crossing.at
 
 
-@pytest.mark.parametrize("multiple", [1.5, 2.0, 3.0, 8.0])
+@pytest.mark.parametrize("multiple", [1.0, 1.5, 2.0, 3.0, 8.0])
 def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(multiple):
-    """With equal intervals one of their ends would be the Hopf point, where no count succeeds."""
+    """With equal intervals one of their ends would be the Hopf point, where no count succeeds; where the
+    range ends at the Hopf point itself, the modes are counted just beyond."""
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     (first,) = across_the_axis(
         solve_thresholds(rod, ThresholdsRequest(20.0, 1e-10, certify=True, crossings=32))
@@ -215,3 +216,17 @@ def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(m
     found = solve_thresholds(rod, ThresholdsRequest(multiple * first[1], 1e-10, certify=True, crossings=32))
     assert found.status == ThresholdStatus.ok
     assert across_the_axis(found)[0] == (first[0], pytest.approx(first[1], rel=1e-11))
+
+
+def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
+    """Neither a crossing just beyond the end belongs to the search, nor is one just before the end lost."""
+    path = Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
+    at = transitions(path, 0.0, 20.0).crossings[-1].at
+    for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
+        found = transitions(path, 0.0, end)
+        assert found.proved_to_the_end, found.why_not
+        assert len(across_the_axis(found)) == number
+        assert found.searched == (0.0, end)
+    from_there = transitions(path, at * (1 - 1e-7), 20.0)
+    assert len(across_the_axis(from_there)) == 1
+    assert from_there.proved_to_the_end

@@ -47,6 +47,17 @@ def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
         assert crossing.unstable_after == event["unstable_after"]
 
 
+@pytest.mark.parametrize("multiple", [1.0, 2.0, 4.0])
+def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_proved(multiple):
+    """An anchor of the search is then a rod with a pair on the axis: which mode leads is known all the
+    same."""
+    at = next(c.at for c in thresholds(1e4, 1e4, 1e-4, 40.0).crossings if c.kind == ChangeKind.hopf)
+    found = thresholds(1e4, 1e4, 1e-4, multiple * at)
+    assert found.status == ThresholdStatus.ok, found.message
+    assert [c.kind for c in found.crossings][:2] == [ChangeKind.onset, ChangeKind.hopf]
+    assert found.crossings[1].at == pytest.approx(at, rel=1e-13)
+
+
 def test_the_partial_beam_flutters_where_the_compressed_filament_does():
     """k2 = inf, gamma3 = 0: F (1 - F/k1) = Fc (Sec. VIII), so both ends of the window are known."""
     filament = thresholds(inf, inf, 0.0)

@@ -60,13 +60,17 @@ class AxisModes:
 
 
 class AxisModesOfPath:
-    """The modes of the arms of a path, computed when needed. known: the modes computed so far, by path
-    variable p."""
+    """The modes of the arms of a path, computed when needed.
+
+    known: the modes computed so far, by path variable p. beyond: path variables at which the modes are
+    counted instead, if the count at an end of the path fails, for example because a pair lies on the axis.
+    """
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.certify = certify
         self.known: dict[float, AxisModes] = {}
+        self.beyond: dict[float, float] = {}
 
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
@@ -79,12 +83,32 @@ class AxisModesOfPath:
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
         if p not in self.known:
-            # The neighbour's count gives the number of modes: the unstable modes and one more pair.
-            near = min(self.known.values(), key=lambda place: abs(place.p - p), default=None)
-            growing = 0 if near is None else near.unstable
-            found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
-            self.known[p] = found or self._leading_modes(p, growing)
+            try:
+                self.known[p] = self._computed(p, beside)
+            except Unsolvable:
+                replacement = self._beyond(p)
+                if replacement is None:
+                    raise
+                self.known[p] = replacement
         return self.known[p]
+
+    def _beyond(self, p: float) -> AxisModes | None:
+        """The modes at the path variable that replaces p; None if there is none or its modes cannot be
+        computed."""
+        if p not in self.beyond:
+            return None
+        try:
+            return self._computed(self.beyond[p], None)
+        except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
+            return None
+
+    def _computed(self, p: float, beside: Complex | None) -> AxisModes:
+        """The modes at path variable p; raises Unsolvable. beside: as in `modes_at`."""
+        # The neighbour's count gives the number of modes: the unstable modes and one more pair.
+        near = min(self.known.values(), key=lambda place: abs(place.p - p), default=None)
+        growing = 0 if near is None else near.unstable
+        found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
+        return found or self._leading_modes(p, growing)
 
     def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
         """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `highest`, (n,), one of

@@ -76,6 +76,8 @@ class CrossingSearch:
         edge.
         """
         intervals = SearchedIntervals(edges)
+        beside = ARM_CROSSINGS.count_distance * intervals.length
+        self.places.beyond = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
         self.places.modes_at(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.found) > most:
@@ -89,7 +91,14 @@ class CrossingSearch:
             except Unsolvable as why:
                 intervals.end_within((a, b), str(why))
                 self.found = {p: crossing for p, crossing in self.found.items() if p <= a}
-        return [self.found[p] for p in sorted(self.found)], intervals.reach
+        found = [self.found[p] for p in sorted(self.found)]
+        return [one for one in found if self._may_lie_within(one, edges[0], edges[-1])], intervals.reach
+
+    def _may_lie_within(self, crossing: Crossing, low: float, high: float) -> bool:
+        """Whether path variables from `low` to `high` lie within the error of `crossing`."""
+        near = crossing.at - crossing.error, crossing.at + crossing.error
+        first, last = sorted(map(self.problem.path.coordinate, near))
+        return first <= high and last >= low
 
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
         """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
