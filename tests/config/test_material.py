@@ -49,6 +49,10 @@ def test_default_material_means_the_same_as_none(tmp_path):
         ("u,k3\n0,1\n0.5,0\n1,1\n", "the factor of k3 at u = 0.5 is 0; it must be finite and above 0"),
         ("u,k3\n0,1\n0.5,1\n0.5,1\n0.5,2\n1,1\n", "there are 3 rows at u = 0.5; allowed: two rows"),
         ("u,k3\n0,1\n0.6,1\n0.5,1\n1,1\n", "u = 0.5 follows u = 0.6; u must not decrease"),
+        (
+            "u,k3\n0,1\n0.5,1\n0.5000001,2\n1,2\n",
+            "two rows near u = 0.5 differ by 1e-07 in u; allowed: 0 (a jump) or at least 1e-06",
+        ),
         ("u,k3\n0,1\n1\n", "row 2 has 1 values, but the header names 2"),
         ("u,k3\n0,1\n1,one\n", "row 2: k3 = 'one' is not a number"),
         (

@@ -90,6 +90,12 @@ def test_an_arm_alike_all_along_is_standard(tmp_path):
             "material and parameters.arm.tip_radius are both given",
         ),
         (
+            'young: 100 kPa, viscosity: 50 Pa s, segments: ["5 cm: radius 6 mm", "20 nm: radius 4 mm"]',
+            "",
+            "",
+            "segments, number 2: the length is 4e-07 of the arm's length; it must be at least 1e-06",
+        ),
+        (
             f"{CAST}, length: 11 cm",
             "",
             "",

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..material.laws import law_of
+from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
 from ..units import unit_of, written_in
 from .drag import DRAGS, LEAST_SLENDERNESS, RANGE_OF_DRAG
@@ -124,7 +125,8 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
     """Raises InputError if an arm with segments also has a cross-section, or a length that is not the sum of
     the segment lengths.
 
-    Also raises InputError if neither a segment nor the arm has a Young's modulus.
+    Also raises InputError for a segment that is too short, or if neither a segment nor the arm has a Young's
+    modulus.
     """
     for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
         if getattr(arm, name) is not None:
@@ -133,12 +135,17 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
                 "has its own radius"
             )
     pieces = arm.pieces
+    total = sum(piece.length for piece in pieces)
     for number, piece in enumerate(pieces, 1):
         if piece.young is None and arm.young is None:
             raise InputError(
                 f"segments, number {number}: young is missing; give young for this segment or for the arm"
             )
-    total = sum(piece.length for piece in pieces)
+        if piece.length < MIN_ROW_DISTANCE * total:
+            raise InputError(
+                f"segments, number {number}: the length is {piece.length / total:.2g} of the arm's length; it "
+                f"must be at least {MIN_ROW_DISTANCE:g}, so make this segment longer or leave it out"
+            )
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
         summed = f"{written_in(total, unit, 'm'):.6g} {unit}"

@@ -368,3 +368,16 @@ def test_a_neighbour_is_restored_with_its_build():
     beside = replace(rod, F=51.0)
     ends = [solve_cycle(beside, request(1e-5), each, "F").measures.period for each in (neighbour, again)]
     assert ends[0] == ends[1]
+
+
+def test_a_slow_fast_cycle_far_longer_than_the_time_constant_of_its_mode_is_found():
+    """The leading mode does not oscillate; a run of so many time constants saw one return or none."""
+    values = {"F": 180.12686914945215, "k1": 202.094026246852, "k2": 97.0201637314358, "gamma3": 7.6e-4}
+    rod = Rod(**values, gamma1=0.81, taper=1.463, build=Build("neo_hookean"))
+    found = solve_cycle(rod, request(1e-5))
+    assert found.status.name == "cycle", found.message
+    assert found.linear_frequency == 0.0
+    assert found.measures.period > 5 / found.linear_growth_rate
+    finer = solve_cycle(rod, request(1e-7, start="hopf"))
+    assert finer.status.name == "cycle", finer.message
+    assert found.measures.period == pytest.approx(finer.measures.period, rel=found.errors.period_error + 1e-9)

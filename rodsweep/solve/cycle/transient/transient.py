@@ -122,9 +122,9 @@ class Transient:
                 return self._ended(CycleStatus.straight, "the motion decays at the rate of the leading mode")
             jumps = not early and self.jumps < TRANSIENT.max_jumps
             factor = self.small.scale_to_cycle(times, states) if jumps else None
-            if factor is not None and self.trace and not self.trace.is_full:
-                continue  # a motion with a stored path has no jumps
             if factor is not None:
+                if self.trace and not self.trace.is_full:
+                    continue  # a motion with a stored path has no jumps
                 scaled = factor * z
                 pull = self.beam.layout.field(scaled, "n1")
                 pull *= factor  # the stretch is quadratic in the deflection
@@ -189,16 +189,15 @@ class Transient:
         return TransientOutcome(status, why, self.waited, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, but of at most
-        TRANSIENT.max_run_duration periods of the leading mode per return. first: whether this is the first
-        run, which has TRANSIENT.first_returns returns."""
-        returns, scheme = (
-            (TRANSIENT.first_returns, self.first_scheme)
-            if first
-            else (TRANSIENT.returns_per_run, self.scheme)
-        )
+        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
+        TRANSIENT.first_returns in the `first` run, but of at most TRANSIENT.max_run_duration times the
+        expected time per return."""
+        returns = TRANSIENT.first_returns if first else TRANSIENT.returns_per_run
+        scheme = self.first_scheme if first else self.scheme
         limit = until_returns(self.row, z, returns)
-        duration = TRANSIENT.max_run_duration * returns * self.mode.period
+        # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
+        last = self.past[-1][0] - self.past[-2][0] if len(self.past) > 1 else 0.0
+        duration = TRANSIENT.max_run_duration * returns * max(self.mode.period, last)
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]

@@ -12,7 +12,8 @@ class TransientSettings:
     first_steps_per_period: int = 1000
     """Period of the leading mode divided by the first time step of a motion."""
     max_run_duration: int = 3
-    """Longest duration of a run divided by (number of returns * period of the leading mode)."""
+    """Longest duration of a run divided by the number of returns and by the expected time per return: the
+    period of the leading mode, or the time between the last two returns if it is longer."""
     first_returns: int = 3
     """Number of returns of the first run. A fast-growing motion may already have reached its cycle then; slow
     growth and decay are recognised only after later runs."""
