@@ -426,15 +426,17 @@ def _monotony(view, page, kind, F):
     for line, match in read(
         page,
         rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
-        r"(?:, falls on NUMBER)?(?:, rises and falls on NUMBER)?",
+        r"(?:, falls on NUMBER)?(?:, is constant on NUMBER)?(?:, rises and falls on NUMBER)?",
     ):
         axis = list(view.axes).index(match[2])
         along = np.moveaxis(F.reshape(shape), axis, -1).reshape(-1, shape[axis])
         along = along[:, ::-1] if match[1] else along
-        steps = [np.diff(row[np.isfinite(row)]) for row in along if np.isfinite(row).sum() > 1]
-        rising, falling = sum((d > 0).all() for d in steps), sum((d < 0).all() for d in steps)
+        known = [row[np.isfinite(row)] for row in along if np.isfinite(row).sum() > 1]
+        # Thresholds have twelve digits: two that agree in them do not differ.
+        up = np.array([max(np.diff(row)) > 1e-12 * max(abs(row)) for row in known])
+        down = np.array([min(np.diff(row)) < -1e-12 * max(abs(row)) for row in known])
         told = [int(text or 0) for text in match.groups()[2:]]
-        true = [rising, len(steps), falling, len(steps) - rising - falling]
+        true = [sum(up & ~down), len(known), sum(down & ~up), sum(~up & ~down), sum(up & down)]
         found.append((line, "" if told == true else f"it is {true}"))
         for _, items in read(page, r"rises and falls on \d+ \(([^)]*)\)", only=line):
             for name, text in re.findall(rf"(\w+) = ({NUMBER})", items[1]):

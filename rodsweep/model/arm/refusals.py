@@ -143,8 +143,8 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
             )
         if piece.length < MIN_ROW_DISTANCE * total:
             raise InputError(
-                f"segments, number {number}: the length is {piece.length / total:.2g} of the arm's length; it "
-                f"must be at least {MIN_ROW_DISTANCE:g}, so make this segment longer or leave it out"
+                f"segments, number {number}: the length is {piece.length / total:.2g} of the arm's length; "
+                f"it must be at least {MIN_ROW_DISTANCE:g}, so make this segment longer or leave it out"
             )
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")

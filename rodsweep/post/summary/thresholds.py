@@ -1,7 +1,5 @@
 """Thresholds of the straight rod in `rodsweep show`: positions, completeness, and cost of the search."""
 
-from itertools import product
-
 import numpy as np
 
 from ...model.parameters import PARAMETERS
@@ -13,6 +11,7 @@ from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span_text
 from .summary_lines import SummaryLines, TextTable, at_point, in_brackets, proof_clause
+from .threshold_trends import monotony_lines
 
 FIRST_THRESHOLD_WORDS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
@@ -153,39 +152,6 @@ def unstored_clause(hidden: int) -> str:
     """
     verb = "is" if hidden == 1 else "are"
     return f"; {hidden} more {verb} not stored, raise the option crossings" if hidden > 0 else ""
-
-
-def monotony_lines(view: View) -> list[str]:
-    """Lines on whether the first thresholds rise or fall with each parameter that has more than two values
-    (for gamma3: with 1/gamma3); empty for a list of points."""
-    lines = []
-    long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
-    for name, force in product(long, ("F_onset", "F_hopf")):
-        along = np.moveaxis(view.variables[force], list(view.axes).index(name), -1)
-        label = name
-        if name == "gamma3":
-            along = along[..., ::-1]
-            label = "1/gamma3"
-        known = np.isfinite(along).sum(axis=-1) > 1
-        if not known.any():
-            continue
-        rising = np.apply_along_axis(lambda F: (np.diff(F[np.isfinite(F)]) > 0).all(), -1, along) & known
-        text = f"{force} rises with {label} on {some_of(rising.sum(), known.sum(), 'line')}"
-        falling = np.apply_along_axis(lambda F: (np.diff(F[np.isfinite(F)]) < 0).all(), -1, along) & known
-        if falling.any():
-            text += f", falls on {int(falling.sum())}"
-        others = [n for n in view.axes if n != name]
-        where = []
-        for other, places in zip(others, np.argwhere(known & ~rising & ~falling).T, strict=True):
-            if len(view.axes[other]) > 1 and places.size:
-                values = view.axes[other][places]
-                low = values.min()
-                high = values.max()
-                where.append(f"{other} = {low:.6g}" + (f" to {high:.6g}" if high > low else ""))
-        if mixed := int((known & ~rising & ~falling).sum()):
-            text += f", rises and falls on {mixed}{in_brackets(', '.join(where))}"
-        lines.append(text)
-    return lines
 
 
 def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
