@@ -53,7 +53,6 @@ class MultiplierListSettings:
 
 MULTIPLIER_LIST_SETTINGS = MultiplierListSettings()
 NO_MULTIPLIER = complex(nan, nan)
-
 """Entry of the list for a missing multiplier, or for a multiplier whose modulus is less than
 `MULTIPLIER_LIST_SETTINGS.min_modulus`."""
 
@@ -112,8 +111,13 @@ def _solve(
     if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
-    transient = Transient(_form_of_motion(rod), stability, request, along, unstable, workspace)
-    end = _from_motion(transient, request, neighbour)
+    for accuracy in (MOTION_MESH.accuracy, MOTION_MESH.finer_accuracy):
+        # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
+        form = _form_of_motion(rod, accuracy)
+        transient = Transient(form, stability, request, along, unstable, workspace)
+        end = _from_motion(transient, request, neighbour)
+        if not transient.unsolved:
+            break
     cycle = _after_motion(straight, transient, end, request)
     if decays:
         return replace(cycle, message=decays)
@@ -124,9 +128,9 @@ def _solve(
     return _with_chain_state(cycle, end.cycle, None, along, request.accuracy, stability)
 
 
-def _form_of_motion(rod: Rod) -> StressForm:
-    """Discretization of a rod on the first mesh for the integration of its motion."""
-    return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
+def _form_of_motion(rod: Rod, accuracy: float = MOTION_MESH.accuracy) -> StressForm:
+    """Discretization of a rod for the integration of its motion to the relative accuracy `accuracy`."""
+    return StressForm(rod, motion_mesh(rod, accuracy))
 
 
 def _after_motion(

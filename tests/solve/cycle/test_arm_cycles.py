@@ -381,3 +381,27 @@ def test_a_slow_fast_cycle_far_longer_than_the_time_constant_of_its_mode_is_foun
     finer = solve_cycle(rod, request(1e-7, start="hopf"))
     assert finer.status.name == "cycle", finer.message
     assert found.measures.period == pytest.approx(finer.measures.period, rel=found.errors.period_error + 1e-9)
+
+
+@survey_only
+def test_a_motion_that_repeats_on_a_coarse_mesh_alone_is_integrated_on_a_finer_one():
+    """Strongly compressed segments with a swelling section: near the motion on the first mesh no finer mesh
+    has a cycle."""
+    rows = (
+        ((1.0,) * 6,) * 2 + ((1.0, 1.03, 0.76, 1.0, 1.0, 1.0),) * 2 + ((1.0, 0.757, 1.014) + (1.0,) * 3,) * 2
+    )
+    profile = Profile((0.0, 0.578, 0.578, 0.748, 0.748, 1.0), rows)
+    rod = Rod(
+        F=67.93193829115889,
+        k1=305.04664257542754,
+        k2=123.82153699260373,
+        gamma3=9.38533509971412e-05,
+        gamma1=0.19147935827034565,
+        build=Build("neo_hookean", "swelling", profile),
+    )
+    found = solve_cycle(rod, request(1e-5))
+    assert found.status.name == "cycle", found.message
+    below = solve_cycle(rod.changed(F=66.0), request(1e-5))
+    assert below.status.name == "cycle", below.message
+    assert below.measures.period > found.measures.period > 0.9 * below.measures.period
+    assert abs(found.measures.energy_imbalance) < 1e-3

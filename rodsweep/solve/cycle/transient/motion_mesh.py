@@ -16,6 +16,9 @@ class MotionMeshSettings:
     accuracy: float = 1e-5
     """Relative accuracy of the mesh of an integrated motion. The motion only has to reach the basin of
     attraction of the cycle; Newton's method gives the accuracy of the cycle."""
+    finer_accuracy: float = 1e-9
+    """Relative accuracy of the mesh on which a motion is integrated again if the motion repeats on the first
+    mesh, but no cycle is found near it: compressed rubber may bend more sharply than linear waves."""
     expected_modes: int = 3
     """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
     waves_per_root_force: float = 2.5
