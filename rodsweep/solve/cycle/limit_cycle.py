@@ -30,7 +30,7 @@ from .second_state import second_state
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
 from .straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
-from .transient.motion_mesh import MOTION_MESH, motion_mesh
+from .transient.motion_mesh import MOTION_MESH, motion_mesh, motion_meshes
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.trace import TipTrace
@@ -111,10 +111,9 @@ def _solve(
     if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
-    for accuracy in (MOTION_MESH.accuracy, MOTION_MESH.finer_accuracy):
+    for mesh in motion_meshes(rod):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
-        form = _form_of_motion(rod, accuracy)
-        transient = Transient(form, stability, request, along, unstable, workspace)
+        transient = Transient(StressForm(rod, mesh), stability, request, along, unstable, workspace)
         end = _from_motion(transient, request, neighbour)
         if not transient.unsolved:
             break
@@ -128,9 +127,9 @@ def _solve(
     return _with_chain_state(cycle, end.cycle, None, along, request.accuracy, stability)
 
 
-def _form_of_motion(rod: Rod, accuracy: float = MOTION_MESH.accuracy) -> StressForm:
-    """Discretization of a rod for the integration of its motion to the relative accuracy `accuracy`."""
-    return StressForm(rod, motion_mesh(rod, accuracy))
+def _form_of_motion(rod: Rod) -> StressForm:
+    """Discretization of a rod on the first mesh for the integration of its motion."""
+    return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
 
 
 def _after_motion(

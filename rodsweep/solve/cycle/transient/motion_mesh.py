@@ -1,9 +1,16 @@
 """Rod and mesh for the integration of a motion; a nearby rod replaces a limiting rod (k1 = inf, ...)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import ceil
 
+from ....discretization.elements.elements import halve_elements
 from ....discretization.elements.mesh import Mesh, mesh, mesh_on
-from ....discretization.elements.resolution import expected_wave_number, resolution_for
+from ....discretization.elements.resolution import (
+    RESOLUTION_SETTINGS,
+    expected_wave_number,
+    resolution_for,
+)
 from ....discretization.straight.arm_resolution import arm_elements, arm_mesh
 from ....model.dispersion import most_amplified_wave
 from ....model.rod import Rod
@@ -16,9 +23,13 @@ class MotionMeshSettings:
     accuracy: float = 1e-5
     """Relative accuracy of the mesh of an integrated motion. The motion only has to reach the basin of
     attraction of the cycle; Newton's method gives the accuracy of the cycle."""
-    finer_accuracy: float = 1e-9
-    """Relative accuracy of the mesh on which a motion is integrated again if the motion repeats on the first
-    mesh, but no cycle is found near it: compressed rubber may bend more sharply than linear waves."""
+    refinement: float = 1.5
+    """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near it:
+    compressed rubber may bend more sharply than linear waves."""
+    max_refinements: int = 3
+    """Maximum number of times that the mesh of a motion is refined."""
+    max_refined_nodes: int = 64
+    """Maximum number of nodes of a refined mesh; with more nodes a motion takes minutes."""
     expected_modes: int = 3
     """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
     waves_per_root_force: float = 2.5
@@ -53,6 +64,22 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     wave = max(expected_wave_number(MOTION_MESH.expected_modes, most_amplified_wave(rod)[1]), by_force)
     resolution = resolution_for(wave, accuracy)
     return mesh(resolution.elements, resolution.order)
+
+
+def motion_meshes(rod: Rod) -> Iterator[Mesh]:
+    """Yields the first mesh for the integration of the motion of `rod`, and then finer meshes."""
+    grid = motion_mesh(rod, MOTION_MESH.accuracy)
+    yield grid
+    for _ in range(MOTION_MESH.max_refinements):
+        order = ceil(MOTION_MESH.refinement * grid.order)
+        edges = grid.edges
+        if order > RESOLUTION_SETTINGS.max_order:
+            edges = halve_elements(edges)
+            order = ceil(order / 2)
+        grid = mesh_on(edges, order)
+        if grid.nodes > MOTION_MESH.max_refined_nodes:
+            return
+        yield grid
 
 
 def coarse_mesh(rod: Rod) -> Mesh:
