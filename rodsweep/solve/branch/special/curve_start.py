@@ -15,7 +15,7 @@ from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale, deflection_of
 from ..branch_start import ALONG_DEFLECTION, BRANCH_START
 from .family import CycleFamily
-from .on_curve import CURVE_SECANT, SolvedPoint
+from .on_curve import ALONG_BRANCH, CURVE_SECANT, SolvedPoint
 from .point import SpecialPoint
 
 
@@ -68,4 +68,4 @@ def first_point_of_curve(
         row_parameter=row,
     )
     family = CycleFamily.near_point(special.kind, rows, start, workspace)
-    return family.correct_with_error(orbit, row_coordinate, np.array([1.0, 0.0]))
+    return family.correct_with_error(orbit, row_coordinate, ALONG_BRANCH)

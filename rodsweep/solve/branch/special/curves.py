@@ -21,7 +21,14 @@ from .curve_start import first_point_of_curve
 from .cycle_curves import CURVE_IDENTITY, CurveEnd, lagrange_weights
 from .family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
-from .on_curve import SolvedPoint, arc_lengths, chord_slope, orbit_with_parameters, with_larger_errors
+from .on_curve import (
+    ALONG_BRANCH,
+    SolvedPoint,
+    arc_lengths,
+    line_across,
+    orbit_with_parameters,
+    with_larger_errors,
+)
 from .point import SpecialKind, SpecialPoint
 
 CURVE_STEPS = StepControl(
@@ -63,14 +70,10 @@ class CurveEndSettings:
 
 END_SETTINGS = CurveEndSettings()
 
-ALONG_BRANCH = np.array([1.0, 0.0])
-"""Direction along the branch, (2,), in components (along the branch, row coordinate)."""
-EDGE_COUNT = 4
-"""Number of edges of the parameter plane; their distances are the first `SpecialCurveProblem.margins`."""
 ROW_EDGES = (2, 3)
-"""Indices, in `SpecialCurveProblem.margins`, of the two edges of the plane that are parallel to the rows."""
-END_BY_MARGIN = (*EDGE_COUNT * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
-"""Reason for the end of a curve, by the index of the margin that becomes 0."""
+"""Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
+END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+"""Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,16 +116,14 @@ class SpecialCurveProblem:
         if len(behind) == 1:
             start = last.orbit
             at_row = last.row_coordinate + self.side * length
-            across = ALONG_BRANCH
-            slope = 0.0
+            line = ALONG_BRANCH
             rates = None
         else:
             start, at_row = self._predicted(behind, self._step_before_crushing(behind, length))
             change = last.scale.components(start) - last.scale.components(last.orbit)
-            across = last.normal(np.append(change, at_row - last.row_coordinate))
-            slope = chord_slope(*behind[-2:])
+            line = line_across(np.append(change, at_row - last.row_coordinate), *behind[-2:])
             rates = last.normal_derivatives
-        point = self._family(last).correct_with_error(start, at_row, across, slope, rates, last)
+        point = self._family(last).correct_with_error(start, at_row, line, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.interpolate(start)
         # Prediction and point can be compared only on the same mesh.
@@ -230,8 +231,8 @@ class SpecialCurveProblem:
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
         start, at_row = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
-        across = other.normal(other.step_from(one))
-        return self._family(other).correct(start, at_row, across, other.normal_derivatives)
+        line = line_across(other.step_from(one), one, other)
+        return self._family(other).correct(start, at_row, line, other.normal_derivatives)
 
     def on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
         """Point of the curve between `one` and `other` at the row coordinate `at_row`; raises Unsolvable."""

@@ -126,24 +126,30 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
 
 def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor. The errors of period and largest tip y include the error of the last secant step: a
-    fraction of the difference of period and largest tip y between `start` and `end`, the cycles before and
-    after the point."""
-    parameter_error = (
-        SPECIAL_POINT.secant_error_at_fold if point.kind is SpecialKind.fold else SPECIAL_POINT.secant_error
+    safety factor.
+
+    The errors of period and largest tip y include a fraction of their difference between `start` and `end`,
+    the cycles before and after the point: for the error of the last secant step, and, except at a fold, for
+    the error of the parameter.
+    """
+    error = SPECIAL_POINT.error_factor * abs(point.at - last.at) + SPECIAL_POINT.rounding_error * abs(
+        point.at
     )
+    share = SPECIAL_POINT.secant_error_at_fold
+    if point.kind is not SpecialKind.fold:
+        # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
+        name = start.scale.name
+        length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
+        moved = SPECIAL_POINT.slope_factor * error / length if length else 1.0
+        share = SPECIAL_POINT.secant_error + min(moved, 1.0)
     one = start.cycle.measures
     other = end.cycle.measures
-    period = SPECIAL_POINT.error_factor * abs(point.period - last.period) + parameter_error * abs(
-        one.period - other.period
-    )
-    size = SPECIAL_POINT.error_factor * abs(point.tip_y_max - last.tip_y_max) + parameter_error * abs(
-        one.tip_y_max - other.tip_y_max
-    )
+    factor = SPECIAL_POINT.error_factor
+    period = factor * abs(point.period - last.period) + share * abs(one.period - other.period)
+    size = factor * abs(point.tip_y_max - last.tip_y_max) + share * abs(one.tip_y_max - other.tip_y_max)
     return replace(
         point,
-        error=SPECIAL_POINT.error_factor * abs(point.at - last.at)
-        + SPECIAL_POINT.rounding_error * abs(point.at),
+        error=error,
         period_error=period / point.period + SPECIAL_POINT.rounding_error,
         size_error=size / point.tip_y_max + SPECIAL_POINT.rounding_error,
     )

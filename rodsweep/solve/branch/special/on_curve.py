@@ -4,6 +4,7 @@ from the curve."""
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf, nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,16 +34,19 @@ class CurveSecantSettings:
     """Longest step of the secant method across a curve, in arc length; a longer step is a failure."""
     max_secants: int = 12
     """Maximum number of secant steps for one point."""
-    max_linear_product: float = 1e-9
-    """If the product of a secant step and the distance between the last two cycles is at most this number,
-    the step is the last: no further cycle is solved, and the last cycle is moved linearly. The test function
-    then has an error of about 1e-8."""
-    max_linear_step: float = 1e-6
-    """Longest last secant step if the derivatives were computed at the same point on another mesh, or at an
-    earlier step of the same search; their relative error is then 1e-3."""
-    max_carried_step: float = 1e-7
-    """Longest last secant step if the derivatives were computed at the previous point of the curve; their
-    relative error is then 0.1."""
+    max_distance_error: float = 1e-8
+    """Largest distance, in arc length, of a point from the curve after the last step of the secant method,
+    which is linear."""
+    secant_share: float = 0.1
+    """Largest relative error of the parameter along a row by this distance, divided by `accuracy`."""
+    slope_error: float = 1e-3
+    """Relative error of derivatives that were computed at the same point on another mesh or at an earlier
+    step of the same search, in addition to the effect of the curvature."""
+    carried_slope_error: float = 0.1
+    """Relative error of derivatives that were computed at the previous point of the curve; increased if the
+    curvature exceeds 1."""
+    curvature_factor: float = 4.0
+    """Assumed curvature of the test function at a point, divided by the curvature at the previous point."""
     min_cosine: float = 0.9
     """Derivatives along one direction across the curve are used for another direction only if the cosine of
     the angle between the two directions is at least this number."""
@@ -51,8 +55,8 @@ class CurveSecantSettings:
     number, because the test function has an error of 1e-8."""
     error_factor: float = 3.0
     """The error estimate is the difference between the points on two meshes, times this factor."""
-    secant_error: float = 3e-9
-    """Relative error of the parameter along a row caused by the tolerance of the secant method."""
+    least_error: float = 3e-9
+    """Smallest relative error estimate of the parameter along a row."""
     more_orders: int = 2
     """Increase of the order of the elements on the next finer mesh."""
     more_intervals: float = 1.2
@@ -62,6 +66,21 @@ class CurveSecantSettings:
 
 
 CURVE_SECANT = CurveSecantSettings()
+
+
+class SearchLine(NamedTuple):
+    """Line across a curve of special points, on which a point of the curve is searched.
+
+    direction: unit vector, (2,), in components (along the branch, row coordinate). slope: `chord_slope` of
+    the curve, which gives the error of the parameter at a fixed row.
+    """
+
+    direction: Array
+    slope: float = 0.0
+
+
+ALONG_BRANCH = SearchLine(np.array([1.0, 0.0]))
+"""Search at a fixed row, along the branch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +99,8 @@ class NormalDerivatives:
     """Distance between the two cycles of the difference quotient."""
     contraction: float = inf
     """Contraction rate of corrections, as in `NearbyCycleSolver`; inf if unknown."""
+    curvature: float = inf
+    """Modulus of the second derivative of the test function, divided by the first; inf if unknown."""
 
     def on_mesh_of(self, orbit: Orbit) -> Array:
         """The derivative in the field `orbit`, (N + 1,), interpolated to the mesh of the argument `orbit`."""
@@ -143,6 +164,8 @@ class SolvedPoint:
     """Absolute error of `parameter`; NaN before `with_larger_errors` sets it."""
     errors: CurveErrors | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
+    secant_error: float = 0.0
+    """Absolute error of `parameter` at fixed row parameter, by the tolerance of the secant method."""
     normal_derivatives: NormalDerivatives | None = None
     """Derivatives across the curve; None if unknown."""
 
@@ -166,9 +189,12 @@ class SolvedPoint:
 
 
 def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
-    """The points of a curve, in order, with the field `error` set. A measured point has its measured error. A
-    point between two measured points has the larger of the errors scaled from these points; the later
-    measured point is used only if it has the same mesh. Raises ValueError if a point has no error estimate.
+    """The points of a curve, in order, with the field `error` set: the error by the mesh plus the error of
+    the secant method.
+
+    A measured point has its measured error. A point between two measured points has the larger of the errors
+    scaled from these points; the later measured point is used only if it has the same mesh. Raises ValueError
+    if a point has no error estimate.
     """
     found: list[SolvedPoint] = []
     behind: CurveErrors | None = None
@@ -181,7 +207,8 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
             behind = point.errors
         elif behind and behind.mesh == mesh_of(point.orbit):
             candidates.append(behind)
-        found.append(replace(point, error=max(errors.error_at(point) for errors in candidates)))
+        by_mesh = max(errors.error_at(point) for errors in candidates)
+        found.append(replace(point, error=by_mesh + point.secant_error))
     return found[::-1]
 
 
@@ -213,3 +240,9 @@ def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
     of `row_coordinate`; 0 if the row coordinates are equal."""
     apart = other.row_coordinate - one.row_coordinate
     return (other.parameter - one.parameter) / apart if apart else 0.0
+
+
+def line_across(step: Array, one: SolvedPoint, other: SolvedPoint) -> SearchLine:
+    """Line across the curve beyond the points `one` and `other`, perpendicular to `step`, (4,), a step along
+    the curve."""
+    return SearchLine(other.normal(step), chord_slope(one, other))

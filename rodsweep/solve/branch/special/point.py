@@ -68,6 +68,9 @@ class SpecialPointSettings:
     measured are larger than assumed."""
     error_factor: float = 3.0
     """The error estimate is the difference between the special points on two meshes, times this factor."""
+    slope_factor: float = 2.0
+    """Largest derivative of period and tip y by the parameter at a special point, divided by the slope of the
+    chord between the cycles before and after the point."""
     rounding_error: float = 1e-13
     """Relative rounding error of the parameter, the period and the largest tip y of a special point."""
     unit_multiplier_distance: float = 3e-3

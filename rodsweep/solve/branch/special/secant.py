@@ -1,0 +1,206 @@
+"""Secant method across a curve of special points, for one point of the curve.
+
+All cycles and test functions are corrected with the matrix factors of one cycle (`augmented`). The first
+derivatives across the curve come from the previous point. The last step is linear; its error follows from the
+curvature of the test function, which is large near a generalised Hopf point.
+"""
+
+import math
+from dataclasses import replace
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.parameters import PARAMETERS
+from ...orbit.newton import relative_change
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import mesh_of
+from ...point import Unsolvable
+from ..arc import tangent_at
+from ..bordered.condition import BorderCondition, moved_orbit
+from ..bordered.scale import Scale
+from .augmented.functions import AUGMENTED_SETTINGS
+from .augmented.nearby_cycles import NearbyCycleSolver
+from .on_curve import CURVE_SECANT, NormalDerivatives, SearchLine, SolvedPoint
+
+if TYPE_CHECKING:
+    from .family import CycleFamily  # for annotations only: the module imports this one
+
+
+class _SecantIterate(NamedTuple):
+    """A cycle solved by the secant method. vectors: tangent, (N + 1,), or eigenvector, (2, N + 1), of the
+    test function. test: value of the test function. distance: distance from the predicted point, in the
+    direction across the curve."""
+
+    orbit: Orbit
+    vectors: Array
+    test: float
+    distance: float
+
+
+class SecantSearch:
+    """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
+    cycle. Arguments as in `CycleFamily.correct`."""
+
+    def __init__(
+        self,
+        family: "CycleFamily",
+        start: Orbit,
+        row_coordinate: float,
+        line: SearchLine,
+        derivatives: NormalDerivatives | None,
+        is_other_mesh: bool,
+    ) -> None:
+        self.family = family
+        self.row_coordinate = row_coordinate
+        self.line = line
+        self.derivatives = derivatives
+        self.orbit = family.orbit_at_row(start, row_coordinate)
+        self.distance = 0.0
+        self.previous: _SecantIterate | None = None
+        self.length = float(family.border @ family.scale.components(start))
+        self.is_carried = not is_other_mesh
+        """Whether the derivatives come from the previous point of the curve."""
+        self.curvature = CURVE_SECANT.curvature_factor * derivatives.curvature if derivatives else inf
+        """Second derivative of the test function divided by the first; inf if unknown."""
+        self.measured_curvature = derivatives.curvature if derivatives else inf
+        self.slopes: list[tuple[float, float]] = []
+        """Measured derivatives of the test function: (middle of the two cycles, derivative)."""
+        contraction = derivatives.contraction if derivatives and not family.small else inf
+        self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
+
+    def next(self) -> SolvedPoint | None:
+        """Makes one secant step. Returns the point of the curve after the last step, otherwise None. Raises
+        Unsolvable."""
+        present = self._solve_at_distance()
+        span = 0.0
+        if own := self._derivatives_from_last(present):
+            self.derivatives = own
+            self.is_carried = False
+            span = own.span
+        rates = self.derivatives
+        # Without derivatives any small step suffices: the two cycles then give derivatives.
+        step = -present.test / rates.test if rates else CURVE_SECANT.first_secant
+        if not abs(step) <= CURVE_SECANT.longest_secant:
+            raise Unsolvable("the secant method leaves the curve")
+        if rates:
+            error = self._error_after(step, span)
+            if self._is_enough(error):
+                known = replace(rates, contraction=self.nearby.contraction, curvature=self.measured_curvature)
+                return self._point(step, known, error)
+            if self.is_carried and abs(step) < CURVE_SECANT.min_cycle_distance:
+                # Between closer cycles no derivative can be measured.
+                step = math.copysign(2 * CURVE_SECANT.min_cycle_distance, step)
+        if self.previous:  # the vectors are extrapolated along a line, like the cycle
+            change = (present.vectors - self.previous.vectors) / (present.distance - self.previous.distance)
+            self.nearby.predict(present.vectors + step * change)
+        if rates:
+            self.orbit = self._predicted_orbit(step, rates)
+        self.previous = present
+        self.distance += step
+        return None
+
+    def _error_after(self, step: float, span: float) -> float:
+        """Distance from the curve after a last, linear step. span: distance between the two cycles of the
+        measured derivative; 0 if the derivative was not measured at this step."""
+        if span:
+            # Remainder of linear interpolation through two values, extrapolated to their zero.
+            return self.curvature * abs(step) * (abs(step) + span) / 2
+        assert self.derivatives is not None
+        slope_error = CURVE_SECANT.slope_error + self.curvature * self.derivatives.span / 2
+        if self.is_carried:
+            # Along the curve a derivative changes more where the curvature is large.
+            slope_error = CURVE_SECANT.carried_slope_error * max(1.0, self.curvature)
+        return min(slope_error, 1.0) * abs(step)
+
+    def _is_enough(self, error: float) -> bool:
+        """Whether a point at the distance `error` from the curve is accurate enough. Errors within the
+        tolerance of the test function always are."""
+        if error <= AUGMENTED_SETTINGS.tolerance:
+            return True
+        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.name))
+        allowed = CURVE_SECANT.secant_share * CURVE_SECANT.accuracy * parameter
+        return error <= CURVE_SECANT.max_distance_error and self._parameter_error(error) <= allowed
+
+    def _solve_at_distance(self) -> _SecantIterate:
+        """The cycle at the present distance across the curve, with its test function; raises Unsolvable."""
+        family = self.family
+        rates = self.derivatives
+        length = self.length + self.distance * float(self.line.direction[0])
+        row = self.row_coordinate + self.distance * float(self.line.direction[1])
+        self.orbit = family.orbit_at_row(self.orbit, row)
+        slope = abs(rates.test) if rates else 1.0
+        enough = (
+            AUGMENTED_SETTINGS.tolerance
+            if rates
+            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT.first_secant
+        )
+        condition = BorderCondition(family.scale, family.border, length)
+        self.orbit, test = self.nearby.solve(self.orbit, condition, slope, enough)
+        return _SecantIterate(self.orbit, self.nearby.function.vectors, test, self.distance)
+
+    def _derivatives_from_last(self, present: _SecantIterate) -> NormalDerivatives | None:
+        """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
+        first cycle, or if the two cycles are too close or have equal test functions."""
+        before = self.previous
+        if before is None or present.test == before.test:
+            return None
+        if abs(present.distance - before.distance) < CURVE_SECANT.min_cycle_distance:
+            return None
+        name = self.family.scale.name
+        # The test function is nearly linear here, so that difference quotients are as good as derivatives.
+        span = present.distance - before.distance
+        one = before.orbit
+        other = present.orbit
+        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
+        orbit = np.append(other.values - one.values, change) / span
+        slope = (present.test - before.test) / span
+        self._measure_curvature((present.distance + before.distance) / 2, slope)
+        return NormalDerivatives(self.line.direction, slope, orbit, mesh_of(one), abs(span))
+
+    def _measure_curvature(self, middle: float, slope: float) -> None:
+        """Updates the curvature from the last two measured derivatives. middle: distance at which the
+        derivative of the test function is `slope`."""
+        self.slopes.append((middle, slope))
+        if len(self.slopes) > 1:
+            (at, before), (now, last) = self.slopes[-2:]
+            self.measured_curvature = abs((last - before) / (now - at) / last)
+            self.curvature = self.measured_curvature
+
+    def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
+        """The last cycle, moved by `step` across the curve along `derivatives`."""
+        change = step * derivatives.on_mesh_of(self.orbit)
+        self.nearby.distance += relative_change(self.orbit, change[:-1])
+        return moved_orbit(self.orbit, self.family.scale.name, change)
+
+    def _point(self, step: float, derivatives: NormalDerivatives, distance_error: float) -> SolvedPoint:
+        """The point of the curve: the last cycle, moved by `step` across the curve along `derivatives`.
+        distance_error: distance of this point from the curve."""
+        family = self.family
+        matrix = self.nearby.matrix
+        tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
+        row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
+        orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
+        scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
+        ahead = scale.directional_derivative(orbit, tangent)
+        return SolvedPoint(
+            orbit=orbit,
+            scale=scale,
+            ahead=ahead / np.linalg.norm(ahead),
+            row_coordinate=row_coordinate,
+            parameter=getattr(orbit.form.rod, scale.name),
+            row_parameter=getattr(orbit.form.rod, family.rows.name),
+            secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
+            normal_derivatives=derivatives,
+        )
+
+    def _parameter_error(self, distance: float) -> float:
+        """Displacement of the parameter at a fixed row, for a point at a distance from the curve."""
+        rates = self.derivatives
+        assert rates is not None
+        parameter = PARAMETERS[self.family.scale.name]
+        at = self.orbit.form.rod.coordinate(self.family.scale.name)
+        moved = parameter.value(at + distance * float(rates.orbit[-1])) - parameter.value(at)
+        return abs(moved - distance * self.line.slope * float(self.line.direction[1]))
