@@ -157,7 +157,8 @@ keys in use.
 ## Units
 
 Lengths are in L, forces in k3/L^2, time in tau2 = gamma2 L^4/k3. So the bending stiffness k3 and the
-transverse drag gamma2 are 1.
+transverse drag gamma2 are 1. e1 is the tangent of the rod, from the clamp to the tip; a force
+along -e1 pushes the tip towards the clamp.
 
 ## The config
 

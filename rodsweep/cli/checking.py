@@ -40,8 +40,8 @@ def describe_job(job: Job) -> None:
         low, high = cost.unknowns
         console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
     console.print(
-        f"expected: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run compiles "
-        f"for some seconds more), {cost.memory / 1e6:.0f} MB of memory per rank, "
+        f"expected: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run "
+        f"may compile for up to three minutes more), {cost.memory / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:

@@ -29,7 +29,8 @@ class Config(StrictSection):
     task: str
     parameters: Axes
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
-    """Relative error of each eigenvalue, threshold and mode."""
+    """Relative error of each eigenvalue, threshold and mode. `limit_cycle` and `branch`, whose
+    numbers are cycles, have other limits and defaults."""
 
     material: Annotated[
         MaterialSection | None, Field(description="a mapping of law, section and profile")

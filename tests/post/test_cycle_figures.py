@@ -164,9 +164,10 @@ def directed(view, way):
     return replace(view, attributes=view.attributes | {"config_resolved": json.dumps(config)})
 
 
-def test_sweeps_up_and_down_are_told_apart_by_words_and_arrows():
+@pytest.mark.parametrize("names", [("a.h5", "b.h5"), ("dataset", "dataset")])
+def test_sweeps_up_and_down_are_told_apart_by_words_and_arrows(names):
     one = (*SWEEP[:4], [1.0])
-    both = [make_view(one, [1, 1, 1, 1], name=f"{way}.h5") for way in "ab"]
+    both = [make_view(one, [1, 1, 1, 1], name=name) for name in names]
     views = [directed(view, way) for view, way in zip(both, ("up", "down"), strict=True)]
     figure, _ = draw_amplitude(views)
     texts = [text.get_text() for text in figure.legends[0].get_texts()]

@@ -1,7 +1,6 @@
 """Limit cycles against a parameter: amplitudes of the tip, as in the paper's Fig. 6, period and power."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -88,7 +87,7 @@ def _draw_branches(
     panels: Sequence[Axes],
     branches: Sequence[AmplitudeBranch],
     texts: Sequence[str],
-    words: dict[Path, tuple[str, bool | None]],
+    words: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
     """Draws all lines in all panels; returns legend entries. texts: legend entry of each line. words: result
     of `_file_words`.
@@ -100,7 +99,7 @@ def _draw_branches(
         # Open, larger markers do not hide the markers of the first file.
         if branch.view is not branches[0].view:
             look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
-        word, upward = words[branch.view.path]
+        word, upward = words[id(branch.view)]
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
         lost |= _draw_branch(panels, branch, look)
         if upward is not None:
@@ -113,14 +112,15 @@ def _draw_branches(
     return handles
 
 
-def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
-    """Returns {path: (legend entry, is_upward)}. is_upward: whether the parameter `name` increased during the
-    continuation; None unless the files differ in this direction.
+def _file_words(views: Sequence[View], name: str) -> dict[int, tuple[str, bool | None]]:
+    """Returns {id(view): (legend entry, is_upward)}: all datasets of Python have the same path. is_upward:
+    whether the parameter `name` increased during the continuation; None unless the files differ in this
+    direction.
 
     Files with different directions of continuation are distinguished by direction, other files by name.
     """
     if len(views) == 1:
-        return {views[0].path: ("", None)}
+        return {id(views[0]): ("", None)}
     options = [view.config.get("limit_cycle", {}) for view in views]
     followed = all(
         chosen.get("start") == "neighbour" and chosen.get("along", LONGEST) in (name, LONGEST)
@@ -128,10 +128,10 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
     )
     directions = [chosen.get("direction", "up") for chosen in options]
     if not followed or len(set(directions)) < len(views):
-        return {view.path: (escape_dollar_signs(view.path.stem), None) for view in views}
+        return {id(view): (escape_dollar_signs(view.path.stem), None) for view in views}
     words = {"up": f"${SYMBOLS[name]}$ rising", "down": f"${SYMBOLS[name]}$ falling"}
     return {
-        view.path: (words[direction], direction == "up")
+        id(view): (words[direction], direction == "up")
         for view, direction in zip(views, directions, strict=True)
     }
 
