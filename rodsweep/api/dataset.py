@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..config.arm.axes import STORED_ALONG
-from ..config.document.call_arguments import in_sentences
+from ..config.arm.axes import PARAMETER_STORED_ALONG
+from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.values import short_repr
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
@@ -38,7 +38,7 @@ ENGINE = "h5netcdf"
 
 
 @one_at_a_time
-@in_sentences('rs.open("RESULT.h5")')
+@refusing_wrong_arguments('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
     """The Dataset of a complete result file, read into memory, including the points that a running sweep has
     already solved.
@@ -80,8 +80,12 @@ def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
     this quantity.
     """
-    for name in STORED_ALONG:
-        if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
+    for name in PARAMETER_STORED_ALONG:
+        if (
+            name in data.coords
+            and data[name].dims == (PARAMETER_STORED_ALONG[name],)
+            and name not in data.xindexes
+        ):
             data = data.set_xindex(name)
     return data
 

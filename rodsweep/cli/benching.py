@@ -33,7 +33,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.peers import Peers, peer_package, peers_left_out, study_peers
+        from ..bench.peers import Peers, peer_package, peers_left_out, peers_of_study
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
@@ -53,13 +53,13 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     package = peer_package(directory)
     names = [what] if what else list(studies)
     tables = {}
-    blocks = [REPORT_HEADING, machine_line(package.versions() if package else {})]
+    blocks = [REPORT_HEADING, machine_and_versions_line(package.versions() if package else {})]
     if package is None and (sentence := peers_left_out(names)):
         blocks.append(sentence)
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
         with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
-            study = studies[name](quick, study_peers(package, name, quick, Path(folder)))
+            study = studies[name](quick, peers_of_study(package, name, quick, Path(folder)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))
@@ -77,7 +77,7 @@ def machine_attributes() -> dict[str, str]:
     return {"processor": cpu_name(), "created": now()} | provenance() | petsc.versions()
 
 
-def machine_line(peers: Mapping[str, str]) -> str:
+def machine_and_versions_line(peers: Mapping[str, str]) -> str:
     """Processor, date and versions in one line of text. peers: versions of the peers by name."""
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}

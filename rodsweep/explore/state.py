@@ -10,10 +10,10 @@ from urllib.parse import parse_qsl, urlencode
 
 from ..api.arm import Arm
 from ..api.rod import SoftRod
-from ..config.document.reading import yaml_of
-from ..config.document.refusals import hint_of
+from ..config.document.reading import tree_yaml
+from ..config.document.refusals import unknown_key_hint
 from ..config.tasks import CONFIGS
-from ..config.values import overflows, short_repr
+from ..config.values import overflows_float, short_repr
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 
@@ -97,7 +97,7 @@ class PageState:
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         for name, text in self.rod.items():
-            if overflows(text.strip()):
+            if overflows_float(text.strip()):
                 raise InputError(
                     f"parameters.{name}: {short_repr(text)} is too large for a floating-point number"
                 )
@@ -134,7 +134,7 @@ class PageState:
         tree |= {"material": dict(LAWS[self.law])} if LAWS[self.law] else {}
         if task in LARGEST_FORCE_KEYS:
             tree[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
-        return yaml_of(tree)
+        return tree_yaml(tree)
 
     def python(self) -> str:
         """Python lines that solve the rod or arm of the visible tab with `rodsweep`."""
@@ -155,7 +155,7 @@ def number(text: str) -> Any:
         value = float(text)
     except ValueError:
         return text
-    return text if isnan(value) or overflows(text.strip()) else value
+    return text if isnan(value) or overflows_float(text.strip()) else value
 
 
 def from_address(query: str, default: PageState | None = None) -> PageState:
@@ -172,7 +172,9 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     known = TAB_DEFAULTS[tab]
     for name in given:
         if name not in known:
-            raise InputError(f"unknown key {short_repr(name)} in the address; {hint_of(name, list(known))}")
+            raise InputError(
+                f"unknown key {short_repr(name)} in the address; {unknown_key_hint(name, list(known))}"
+            )
     return state.with_values(**given)
 
 

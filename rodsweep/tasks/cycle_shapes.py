@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..config.document.reading import validated
+from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
@@ -85,4 +85,4 @@ def _job(view: View, number: int) -> Job:
         "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
-    return job_of(Path(view.path.name), validated(tree), tree)
+    return job_of(Path(view.path.name), validated_config(tree), tree)

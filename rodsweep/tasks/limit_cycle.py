@@ -25,7 +25,7 @@ from ..solve.backend.availability import require_solvers
 from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import ChainedWork, Chains
-from ..sweep.points.grid import refuse_outside
+from ..sweep.points.grid import require_in_range
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
@@ -54,8 +54,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            refuse_outside(FINITE_STIFFNESS, "k2", self.points.of_rods["k2"], "", why)
-            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.of_rods["gamma3"], "", why)
+            require_in_range(FINITE_STIFFNESS, "k2", self.points.of_rods["k2"], "", why)
+            require_in_range(POSITIVE_DRAG, "gamma3", self.points.of_rods["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..config.document.reading import validated
+from ..config.document.reading import validated_config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
@@ -56,7 +56,7 @@ class PortraitRequest:
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
         tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
         tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
-        return job_of(Path(task), validated(tree), tree)
+        return job_of(Path(task), validated_config(tree), tree)
 
 
 def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rodsweep.api.dataset import open_result
-from rodsweep.config.document.reading import canonical, validated
+from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.results.file import exchange, points, validation
 from rodsweep.results.file.combination.identity import config_difference
@@ -24,8 +24,8 @@ from rodsweep.results.run import journal as pages_of
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals, read_reasons
 from rodsweep.sweep.points.points import Points
 
-CONFIG = canonical(
-    validated(
+CONFIG = resolved_config(
+    validated_config(
         {
             "task": "spectrum",
             "parameters": dict.fromkeys(("F", "k1", "k2", "gamma3"), 1),

@@ -20,7 +20,7 @@ from ...tasks.protocol import JointVariables, NamedArrays
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, UnitNote
 from ...watch import SolveStopped, reporting_to
 
-UNIT_NOUN = "halves of curves"
+HALF_CURVE_NOUN = "halves of curves"
 """Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 
@@ -82,7 +82,7 @@ class JointWork:
             todo = DependentItemQueue(items, self.results, self.team.size)
         self._exchange_starts(items)
         shown = (
-            ProgressReporter(None, f"{title}, curves", UNIT_NOUN)
+            ProgressReporter(None, f"{title}, curves", HALF_CURVE_NOUN)
             if self.team.first and title
             else SilentProgress()
         )

@@ -15,7 +15,7 @@ from ...api.answers.picture import plot
 from ...api.arm import Arm
 from ...api.dataset import view_of_dataset
 from ...api.sweeping import sweep
-from ...config.axes import DEFAULTS
+from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
@@ -144,7 +144,7 @@ def crushing_force(rod: Mapping[str, float]) -> float:
     """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
     rod: parameters by name.
     """
-    return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
+    return rod["k1"] * min(1.0, rod.get("taper", DEFAULT_VALUES_OF_PARAMETERS.get("taper", 1.0))) ** 2
 
 
 ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {

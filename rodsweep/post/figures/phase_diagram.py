@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.axes import DEFAULTS
+from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
@@ -148,7 +148,7 @@ def _fixed(view: View, line: str, row: str) -> str:
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
-        fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULTS["gamma1"]))
+        fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULT_VALUES_OF_PARAMETERS["gamma1"]))
     return parameter_text(fixed)
 
 

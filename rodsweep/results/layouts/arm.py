@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import STORED_ALONG, names_over
+from ...config.arm.axes import PARAMETER_STORED_ALONG, grid_axis_names
 from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmSection
 from ...config.axes import Axes
@@ -174,7 +174,7 @@ def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
     ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
     sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
-    return names_over(sizes, makes_diagram(config["task"]))
+    return grid_axis_names(sizes, makes_diagram(config["task"]))
 
 
 def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
@@ -187,7 +187,7 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
         return ()
     if not points.arm_axes:
         return tuple(
-            _filled(arm, name, values, (STORED_ALONG[name],) if np.ndim(values) else ())
+            _filled(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
     axes = points.arm_axes

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import ALL_BUT_LOAD, SLENDER
+from ...config.arm.axes import NON_LOAD_KEYS, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
@@ -141,7 +141,7 @@ class ArmValidity:
         at_rest = AT_REST_STATUSES.get(self.task, ())
         self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
-        sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in ALL_BUT_LOAD]
+        sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.each = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
         self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
@@ -235,7 +235,7 @@ def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
     Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated
     once, because their evaluation takes longer than a point.
     """
-    axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in ALL_BUT_LOAD}
+    axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in NON_LOAD_KEYS}
 
     def arm(number: int) -> SlenderArm:
         places = np.unravel_index(number, [len(column) for column in axes.values()])

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config import Config, load_config
-from ...config.document.reading import canonical, yaml_of
+from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
@@ -55,7 +55,7 @@ class Job:
     @property
     def text(self) -> str:
         """YAML text of the config as the user wrote it."""
-        return self.source if isinstance(self.source, str) else yaml_of(self.source)
+        return self.source if isinstance(self.source, str) else tree_yaml(self.source)
 
     @property
     def name(self) -> str:
@@ -134,7 +134,7 @@ def job_of(
             "machine; use fewer values"
         )
     count = grid_size(config)
-    resolved = canonical(config)
+    resolved = resolved_config(config)
     layout = layout_of(resolved)
     each = layout.bytes_per_point
     if count * each > MAX_FILE_BYTES:
@@ -155,7 +155,7 @@ def job_of(
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
     """Plan of the result file of a config on given points, without attributes and status flags."""
-    resolved = canonical(config)
+    resolved = resolved_config(config)
     task = TASKS[config.task](config, replace(points, build=config.build))
     return _plan(task, resolved, layout_of(resolved))
 

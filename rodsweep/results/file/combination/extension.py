@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.axes import words
+from ....config.axes import joined_names
 from ....config.document.reading import config_of
 from ....errors import InputError
 from ....sweep.points.points import Points
@@ -147,7 +147,9 @@ def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
-            f"a grid of {words(tuple(p.axes), 'and')}" if p.axes else f"a list of {words(p.names, 'and')}"
+            f"a grid of {joined_names(tuple(p.axes), 'and')}"
+            if p.axes
+            else f"a list of {joined_names(p.names, 'and')}"
             for p in (old, new)
         ]
         _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))

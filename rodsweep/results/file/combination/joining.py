@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from ....arrays import Array
-from ....config.document.reading import canonical, config_of, text_of
+from ....config.document.reading import config_of, config_yaml, resolved_config
 from ....config.schema import Config
 from ....config.values import Axis
 from ....errors import InputError
@@ -236,8 +236,8 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
 
 def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
-    text = text_of(config)
-    resolved = canonical(config)
+    text = config_yaml(config)
+    resolved = resolved_config(config)
     if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:
         raise InputError(
             "the joined axes are too long to be listed in the file; compute the grid with `run` from ranges"
