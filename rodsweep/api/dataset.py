@@ -24,8 +24,8 @@ from ..results.file.validation import (
     ResultHeader,
     damage_refusals,
     escape_control_characters,
-    open_whole,
-    reason_of,
+    one_line_message,
+    open_checked,
 )
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
@@ -60,7 +60,7 @@ def named_file_path(given: object, example: str) -> Path:
 
 
 def _open_result_file(path: Path) -> xr.Dataset:
-    file, header = open_whole(path)
+    file, header = open_checked(path)
     file.close()
     data = _load_with_checksums(path, header)
     for variable in data.variables.values():
@@ -113,7 +113,7 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
             with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
-            raise ValueError(reason_of(error)) from error
+            raise ValueError(one_line_message(error)) from error
         found = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
             if found.get(name) != digest:

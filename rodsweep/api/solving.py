@@ -10,9 +10,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..results.file.creation import Plan
-from ..results.file.provenance import now, united_reasons
+from ..results.file.provenance import joined_failure_reasons, utc_time
 from ..results.file.view import View
-from ..results.layouts.variables import Filled
+from ..results.layouts.variables import FilledVariable
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.exclusive import exclusive_solve
@@ -23,7 +23,7 @@ from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen_exceptions import PointNote, guarded_solver
+from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
 from ..watch import reporting_to, solve_part
 from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
@@ -35,7 +35,9 @@ _compiled_tasks: set[str] = set()
 
 
 @exclusive_solve
-def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
+def solve_here(
+    job: Job, note: PointExceptionNote | None = None, progress: bool | None = None
+) -> SolvedPoints:
     """Solves all points of a job in this process, and returns the results.
 
     note: function called with every unforeseen exception, after which the point has the status `failed`;
@@ -46,7 +48,7 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
     shown = progress_display(progress, job.points.count, job.name)
     require_solvers()
     solver = job.solver()
-    started = now()
+    started = utc_time()
     if note is not None:
         solver = guarded_solver(solver, job.layout, note)
     plan = plan_in_memory(job, solver.statuses)
@@ -92,8 +94,8 @@ def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
         "hosts": socket.gethostname(),
         "started": started,
         "stopped": "",
-        **united_reasons("\n".join(reasons)),
-        "finished": now(),
+        **joined_failure_reasons("\n".join(reasons)),
+        "finished": utc_time(),
     }
 
 
@@ -145,7 +147,7 @@ def _solve_stretches(
     return left
 
 
-def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
+def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[FilledVariable]:
     """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
     progress display.
     """

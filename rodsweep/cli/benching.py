@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from ..errors import EnvironmentIncomplete
-from ..results.file.provenance import cpu_name, now, provenance
+from ..results.file.provenance import cpu_name, provenance, utc_time
 from ..solve.backend import petsc
 
 MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured_command")
@@ -74,7 +74,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
 
 def machine_attributes() -> dict[str, str]:
     """Processor, date and versions, as attributes of the file of measurements."""
-    return {"processor": cpu_name(), "created": now()} | provenance() | petsc.versions()
+    return {"processor": cpu_name(), "created": utc_time()} | provenance() | petsc.versions()
 
 
 def machine_and_versions_line(peers: Mapping[str, str]) -> str:
@@ -82,4 +82,4 @@ def machine_and_versions_line(peers: Mapping[str, str]) -> str:
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
     where = ", ".join(f"{name} {its}" for name, its in (shown | dict(peers)).items())
-    return f"One core of {cpu_name()}, {platform.system()}, {now()[:10]}; {where}. Threads: one."
+    return f"One core of {cpu_name()}, {platform.system()}, {utc_time()[:10]}; {where}. Threads: one."

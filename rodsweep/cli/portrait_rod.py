@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod
     from ..results.file.view import View
     from ..sweep.progress import ProgressReporter
-    from ..tasks.rod_portrait import Solve
+    from ..tasks.rod_portrait import SolveJob
     from ..tasks.running.job import Job
 
 QUANTITIES_WITHOUT_OPTION = (*LOADS, "fluid_density", "density_difference")
@@ -71,7 +71,7 @@ def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @contextmanager
-def solve_with_progress(shown: "ProgressReporter", solve: "Solve") -> "Iterator[Solve]":
+def solve_with_progress(shown: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
     numbers = count(1)
 

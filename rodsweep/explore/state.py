@@ -107,12 +107,12 @@ class PageState:
         """Parameters of the tab "rod" as numbers by name, without a taper of 1. A text that is not a number
         is returned as text.
         """
-        found = {name: number(text) for name, text in self.rod.items()}
+        found = {name: float_or_text(text) for name, text in self.rod.items()}
         return {name: value for name, value in found.items() if name != "taper" or value != 1}
 
     def largest_force(self) -> float:
         """`F_max` as a number. Raises InputError unless the number is finite and positive."""
-        value = number(self.F_max)
+        value = float_or_text(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
                 f"F_max = {short_repr(self.F_max)} is not allowed; it must be a finite number above 0"
@@ -149,7 +149,7 @@ def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
     return subject.parameters if isinstance(subject, SoftRod) else SoftRod(arm=subject).parameters
 
 
-def number(text: str) -> Any:
+def float_or_text(text: str) -> Any:
     """`text` as a float; the unchanged text if it is not a valid number, for a later error message."""
     try:
         value = float(text)
@@ -164,10 +164,10 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     """
     state = default or PageState()
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    tab = _choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
+    tab = _require_choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
-    law = _choice("law", given.pop("law", state.law), LAWS)
-    across = _choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
+    law = _require_choice("law", given.pop("law", state.law), LAWS)
+    across = _require_choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
     state = replace(state, law=law, across=across, F_max=given.pop("F_max", state.F_max))
     known = TAB_DEFAULTS[tab]
     for name in given:
@@ -178,7 +178,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     return state.with_values(**given)
 
 
-def _choice(key: str, given: str, known: Any) -> str:
+def _require_choice(key: str, given: str, known: Any) -> str:
     """Returns `given` if it is one of `known`; raises InputError otherwise. key: name of the choice, for the
     message.
     """

@@ -98,7 +98,7 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     journal(whole, range(count))
     whole.add_journals({})
     monkeypatch.setattr(pages_of, "BYTES_A_BLOCK", 3 * (LAYOUT.record.itemsize + 4))
-    monkeypatch.setattr(points, "POINTS_AT_ONCE", 2)
+    monkeypatch.setattr(points, "MAX_BLOCK_POINTS", 2)
     store = Store(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)
@@ -271,7 +271,7 @@ def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path
 
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(exchange, "LOCK_PATIENCE", 0.3)
+    monkeypatch.setattr(exchange, "LOCK_TIMEOUT", 0.3)
     store = Store(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
         Store(tmp_path / "a.h5", plan())

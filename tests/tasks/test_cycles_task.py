@@ -21,7 +21,7 @@ from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
-from rodsweep.results.run.journal import Journal, drop_files
+from rodsweep.results.run.journal import Journal, delete_matching_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
 from rodsweep.sweep.points.ranges import IndexSet
@@ -541,7 +541,7 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
     for place in range(0, len(data), 7):
         path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
         assert kept.read(0) is None
-    drop_files(tmp_path, CHECKPOINTS)
+    delete_matching_files(tmp_path, CHECKPOINTS)
     assert not list(tmp_path.iterdir())
 
 

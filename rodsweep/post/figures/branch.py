@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...model.parameters import CRUSHING
-from ...results.layouts.variables import MISSING
+from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, has_or_have, some_of
 from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter, runs_of
 from . import style
@@ -131,7 +131,7 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     if drawn < beating:
         more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
-    computed = int((rods[0].view.variables["status"] != MISSING).sum())
+    computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())
     without = computed - beating
     return more + (
         f"; {some_of(without, computed, 'rod')} {has_or_have(without)} no branch" if without > 0 else ""

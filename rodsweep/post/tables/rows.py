@@ -13,7 +13,7 @@ from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
-from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
+from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, marks_missing_items
 
 Rows = tuple[NDArray[np.int64], ...]
@@ -44,7 +44,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
         yield quantity_column(name, values[points])
-    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
+    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
     for variable in own:
         values = view.variables[variable.name].reshape(-1)[points]
         if variable.name == STATUS.name:

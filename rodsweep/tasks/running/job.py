@@ -14,9 +14,9 @@ from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
-from ...results.layouts import LAYOUTS, layout_of
+from ...results.layouts import LAYOUT_MAKERS, layout_of
 from ...results.layouts.arm import arm_variables, at_points, si_record
-from ...results.layouts.variables import Filled, Layout
+from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
 from ...sweep.points.grid import grid_size, points_of
@@ -63,7 +63,7 @@ class Job:
         return self.config.title or self.path.stem
 
     @property
-    def quantities(self) -> tuple[Filled, ...]:
+    def quantities(self) -> tuple[FilledVariable, ...]:
         """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
         return arm_variables(self.config.parameters, self.points)
 
@@ -84,7 +84,7 @@ class Job:
         """The solver, with values in SI units and the validity of the model added to the results of a
         point.
         """
-        layout = LAYOUTS[self.config.task](self.resolved)
+        layout = LAYOUT_MAKERS[self.config.task](self.resolved)
         quantities = at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
