@@ -37,7 +37,7 @@ from rodsweep.results.layouts.phase_diagram import (
 )
 from rodsweep.results.layouts.spectrum import FORCE_CHANGES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
+from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
 from rodsweep.tasks.arm.points import NoRodStatus
 from rodsweep.tasks.running.job import Job, make_job
 
@@ -390,7 +390,7 @@ def task_variables(task: str) -> str:
     }
     rows = [variable_row(variable, dims, only.get(name, "")) for name, (variable, dims) in given.items()]
     points = f"`...` is ({', '.join(job.layout.parameters)}), or (point)."
-    statuses = [[str(MISSING), "`missing`", "not computed yet"]]
+    statuses = [[str(MISSING_STATUS), "`missing`", "not computed yet"]]
     statuses += [[str(int(s)), f"`{s.name}`", s.sentence] for s in job.task.solver().statuses]
     parts = [f"## Variables of the file\n\n{points} {FILE_OF_ALL}\n\n", variable_table(rows)]
     if task == "phase_diagram":

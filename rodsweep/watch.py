@@ -23,9 +23,9 @@ class SolvePosition(NamedTuple):
     share: float | None = None
 
 
-MakePosition = Callable[[], SolvePosition]
+PositionMaker = Callable[[], SolvePosition]
 """Function that returns the position of a solve. A listener calls the function only to show the position."""
-Listener = Callable[[MakePosition], None]
+Listener = Callable[[PositionMaker], None]
 """Function called at every report of a solve. A listener raises `SolveStopped` to end the solve."""
 
 
@@ -55,7 +55,7 @@ class _SolvePart(NamedTuple):
 _listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
 """Pairs (listener, number of parts that enclose the listener's `with` block), from the outermost block
 inwards."""
-_parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
+_solve_parts: ContextVar[tuple[_SolvePart, ...]] = ContextVar("parts", default=())
 
 
 @contextmanager
@@ -64,7 +64,7 @@ def reporting_to(listener: Listener) -> Iterator[None]:
 
     The positions are relative to the block: their text omits the names of parts that enclose the block.
     """
-    token = _listeners.set((*_listeners.get(), (listener, len(_parts.get()))))
+    token = _listeners.set((*_listeners.get(), (listener, len(_solve_parts.get()))))
     try:
         yield
     finally:
@@ -78,24 +78,24 @@ def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator
     name: prefix of the text of each report. shares: completed fractions of the work of the larger solve at
     the start and at the end of the part; None if unknown.
     """
-    token = _parts.set((*_parts.get(), _SolvePart(name, shares)))
+    token = _solve_parts.set((*_solve_parts.get(), _SolvePart(name, shares)))
     try:
         yield
     finally:
-        _parts.reset(token)
+        _solve_parts.reset(token)
 
 
-def report(make_position: MakePosition = SolvePosition) -> None:
+def report(make_position: PositionMaker = SolvePosition) -> None:
     """Reports the position of the solve to all listeners.
 
     make_position: function that returns the position. By default the position is empty, and the report only
     lets a listener end the solve.
     """
     for listener, outside in _listeners.get():
-        listener(partial(_in_whole, make_position, outside))
+        listener(partial(_position_in_whole_solve, make_position, outside))
 
 
-def _in_whole(make_position: MakePosition, outside: int) -> SolvePosition:
+def _position_in_whole_solve(make_position: PositionMaker, outside: int) -> SolvePosition:
     """Position within the whole solve that a listener observes; a position without text is returned
     unchanged.
 
@@ -105,6 +105,6 @@ def _in_whole(make_position: MakePosition, outside: int) -> SolvePosition:
     position = make_position()
     if not position.words:
         return position
-    for outer in reversed(_parts.get()[outside:]):
+    for outer in reversed(_solve_parts.get()[outside:]):
         position = outer.of_whole(position)
     return position

@@ -3,7 +3,7 @@
 from functools import partial
 from pathlib import Path
 
-from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
+from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
 from rodsweep.bench.peers import Peers
 
 from ..auto import AUTO_SKIPPED, auto_program
@@ -18,8 +18,8 @@ def peers(quick: bool, folder: Path) -> Peers:
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
     return Peers(
         contenders={
-            FOLLOWING: [contender for family in every for contender in family.following_contenders()],
-            WAITING: [contender for family in every for contender in family.settling_contenders()],
+            FOLLOWING_RACE: [contender for family in every for contender in family.following_contenders()],
+            WAITING_RACE: [contender for family in every for contender in family.settling_contenders()],
         },
         sections=(partial(compare_with_auto, program, quick),) if program else (),
         skipped=skipped if program else [*skipped, AUTO_SKIPPED],

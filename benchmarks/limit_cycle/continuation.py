@@ -25,11 +25,11 @@ from rodsweep.bench.limit_cycle.tracking import (
     REFERENCE_INTERVALS,
     REFERENCE_NEWTON_TOLERANCE,
     REFERENCE_STAGES,
-    SETTLED_WITHIN,
+    SETTLING_TOLERANCE,
     cycle_request,
     orbit_of,
 )
-from rodsweep.bench.study import Measurement, TimedRuns, markdown_table, race, result_or_error
+from rodsweep.bench.study import Measurement, TimedRuns, markdown_table, result_or_error, time_runs
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -101,7 +101,7 @@ def measure_continuation(
     for setting in settings:
         run = partial(continue_cycles, program, starts[setting.order], setting, step)
         runs += [partial(result_or_error, run, cycles) for cycles in (SHORT_RUN_CYCLES, LONG_RUN_CYCLES)]
-    raced = race(runs, [rounds] * len(runs))
+    raced = time_runs(runs, [rounds] * len(runs))
     ours, exact = len(REQUESTED_ACCURACIES), rods[-1].exact_cycle
     own = [
         judged_measurement(
@@ -125,7 +125,7 @@ def measure_continuation(
 
 def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
     """First cycle of AUTO's runs, by the order of the single element in space."""
-    near = orbit_of(solve_cycle(point, cycle_request(SETTLED_WITHIN), along="F"))
+    near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), along="F"))
     orders = {setting.order for setting in settings}
     moved = {order: near.on_mesh(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
     return {

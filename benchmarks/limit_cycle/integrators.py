@@ -12,7 +12,7 @@ from rodsweep.bench.limit_cycle.integrators import (
     WAITING_TOLERANCES,
     IntegrationTask,
     IntegratorFamily,
-    petsc_run,
+    petsc_trajectory,
 )
 from rodsweep.discretization.stress.rates import write_rate, write_rate_jacobian
 from rodsweep.solve.motion.integrator import RunEnding, Trajectory
@@ -90,12 +90,18 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
 
 RADAU_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 FAMILIES = (
-    IntegratorFamily("ARKIMEX 2", partial(petsc_run, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-    IntegratorFamily("ARKIMEX 3", partial(petsc_run, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("ARKIMEX 4", partial(petsc_run, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily("BDF 5", partial(petsc_run, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-    IntegratorFamily("ROSW ra34pw2", partial(petsc_run, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
-    IntegratorFamily("ROSW rodas3", partial(petsc_run, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
+    IntegratorFamily("ARKIMEX 2", partial(petsc_trajectory, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    IntegratorFamily("ARKIMEX 3", partial(petsc_trajectory, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorFamily(
+        "ARKIMEX 4", partial(petsc_trajectory, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)
+    ),
+    IntegratorFamily("BDF 5", partial(petsc_trajectory, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    IntegratorFamily(
+        "ROSW ra34pw2", partial(petsc_trajectory, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)
+    ),
+    IntegratorFamily(
+        "ROSW rodas3", partial(petsc_trajectory, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)
+    ),
     IntegratorFamily("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
     IntegratorFamily(
         "SciPy Radau",

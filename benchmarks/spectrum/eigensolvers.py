@@ -17,7 +17,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
 from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
-from rodsweep.bench.spectrum.study import ORDERS, pencil_mesh
+from rodsweep.bench.spectrum.study import ELEMENT_ORDERS, pencil_mesh
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.roots.newton import refine_eigenvalue
 from rodsweep.discretization.straight.pencil import PENCIL_NORM_SETTINGS, assemble_pencil
@@ -182,10 +182,10 @@ class Peer(NamedTuple):
 
 
 PEERS = (
-    Peer("dense LAPACK QZ, same pencil", PENCIL_GROUP, dense_qz, ORDERS),
-    Peer("dense LAPACK LU and geev, same pencil", PENCIL_GROUP, dense_inverse, ORDERS),
-    Peer("SciPy eigs (ARPACK), same pencil", PENCIL_GROUP, scipy_eigs, ORDERS),
-    Peer("displacement spectral elements, geev", OTHER_MESH_GROUP, displacement_elements, ORDERS),
+    Peer("dense LAPACK QZ, same pencil", PENCIL_GROUP, dense_qz, ELEMENT_ORDERS),
+    Peer("dense LAPACK LU and geev, same pencil", PENCIL_GROUP, dense_inverse, ELEMENT_ORDERS),
+    Peer("SciPy eigs (ARPACK), same pencil", PENCIL_GROUP, scipy_eigs, ELEMENT_ORDERS),
+    Peer("displacement spectral elements, geev", OTHER_MESH_GROUP, displacement_elements, ELEMENT_ORDERS),
     Peer("Chebyshev collocation, QZ", OTHER_MESH_GROUP, chebyshev_qz, INTERVALS),
     Peer("Chebyshev, first-order system, QZ", OTHER_MESH_GROUP, chebyshev_first_order, INTERVALS),
     Peer("LAPACK on a coarse mesh, Newton on D", "roots of D", lapack_on_d, START_ORDERS),
@@ -203,7 +203,11 @@ def contenders() -> list[Contender]:
 
 def arm_contenders() -> list[Contender]:
     """The peers that solve arms with properties that vary along the length, at all of their sizes."""
-    taken = {dense_inverse: arms.ORDERS, scipy_eigs: arms.ORDERS, chebyshev_first_order: ARM_INTERVALS}
+    taken = {
+        dense_inverse: arms.ELEMENT_ORDERS,
+        scipy_eigs: arms.ELEMENT_ORDERS,
+        chebyshev_first_order: ARM_INTERVALS,
+    }
     return [
         Contender(peer.name, str(size), peer.group, partial(solve_next_arm, peer.solve, size))
         for peer in PEERS

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..config.document.call_arguments import in_sentences
+from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
@@ -54,7 +54,7 @@ class Arm(SlenderArm):
     not. Raises InputError if the quantities describe no slender arm.
     """
 
-    __init__ = in_sentences(ARM_EXAMPLE)(SlenderArm.__init__)
+    __init__ = refusing_wrong_arguments(ARM_EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
     def flutter(self) -> "FlutterRange":
@@ -71,7 +71,7 @@ class Arm(SlenderArm):
 
         return arm_report(self)
 
-    @in_sentences('arm.replace(length="12 cm")')
+    @refusing_wrong_arguments('arm.replace(length="12 cm")')
     def replace(self, **changed: Given | None) -> "Arm":
         """A copy of the arm with changed quantities.
 
@@ -104,41 +104,41 @@ class Arm(SlenderArm):
         """
         return with_load_in_si(self)
 
-    @in_sentences("arm.thresholds(F_max=100)")
+    @refusing_wrong_arguments("arm.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Loads at which the arm starts to oscillate, flutters, and becomes stable again. The arm needs no
         load.
         """
         return self._answer("thresholds", options)
 
-    @in_sentences("arm.spectrum(modes=4)")
+    @refusing_wrong_arguments("arm.spectrum(modes=4)")
     def spectrum(self, **options: Unpack[SpectrumKeywords]) -> Answer:
         """The leading eigenvalues under the arm's load."""
         return self._answer("spectrum", options)
 
-    @in_sentences("arm.modes(nodes=65)")
+    @refusing_wrong_arguments("arm.modes(nodes=65)")
     def modes(self, **options: Unpack[ModesKeywords]) -> Answer:
         """The leading modes under the arm's load, and their transient growth."""
         return self._answer("modes", options)
 
-    @in_sentences("arm.cycle(harmonics=8)")
+    @refusing_wrong_arguments("arm.cycle(harmonics=8)")
     def limit_cycle(self, **options: Unpack[LimitCycleKeywords]) -> Answer:
         """The limit cycle under the arm's load: period, amplitude, energy, Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
-    @in_sentences("arm.criticality(F_max=100)")
+    @refusing_wrong_arguments("arm.criticality(F_max=100)")
     def criticality(self, **options: Unpack[CriticalityKeywords]) -> Answer:
         """Criticality of every Hopf point, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
-    @in_sentences('arm.branch(along="F")')
+    @refusing_wrong_arguments('arm.branch(along="F")')
     def branch(self, **options: Unpack[BranchKeywords]) -> Answer:
         """The branches of cycles, stable or not, followed from every Hopf point to their ends."""
         return self._answer("branch", options)
 
-    @in_sentences("arm.portrait(F_max=100)")
+    @refusing_wrong_arguments("arm.portrait(F_max=100)")
     def portrait(
         self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
     ) -> "RodPortrait":
@@ -151,13 +151,13 @@ class Arm(SlenderArm):
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest
-        from .answers.rod_portrait import portrait_of
+        from .answers.rod_portrait import solved_portrait
 
         default = {each.name: each.default for each in fields(self)}
         section = config_tree("thresholds", {"arm": self})["parameters"]["arm"]
         given = {name: value for name, value in section.items() if value != default[name]}
         own = DescribedRod(arm=given, load=self.load or LOADS[0])
-        return portrait_of(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
+        return solved_portrait(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..config.arm.axes import STORED_ALONG
-from ..config.document.call_arguments import in_sentences
+from ..config.arm.axes import PARAMETER_STORED_ALONG
+from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.values import short_repr
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
@@ -24,8 +24,8 @@ from ..results.file.validation import (
     ResultHeader,
     damage_refusals,
     escape_control_characters,
-    open_whole,
-    reason_of,
+    one_line_message,
+    open_checked,
 )
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
@@ -38,7 +38,7 @@ ENGINE = "h5netcdf"
 
 
 @one_at_a_time
-@in_sentences('rs.open("RESULT.h5")')
+@refusing_wrong_arguments('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
     """The Dataset of a complete result file, read into memory, including the points that a running sweep has
     already solved.
@@ -60,7 +60,7 @@ def named_file_path(given: object, example: str) -> Path:
 
 
 def _open_result_file(path: Path) -> xr.Dataset:
-    file, header = open_whole(path)
+    file, header = open_checked(path)
     file.close()
     data = _load_with_checksums(path, header)
     for variable in data.variables.values():
@@ -80,8 +80,12 @@ def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
     this quantity.
     """
-    for name in STORED_ALONG:
-        if name in data.coords and data[name].dims == (STORED_ALONG[name],) and name not in data.xindexes:
+    for name in PARAMETER_STORED_ALONG:
+        if (
+            name in data.coords
+            and data[name].dims == (PARAMETER_STORED_ALONG[name],)
+            and name not in data.xindexes
+        ):
             data = data.set_xindex(name)
     return data
 
@@ -109,7 +113,7 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
             with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
-            raise ValueError(reason_of(error)) from error
+            raise ValueError(one_line_message(error)) from error
         found = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
             if found.get(name) != digest:

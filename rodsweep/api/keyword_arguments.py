@@ -8,8 +8,8 @@ from typing import Any, TypedDict, TypeVar
 import numpy as np
 
 from ..config.arm.section import ArmSection
-from ..config.document.call_arguments import in_sentences, unknown
-from ..config.document.reading import validated, with_files_read
+from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
+from ..config.document.reading import validated_config, with_file_contents
 from ..config.document.refusals import similar_keys
 from ..config.material import MaterialSection
 from ..config.schema import Config
@@ -42,7 +42,7 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
     tree: ConfigTree = {"task": task}
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
-    sections = _sections(task)
+    sections = _allowed_keys_by_section(task)
     for given, value in keywords.items():
         name = plain_value(given)
         if name in sections and isinstance(value, Mapping):
@@ -90,7 +90,7 @@ def job_from(tree: ConfigTree) -> Job:
 
     Raises InputError also if the results do not fit into memory.
     """
-    config = validated(with_files_read(tree, Path()))
+    config = validated_config(with_file_contents(tree, Path()))
     job = job_of(Path(config.task), config, tree)
     size = job.points.count * job.layout.bytes_per_point
     if size > machine_memory():
@@ -108,12 +108,12 @@ def require_allowed_keys(tree: ConfigTree) -> None:
     For loads relative to flutter only the config is validated, because the points need a search for flutter,
     which the ranks of the run share.
     """
-    arm = validated(with_files_read(tree, Path())).parameters.arm
+    arm = validated_config(with_file_contents(tree, Path())).parameters.arm
     if arm is None or arm.load_axis not in RELATIVE:
         job_from(tree)
 
 
-def _sections(task: str) -> dict[str, Collection[str]]:
+def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     """Allowed keys of each section of a task's config, by name of the section; "" is the top level."""
     fields = CONFIGS[task].model_fields
     inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
@@ -138,7 +138,7 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
     known = [key for keys in sections.values() for key in keys]
     close = similar_keys(name, known)
     if not close and name not in ArmSection.model_fields:
-        raise unknown(name, known)
+        raise unknown_argument_error(name, known)
     return close[0] if close else known[0]
 
 
@@ -151,25 +151,25 @@ class AxisRange(TypedDict):
     spacing: str
 
 
-@in_sentences("rs.linspace(0, 10, num=11)")
+@refusing_wrong_arguments("rs.linspace(0, 10, num=11)")
 def linspace(start: float | str, stop: float | str, num: int) -> AxisRange:
     """An axis of a sweep with `num` equally spaced values from start to stop.
 
     For a quantity of an arm, start and stop have units, as "2 kPa".
     """
-    return _range(start, stop, num, "linear")
+    return _axis_range(start, stop, num, "linear")
 
 
-@in_sentences("rs.logspace(10, 1e6, num=31)")
+@refusing_wrong_arguments("rs.logspace(10, 1e6, num=31)")
 def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
     """An axis of a sweep with `num` values from start to stop in equal ratios.
 
     start and stop are the end values, as for NumPy's `geomspace`, not exponents.
     """
-    return _range(start, stop, num, "log")
+    return _axis_range(start, stop, num, "log")
 
 
-def _range(start: float | str, stop: float | str, num: int, spacing: str) -> AxisRange:
+def _axis_range(start: float | str, stop: float | str, num: int, spacing: str) -> AxisRange:
     """An axis of a sweep as a range with the keys of an `AxisRange`; InputError for a masked value."""
     for name, value in (("start", start), ("stop", stop), ("num", num)):
         if np.ma.is_masked(value):

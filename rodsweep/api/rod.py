@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from pydantic import ValidationError
 
-from ..config.axes import DEFAULTS, REQUIRED, words
-from ..config.document.call_arguments import in_sentences, unknown
-from ..config.document.refusals import hint_of, sentence_of, similar_keys
+from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS, joined_names
+from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
+from ..config.document.refusals import sentence_of, similar_keys, unknown_key_hint
 from ..config.material import MaterialSection, with_profile_read
 from ..config.tasks import CONFIGS
-from ..config.values import as_number, short_repr
+from ..config.values import as_float, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.as_rod import material_of, parameters_of
@@ -56,7 +56,7 @@ class SoftRod:
 
     __slots__ = ("_material", "_values")
 
-    @in_sentences("rs.Rod(F=30, k1=1e4, k2=100, gamma3=0.01)")
+    @refusing_wrong_arguments("rs.Rod(F=30, k1=1e4, k2=100, gamma3=0.01)")
     def __init__(
         self,
         *,
@@ -71,7 +71,7 @@ class SoftRod:
         for name in parameters:
             if name not in PARAMETERS:
                 left = [other for other in (*PARAMETERS, "arm") if other not in given]
-                hint = hint_of(name, left if similar_keys(name, left) else (*PARAMETERS, "arm"))
+                hint = unknown_key_hint(name, left if similar_keys(name, left) else (*PARAMETERS, "arm"))
                 raise InputError(f"a rod has no parameter {name}; {hint}")
         material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
@@ -80,12 +80,16 @@ class SoftRod:
             given = parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
             material = material_of(arm) | beside
-        for name in REQUIRED:
+        for name in REQUIRED_PARAMETERS:
             if name not in given:
-                raise InputError(f"{name} is missing; give {words(REQUIRED, 'and')}, or an arm")
-        values = {name: given.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
-        self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
-        self._material = _material(material)
+                raise InputError(
+                    f"{name} is missing; give {joined_names(REQUIRED_PARAMETERS, 'and')}, or an arm"
+                )
+        values = {name: given.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
+        self._values = {
+            name: _parameter_value(name, value) for name, value in values.items() if value is not None
+        }
+        self._material = _material_section(material)
         build = STANDARD if self._material is None else self._material.build
         if arm is not None and build.section == "swelling":
             replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
@@ -96,7 +100,7 @@ class SoftRod:
         """Values of the parameters by name."""
         return dict(self._values)
 
-    @in_sentences("rod.replace(F=40)")
+    @refusing_wrong_arguments("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
         """A copy of the rod with new values of some parameters, or of law, section or profile."""
         values: dict[str, Any] = self._values | self._given_material | changed
@@ -107,39 +111,39 @@ class SoftRod:
         """The keys of the section `material` that differ from their defaults, with their values."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
-    @in_sentences("rod.spectrum(modes=4)")
+    @refusing_wrong_arguments("rod.spectrum(modes=4)")
     def spectrum(self, **options: Unpack[SpectrumKeywords]) -> Answer:
         """The `modes` leading eigenvalues (4 by default), growth_rate + i frequency in 1/tau2."""
         return self._answer("spectrum", options)
 
-    @in_sentences("rod.thresholds(F_max=100)")
+    @refusing_wrong_arguments("rod.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Forces up to `F_max` at which the rod starts to oscillate, flutters, and becomes stable again."""
         return self._answer("thresholds", options)
 
-    @in_sentences("rod.modes(nodes=65)")
+    @refusing_wrong_arguments("rod.modes(nodes=65)")
     def modes(self, **options: Unpack[ModesKeywords]) -> Answer:
         """The leading modes with adjoint modes, and the transient growth."""
         return self._answer("modes", options)
 
-    @in_sentences("rod.cycle(harmonics=8)")
+    @refusing_wrong_arguments("rod.cycle(harmonics=8)")
     def limit_cycle(self, **options: Unpack[LimitCycleKeywords]) -> Answer:
         """The limit cycle of the rod: period, amplitude, energy and Floquet multipliers."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
-    @in_sentences("rod.criticality(F_max=100)")
+    @refusing_wrong_arguments("rod.criticality(F_max=100)")
     def criticality(self, **options: Unpack[CriticalityKeywords]) -> Answer:
         """Criticality of every Hopf point up to `F_max`, and how its branch of cycles grows."""
         return self._answer("criticality", options)
 
-    @in_sentences('rod.branch(along="F")')
+    @refusing_wrong_arguments('rod.branch(along="F")')
     def branch(self, **options: Unpack[BranchKeywords]) -> Answer:
         """The branches of cycles, stable or not, followed in `along` from every Hopf point to their ends."""
         return self._answer("branch", options)
 
-    @in_sentences("rod.portrait(F_max=100)")
+    @refusing_wrong_arguments("rod.portrait(F_max=100)")
     def portrait(
         self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
     ) -> "RodPortrait":
@@ -150,11 +154,11 @@ class SoftRod:
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest
-        from .answers.rod_portrait import portrait_of
+        from .answers.rod_portrait import solved_portrait
 
         own = DescribedRod(parameters=self._values, material=self._given_material)
         request = PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy)
-        return portrait_of(repr(self), request, progress)
+        return solved_portrait(repr(self), request, progress)
 
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
 
@@ -178,7 +182,7 @@ class SoftRod:
         known = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:
             if name not in known and not similar_keys(name, known):
-                raise unknown(name, known)
+                raise unknown_argument_error(name, known)
         options = dict(options)
         progress = options.pop("progress", None)
         taken = CONFIGS[task].rod_parameters_used(options)
@@ -202,7 +206,7 @@ class SoftRod:
         return hash((*self._values.items(), repr(self._given_material)))
 
 
-def _material(given: Mapping[str, Any]) -> MaterialSection | None:
+def _material_section(given: Mapping[str, Any]) -> MaterialSection | None:
     """The validated section `material` of a rod; None if all values in `given` are None. Raises InputError
     for invalid values.
     """
@@ -220,16 +224,16 @@ def _material(given: Mapping[str, Any]) -> MaterialSection | None:
         raise InputError(sentence_of(CONFIGS["spectrum"], in_config)) from None
 
 
-def _number(name: str, value: Any) -> float:
+def _parameter_value(name: str, value: Any) -> float:
     """Value of the parameter `name` as a float; InputError if the value is no number."""
     try:
-        return as_number(plain_value(value))
+        return as_float(plain_value(value))
     except ValueError as error:
         raise InputError(f"parameters.{name}: {error}") from None
 
 
-_KEYWORDS = [
+_PARAMETER_KEYWORDS = [
     Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=float | None) for name in PARAMETERS
 ]
-_OF_MATERIAL = [signature(SoftRod).parameters[name] for name in ("arm", "law", "section", "profile")]
-SoftRod.__signature__ = Signature([*_KEYWORDS, *_OF_MATERIAL])  # type: ignore[attr-defined]
+_MATERIAL_KEYWORDS = [signature(SoftRod).parameters[name] for name in ("arm", "law", "section", "profile")]
+SoftRod.__signature__ = Signature([*_PARAMETER_KEYWORDS, *_MATERIAL_KEYWORDS])  # type: ignore[attr-defined]

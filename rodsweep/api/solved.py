@@ -17,7 +17,7 @@ import xarray as xr
 from ..results.file.creation import Plan
 from ..results.file.validation import FORMAT, PROGRAM
 from ..results.file.view import View
-from ..results.layouts.variables import Filled
+from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
 from ..tasks.running.job import Job, attributes_of
@@ -58,7 +58,7 @@ class SolvedPoints:
     statuses: Sequence[PointStatus]
     values: Mapping[str, np.ndarray] = field(repr=False)
     """Variables of the layout by name, shape (points, own dimensions)."""
-    filled: Sequence[Filled] = field(repr=False)
+    filled: Sequence[FilledVariable] = field(repr=False)
     """Variables of the file that do not belong to single points."""
     history: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..results.file.creation import Plan
-from ..results.file.provenance import now, united_reasons
+from ..results.file.provenance import joined_failure_reasons, utc_time
 from ..results.file.view import View
-from ..results.layouts.variables import Filled
+from ..results.layouts.variables import FilledVariable
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.exclusive import exclusive_solve
@@ -23,19 +23,21 @@ from ..tasks.protocol import JointVariables, NamedArrays, Solver
 from ..tasks.running.failures import FailureReasons, parameters_in_words
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
-from ..tasks.running.unforeseen_exceptions import PointNote, guarded_solver
+from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
 from ..watch import reporting_to, solve_part
 from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
 
 Display = ProgressReporter | SilentProgress
 """Progress display, or its silent substitute."""
-_warm: set[str] = set()
+_compiled_tasks: set[str] = set()
 """Names of the tasks whose solvers are already compiled in this process."""
 
 
 @exclusive_solve
-def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = None) -> SolvedPoints:
+def solve_here(
+    job: Job, note: PointExceptionNote | None = None, progress: bool | None = None
+) -> SolvedPoints:
     """Solves all points of a job in this process, and returns the results.
 
     note: function called with every unforeseen exception, after which the point has the status `failed`;
@@ -46,13 +48,13 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
     shown = progress_display(progress, job.points.count, job.name)
     require_solvers()
     solver = job.solver()
-    started = now()
+    started = utc_time()
     if note is not None:
         solver = guarded_solver(solver, job.layout, note)
     plan = plan_in_memory(job, solver.statuses)
-    if job.config.task not in _warm:
+    if job.config.task not in _compiled_tasks:
         solver.warm_up()
-        _warm.add(job.config.task)
+        _compiled_tasks.add(job.config.task)
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
         shown(0)
@@ -75,12 +77,12 @@ def solve_here(job: Job, note: PointNote | None = None, progress: bool | None = 
         statuses=solver.statuses,
         values=values,
         filled=filled,
-        history=_history(started, reasons),
+        history=_solve_attributes(started, reasons),
         messages=messages,
     )
 
 
-def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
+def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
     """Attributes of a result whose solve ends now. started: time at which the solve started. reasons: reasons
     why points failed.
     """
@@ -92,8 +94,8 @@ def _history(started: str, reasons: Sequence[str]) -> dict[str, Any]:
         "hosts": socket.gethostname(),
         "started": started,
         "stopped": "",
-        **united_reasons("\n".join(reasons)),
-        "finished": now(),
+        **joined_failure_reasons("\n".join(reasons)),
+        "finished": utc_time(),
     }
 
 
@@ -108,7 +110,9 @@ def _solve_points(
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
     left = range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, flat, shown)
-    for done, (index, outcome) in enumerate(_outcomes(left, count, solver, shown), count - len(left) + 1):
+    for done, (index, outcome) in enumerate(
+        _solve_outcomes(left, count, solver, shown), count - len(left) + 1
+    ):
         record = solver.record(index, outcome)
         for name, array in flat.items():
             array[index] = record[name]
@@ -143,7 +147,7 @@ def _solve_stretches(
     return left
 
 
-def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[Filled]:
+def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[FilledVariable]:
     """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
     progress display.
     """
@@ -151,12 +155,14 @@ def _solve_joint_variables(together: JointVariables, view: View, shown: Display)
     results = dict[int, NamedArrays]()
     while items is not None and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
-        with solve_part(name), reporting_to(progress_listener(shown, name)):
+        with solve_part(name), reporting_to(display_listener(shown, name)):
             results[chosen[0]] = together.solve(items, chosen[0])
     return together.variables(view, items, results)
 
 
-def _outcomes(left: Sequence[int], count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
+def _solve_outcomes(
+    left: Sequence[int], count: int, solver: Solver, shown: Display
+) -> Iterator[tuple[int, Any]]:
     """Solves the points with flat indices `left`; yields (flat index, outcome) of each point. Along a chain,
     each point starts from the solution of the previous point.
 
@@ -170,7 +176,7 @@ def _outcomes(left: Sequence[int], count: int, solver: Solver, shown: Display) -
         name = f"point {done + 1} of {count}" if count > 1 else ""
         with (
             solve_part(name, (done / count, (done + 1) / count)),
-            reporting_to(progress_listener(shown, name)),
+            reporting_to(display_listener(shown, name)),
         ):
             yield
 
@@ -205,7 +211,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     return ProgressReporter(total, title, live=True) if shown else SilentProgress()
 
 
-def progress_listener(shown: Display, name: str) -> RankListener:
+def display_listener(shown: Display, name: str) -> RankListener:
     """Listener that shows the progress of the solve `name` in the display `shown`. Ctrl-C still raises
     KeyboardInterrupt.
     """

@@ -13,8 +13,8 @@ from typing import Any
 
 import xarray as xr
 
-from ..config.document.call_arguments import in_sentences
-from ..config.document.reading import yaml_of
+from ..config.document.call_arguments import refusing_wrong_arguments
+from ..config.document.reading import tree_yaml
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from .dataset import open_result
@@ -29,7 +29,7 @@ MAX_QUOTED_LENGTH = 2000
 """Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
 
 
-@in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
+@refusing_wrong_arguments('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
 def sweep(
     task: str,
     *,
@@ -61,11 +61,11 @@ def sweep(
     tree = config_tree(task, keywords)
     if ranks is not None:
         require_allowed_keys(tree)
-        return _on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
-    return solve_here(job_from(tree), None if strict else _warn, progress).dataset
+        return _solve_on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
+    return solve_here(job_from(tree), None if strict else _warn_of_failed_points, progress).dataset
 
 
-def _warn(indices: Sequence[int], error: Exception) -> None:
+def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
     """Issues a RuntimeWarning with the traceback of an unforeseen exception. indices: flat indices of the
     failed points.
     """
@@ -76,10 +76,10 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
     warnings.warn(f"{points}: {describe_exception(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 
 
-def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
+def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
     """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
     directory. tree: config tree. strict: as in `sweep`. shown: progress display. Raises EnvironmentIncomplete
-    if mpiexec cannot be started, or the exception of `_failure`.
+    if mpiexec cannot be started, or the exception of `_run_failure_exception`.
     """
     points = tree["parameters"].get("points")
     if points is not None:
@@ -87,15 +87,15 @@ def _on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Disp
     with TemporaryDirectory(prefix="rodsweep-") as folder:
         config = Path(folder, f"{task}.yaml")
         output = Path(folder, f"{task}.h5")
-        config.write_text(yaml_of(tree), encoding="utf-8")
-        words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
+        config.write_text(tree_yaml(tree), encoding="utf-8")
+        words = [_mpiexec_path(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
         try:
             status, errors = _run_with_progress(words, folder, shown)
         except OSError as error:
             raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPLETE_STATUSES:
-            raise _failure(words[0], status, errors, begun=output.exists())
+            raise _run_failure_exception(words[0], status, errors, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
@@ -125,7 +125,7 @@ def _run_with_progress(words: list[str], folder: str, shown: Display) -> tuple[i
         shown.close()
 
 
-def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
+def _run_failure_exception(launcher: str, status: int, errors: str, begun: bool) -> Exception:
     """Exception for a run that did not complete.
 
     begun: whether the ranks had created the result file. launcher: path of mpiexec. status: exit status of
@@ -140,7 +140,7 @@ def _failure(launcher: str, status: int, errors: str, begun: bool) -> Exception:
     return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MAX_QUOTED_LENGTH:]}")
 
 
-def _mpiexec() -> str:
+def _mpiexec_path() -> str:
     """Path of mpiexec in the folder of this Python, else on the search path; EnvironmentIncomplete if mpiexec
     is not found.
     """

@@ -69,13 +69,13 @@ def peer_package(directory: Path | None) -> ModuleType | None:
     no checkout.
     """
     if directory is not None:
-        return _loaded(directory)
+        return _import_directory(directory)
     own = CHECKOUT_FOLDER / PEER_PACKAGE_NAME
     there = (CHECKOUT_FOLDER / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
-    return _loaded(own) if there else None
+    return _import_directory(own) if there else None
 
 
-def _loaded(directory: Path) -> ModuleType:
+def _import_directory(directory: Path) -> ModuleType:
     refusal = InputError(
         f"--peers {directory} must be the folder `{PEER_PACKAGE_NAME}` of a checkout of rodsweep"
     )
@@ -94,7 +94,7 @@ def _loaded(directory: Path) -> ModuleType:
     return package
 
 
-def study_peers(package: ModuleType | None, study: str, quick: bool, folder: Path) -> Peers:
+def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: Path) -> Peers:
     """Contribution of the installed peers to the study with the name `study`. package: as returned by
     `peer_package`. quick: whether to use fewer settings. folder: empty directory in which programs are
     compiled. NO_PEERS if there is no package, or the package has no such study.

@@ -111,7 +111,7 @@ class TimedRuns(NamedTuple, Generic[Outcome]):
         return median(self.seconds)
 
 
-def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
+def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[TimedRuns[Outcome]]:
     """Results and times of the functions `runs`, called in turn, round by round. rounds: number of timed
     rounds of each function.
 
@@ -180,7 +180,7 @@ def measure_cases(
     rounds."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
-    raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
+    raced = time_runs(runs, [0 if contender.slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, raced, strict=True):
         least = min(timed.seconds)

@@ -31,18 +31,20 @@ MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
     },
 }
 """Arguments of `click.option` for the options of shape and material that are not quantities, by option."""
-Command = Callable[..., Any]
+CommandFunction = Callable[..., Any]
 """Function of a command."""
 
 
-def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Callable[[Command], Command]:
+def arm_options(
+    left_out: Collection[str] = (), is_needed: bool = True
+) -> Callable[[CommandFunction], CommandFunction]:
     """Decorator that adds the options of an arm's material, and an option for each quantity except the
     quantities in `left_out`.
 
     is_needed: whether the options of indispensable quantities are required.
     """
 
-    def add_options(command: Command) -> Command:
+    def add_options(command: CommandFunction) -> CommandFunction:
         for name in reversed([name for name in UNITS if name not in left_out]):
             command = _quantity_option(name, is_needed and QUANTITIES[name].needed)(command)
         for option, settings in reversed(MATERIAL_OPTIONS.items()):
@@ -52,7 +54,7 @@ def arm_options(left_out: Collection[str] = (), is_needed: bool = True) -> Calla
     return add_options
 
 
-def _quantity_option(name: str, required: bool) -> Callable[[Command], Command]:
+def _quantity_option(name: str, required: bool) -> Callable[[CommandFunction], CommandFunction]:
     """Decorator that adds the option of one quantity of an arm. name: name of the quantity. required: whether
     the option is required.
     """

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from ..errors import EnvironmentIncomplete
-from ..results.file.provenance import cpu_name, now, provenance
+from ..results.file.provenance import cpu_name, provenance, utc_time
 from ..solve.backend import petsc
 
 MEASURED_COMMAND = (sys.executable, "-m", f"{__package__}.measured_command")
@@ -33,7 +33,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.peers import Peers, peer_package, peers_left_out, study_peers
+        from ..bench.peers import Peers, peer_package, peers_left_out, peers_of_study
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
@@ -53,13 +53,13 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     package = peer_package(directory)
     names = [what] if what else list(studies)
     tables = {}
-    blocks = [REPORT_HEADING, machine_line(package.versions() if package else {})]
+    blocks = [REPORT_HEADING, machine_and_versions_line(package.versions() if package else {})]
     if package is None and (sentence := peers_left_out(names)):
         blocks.append(sentence)
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
         with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
-            study = studies[name](quick, study_peers(package, name, quick, Path(folder)))
+            study = studies[name](quick, peers_of_study(package, name, quick, Path(folder)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))
@@ -74,12 +74,12 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
 
 def machine_attributes() -> dict[str, str]:
     """Processor, date and versions, as attributes of the file of measurements."""
-    return {"processor": cpu_name(), "created": now()} | provenance() | petsc.versions()
+    return {"processor": cpu_name(), "created": utc_time()} | provenance() | petsc.versions()
 
 
-def machine_line(peers: Mapping[str, str]) -> str:
+def machine_and_versions_line(peers: Mapping[str, str]) -> str:
     """Processor, date and versions in one line of text. peers: versions of the peers by name."""
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
     where = ", ".join(f"{name} {its}" for name, its in (shown | dict(peers)).items())
-    return f"One core of {cpu_name()}, {platform.system()}, {now()[:10]}; {where}. Threads: one."
+    return f"One core of {cpu_name()}, {platform.system()}, {utc_time()[:10]}; {where}. Threads: one."

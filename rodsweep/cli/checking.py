@@ -7,14 +7,14 @@ from rich.console import Console
 from rich.table import Table
 
 from ..config.arm.axes import SLENDER
-from ..config.arm.quantities import given_text
+from ..config.arm.quantities import quantities_as_typed
 from ..config.arm.section import ArmSection
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span_text
-from ..sweep.cost_estimate import MAX_SAMPLE
+from ..sweep.cost_estimate import MAX_SAMPLED_POINTS
 from ..sweep.points.points import Points
 from ..tasks.arm.points import NoRodStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
@@ -23,7 +23,7 @@ from ..verdict.checks import wall_check
 from ..wording import counted
 
 
-def describe_job(job: Job) -> None:
+def print_job_check(job: Job) -> None:
     """Prints the points, the modelled effects and the expected cost of a valid config."""
     console = Console(highlight=False, markup=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip())
@@ -45,7 +45,7 @@ def describe_job(job: Job) -> None:
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:
-        sampled = min(MAX_SAMPLE, job.points.count)
+        sampled = min(MAX_SAMPLED_POINTS, job.points.count)
         console.print(
             f"warning: {cost.too_large} of {sampled} sampled points need more than the "
             f"{RESOLUTION_SETTINGS.max_unknowns} unknowns allowed and will end with status failed; "
@@ -62,7 +62,7 @@ def _arm_lines(job: Job) -> list[str]:
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
     validity = validity_sentence(ArmValidity(job.config, job.points).at_rest(), when=" before anything moves")
     return [
-        f"the arm: {given_text(arm.quantity_axes)}{_material_text(arm)}",
+        f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",

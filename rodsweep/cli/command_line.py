@@ -9,8 +9,8 @@ from .. import __version__
 from ..errors import InputError
 from ..wording import counted
 from .arm_options import arm_options
-from .file_names import link_target, result_file, with_ending
-from .launchers import rank_variables
+from .file_names import link_target, result_file_path, with_suffix_replaced
+from .launchers import launcher_rank_values
 
 FILE_TYPE = click.Path(path_type=Path)
 """Type of arguments and options that name a file."""
@@ -51,7 +51,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
     from ..sweep.stop import StopRequest
 
-    stop = StopRequest(acknowledges=not rank_variables())
+    stop = StopRequest(acknowledges=not launcher_rank_values())
     stop.listen()  # first: a launcher's warning signal may come before slow imports are done
     from ..sweep.points.ranges import shard_of
     from .run.options import RunOptions
@@ -64,7 +64,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
         )
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
-    output = result_file(output or Path(config.stem + suffix))
+    output = result_file_path(output or Path(config.stem + suffix))
     code = run_config(config, output, RunOptions(overrides=overrides, shard=part, **options), stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
@@ -79,7 +79,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from ..tasks.running.job import plan_without_solver
     from .run.running import STOPPED_STATUS
 
-    output = result_file(output)
+    output = result_file_path(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources = counted(len(shards), "file")
     click.echo(f"{output}: {merged.points} points from {sources}, {merged.missing} missing")
@@ -99,7 +99,7 @@ def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.current_state import write_snapshot
 
-    output = result_file(output or with_ending(file, f"-snapshot{file.suffix}"))
+    output = result_file_path(output or with_suffix_replaced(file, f"-snapshot{file.suffix}"))
     done, points = write_snapshot(link_target(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
@@ -110,9 +110,9 @@ def snapshot(file: Path, output: Path | None) -> None:
 def check(config: Path, overrides: tuple[str, ...]) -> None:
     """Validate CONFIG and print the points, the modelled effects and the expected cost, without computing."""
     from ..tasks.running.job import make_job
-    from .checking import describe_job
+    from .checking import print_job_check
 
-    describe_job(make_job(config, overrides))
+    print_job_check(make_job(config, overrides))
 
 
 @commands.command()

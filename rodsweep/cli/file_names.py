@@ -10,7 +10,7 @@ RESULT_ENDINGS = (".h5", ".hdf5", ".nc")
 """Allowed endings of the names of result files."""
 
 
-def result_file(path: Path) -> Path:
+def result_file_path(path: Path) -> Path:
     """Path of a result file, symbolic links resolved; InputError for a directory or a wrong ending."""
     endings = ", ".join(RESULT_ENDINGS)
     if path.is_dir() or not path.name:
@@ -20,7 +20,7 @@ def result_file(path: Path) -> Path:
     return link_target(path)
 
 
-def with_ending(file: Path, ending: str) -> Path:
+def with_suffix_replaced(file: Path, ending: str) -> Path:
     """Path of `file` with its suffix replaced by `ending`; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")

@@ -3,7 +3,7 @@
 import os
 
 
-def rank_variables() -> list[str]:
+def launcher_rank_values() -> list[str]:
     """Values of the environment variables in which launchers store the rank of a process; empty if the
     process was started without a launcher.
     """
@@ -13,4 +13,4 @@ def rank_variables() -> list[str]:
 
 def prints_messages() -> bool:
     """Whether this process prints messages before MPI is started: rank 0, or a process without a launcher."""
-    return next(iter(rank_variables()), "0") == "0"
+    return next(iter(launcher_rank_values()), "0") == "0"

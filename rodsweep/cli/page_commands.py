@@ -1,4 +1,4 @@
-"""Commands that write figures, tables and pages from results, and `explore`, a local page."""
+"""Commands that write figures, tables and pages from results, and `serve_page`, a local page."""
 
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
-from .file_names import link_target, with_ending
+from .file_names import link_target, with_suffix_replaced
 from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
 
 PORT_TYPE = click.IntRange(0, 65535)
@@ -78,8 +78,8 @@ def plot(
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
-    output = output or with_ending(files[0], ".gif" if what == "animation" else ".png")
-    values = _values(at)
+    output = output or with_suffix_replaced(files[0], ".gif" if what == "animation" else ".png")
+    values = _parsed_at_values(at)
     views = [section(read_view(link_target(file)), values) for file in files]
     drawn = draw(
         views, output, look=FigureLook(**look), shapes=with_shapes, roots=roots, what=what, points=points
@@ -87,7 +87,7 @@ def plot(
     click.echo(drawn)
 
 
-def _values(at: tuple[str, ...]) -> dict[str, str]:
+def _parsed_at_values(at: tuple[str, ...]) -> dict[str, str]:
     """Values of the options `--at NAME=VALUE`, by name; InputError for a text without "="."""
     found = {}
     for text in at:
@@ -113,7 +113,7 @@ def export(
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
-    output = link_target(output or with_ending(file, ".csv"))
+    output = link_target(output or with_suffix_replaced(file, ".csv"))
     names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
     request = ExportRequest(table=table, columns=names, units=units, replace=replace)
     click.echo(f"wrote {output}: {export_view(read_view(link_target(file)), output, request)}")
@@ -128,7 +128,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
-    output = link_target(output or with_ending(files[0], ".html"))
+    output = link_target(output or with_suffix_replaced(files[0], ".html"))
     require_page(output, files)
     click.echo(write_report([read_view(link_target(file)) for file in files], output, with_shapes))
 
@@ -177,6 +177,6 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
 @click.option("--open", "is_opened", is_flag=True, help="Open the page in the browser.")
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
     """Explore a rod or an arm live on a local page, from the result FILE, a CONFIG, or an example."""
-    from ..explore.starting import explore as start
+    from ..explore.starting import serve_page as start
 
     start(None if source is None else link_target(source), port, is_opened)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod
     from ..results.file.view import View
     from ..sweep.progress import ProgressReporter
-    from ..tasks.rod_portrait import Solve
+    from ..tasks.rod_portrait import SolveJob
     from ..tasks.running.job import Job
 
 QUANTITIES_WITHOUT_OPTION = (*LOADS, "fluid_density", "density_difference")
@@ -33,7 +33,7 @@ def rod_of_options(
     section and profile. Values of omitted options are None. A parameter given in addition to an arm replaces
     the arm's parameter.
     """
-    from ..config.axes import DEFAULTS, REQUIRED
+    from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
     from ..model.arm.arm import SlenderArm
     from ..post.rod_portrait.results import DescribedRod
     from .arm_report import as_options
@@ -48,13 +48,13 @@ def rod_of_options(
         except InputError as error:
             raise InputError(as_options(str(error))) from None
         return DescribedRod(parameters=own, material=_read_material(words), arm=of_arm)
-    for name in REQUIRED:
+    for name in REQUIRED_PARAMETERS:
         if name not in own:
             raise InputError(
-                f"--{name} is missing; give {', '.join(f'--{each}' for each in REQUIRED)}, or the quantities "
-                "of an arm, such as --length"
+                f"--{name} is missing; give {', '.join(f'--{each}' for each in REQUIRED_PARAMETERS)}, "
+                "or the quantities of an arm, such as --length"
             )
-    values = {name: own.get(name, DEFAULTS.get(name)) for name in PARAMETERS}
+    values = {name: own.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
     return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(words))
 
 
@@ -71,7 +71,7 @@ def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @contextmanager
-def solve_with_progress(shown: "ProgressReporter", solve: "Solve") -> "Iterator[Solve]":
+def solve_with_progress(shown: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
     numbers = count(1)
 

@@ -12,7 +12,7 @@ from ..config.schema import Config
 from ..results.file.creation import Plan
 from ..solve.backend.availability import require_solvers, start_solvers
 from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod
-from ..sweep.points.grid import flutter_rods
+from ..sweep.points.grid import rods_for_flutter_forces
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
 from ..tasks.protocol import Task
@@ -57,7 +57,7 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
 
     None if a stop signal came before the computation ended.
     """
-    rods = team.on_first(lambda: flutter_rods(config))
+    rods = team.on_first(lambda: rods_for_flutter_forces(config))
     if not all(rod.standard for rod in rods):  # a rank without a rod must start PETSc with the others
         team.require_on_all_ranks(require_solvers)
         team.require_on_all_ranks(start_solvers)

@@ -7,25 +7,27 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
-from .arm.axes import MOST_POINTS, names_over, parameter_of_axis
+from .arm.axes import MOST_POINTS, grid_axis_names, parameter_of_axis
 from .arm.section import ArmSection
 from .values import Axis, Number, StrictSection, Text, Values
 
-BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
+NONLINEAR_ONLY_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 """Names of the parameters on which limit cycles depend but the linear problem does not."""
-REQUIRED = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
+REQUIRED_PARAMETERS = tuple(p.name for p in PARAMETERS.values() if p.default is None and p.name != "F")
 """Names of the parameters without a default, except F."""
-DEFAULTS = {p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional}
+DEFAULT_VALUES_OF_PARAMETERS = {
+    p.name: p.default for p in PARAMETERS.values() if p.default is not None and not p.optional
+}
 """Default value, by name, of each parameter with a default, without the optional parameters."""
 
 
-def _section(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
+def _section_with_keys(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
     """Subclass of `base` with an additional optional key of the type `kind` for each name in `names`."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), Values)
+LinearAxes: Any = _section_with_keys(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), Values)
 
 
 class Axes(LinearAxes):
@@ -54,7 +56,11 @@ class Axes(LinearAxes):
         arm is given."""
         if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
-        return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
+        return {
+            name: DEFAULT_VALUES_OF_PARAMETERS[name]
+            for name in cls.of_arm
+            if name in DEFAULT_VALUES_OF_PARAMETERS
+        } | given
 
     @model_validator(mode="after")
     def _columns_of_points(self) -> "Axes":
@@ -94,7 +100,7 @@ class Axes(LinearAxes):
         if self.arm is None:
             return ()
         given = self.arm.quantity_axes | self.given_axes
-        return names_over({name: axis.size for name, axis in given.items()}, self.in_diagram)
+        return grid_axis_names({name: axis.size for name, axis in given.items()}, self.in_diagram)
 
     @property
     def single_parameter_sizes(self) -> dict[str, int]:
@@ -130,7 +136,7 @@ class Axes(LinearAxes):
         missing = [name for name in names if name not in self.axes]
         if missing and self.points is None:
             hint = ", or points: FILE.csv" if or_points else ""
-            raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
+            raise ValueError(f"parameters.{missing[0]} is missing; give {joined_names(names, 'and')}{hint}")
 
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
         """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
@@ -150,8 +156,8 @@ class Axes(LinearAxes):
             arm.grid_axes()
 
 
-AxesAndNumbers: Any = _section(Axes, BEYOND_LINEAR, Number)
-AllAxes: Any = _section(Axes, BEYOND_LINEAR, Values)
+AxesAndNumbers: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, Number)
+AllAxes: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, Values)
 
 
 class LinearParameters(AxesAndNumbers):
@@ -173,6 +179,6 @@ class NonlinearParameters(AllAxes):
     of_arm: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
 
 
-def words(names: tuple[str, ...], last: str) -> str:
+def joined_names(names: tuple[str, ...], last: str) -> str:
     """The names joined for a sentence, like "a, b and c". last: conjunction before the last name."""
     return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

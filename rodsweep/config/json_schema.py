@@ -19,8 +19,8 @@ from pydantic import BaseModel
 
 from ..model.arm.quantities import LOADS, QUANTITIES, RELATIVE, SECTION_SIDES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .arm.axes import ALL_BUT_LOAD, LOAD_AXES
-from .document.refusals import model_of
+from .arm.axes import LOAD_AXES, NON_LOAD_KEYS
+from .document.refusals import value_type_of_key
 from .tasks import CONFIGS
 from .values import Axis, StrictSection
 
@@ -28,14 +28,14 @@ Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """Template of a regular expression for a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in ALL_BUT_LOAD if not QUANTITIES[name].signed},
+    **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
     **{name: {"minimum": 0} for name in RELATIVE},
 }
 """Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """Address of draft 7 of JSON schema, which most editors support."""
-BOUNDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
+BOUND_KEYWORDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
 """JSON schema keyword by pydantic's name of a bound. pydantic does not convert the bounds of values that pass
 through a validator function."""
 
@@ -51,15 +51,15 @@ def json_schema() -> dict[str, Any]:
         for section in sections_of(config):
             _describe_keys(definitions[section.__name__], section)
         if not config.others_may_be_needed:
-            condition = points_of(config.rod_parameters_used({}), lists=not config.of_several_rods)
+            condition = points_condition(config.rod_parameters_used({}), lists=not config.of_several_rods)
             schema["properties"]["parameters"] = {"allOf": [schema["properties"]["parameters"], condition]}
         tasks.append(schema)
     for section in definitions.values():
-        with_bounds(section.get("properties", {}), definitions["Axis"])
+        add_parameter_bounds(section.get("properties", {}), definitions["Axis"])
     add_arm_conditions(definitions["ArmSection"], definitions["Axis"])
     whole = {"oneOf": tasks, "definitions": definitions}
     for node in iterate_subschemas(whole):
-        for ours, theirs in BOUNDS.items():
+        for ours, theirs in BOUND_KEYWORDS.items():
             if ours in node:
                 bound = node.pop(ours)
                 if isfinite(bound):
@@ -70,7 +70,7 @@ def json_schema() -> dict[str, Any]:
 def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
     """Yields the classes of the sections of a config, including nested sections."""
     for field in config.model_fields.values():
-        kind = model_of(field)
+        kind = value_type_of_key(field)
         if isinstance(kind, type) and issubclass(kind, StrictSection) and not issubclass(kind, Axis):
             yield kind
             yield from sections_of(kind)
@@ -113,19 +113,19 @@ def key_is_given(name: str) -> Schema:
     return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
 
 
-def none_of(names: Iterable[str]) -> Schema:
+def no_key_given(names: Iterable[str]) -> Schema:
     """JSON schema of the condition that no key in `names` is given."""
     return {"not": {"anyOf": [key_is_given(name) for name in names]}}
 
 
-def all_of(names: Iterable[str], *more: Schema) -> Schema:
+def all_keys_given(names: Iterable[str], *more: Schema) -> Schema:
     """JSON schema of the condition that all keys in `names` are given and all schemas in `more` are
     satisfied.
     """
     return {"allOf": [*map(key_is_given, names), *more]}
 
 
-def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
+def with_axis_bounds(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
     """Copy of the JSON schema of an axis, with bounds on every number. bound: JSON schema keywords of the
     bounds. words: allowed spellings of inf.
     """
@@ -140,7 +140,7 @@ def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] =
     return copy
 
 
-def with_bounds(properties: Schema, axis: Schema) -> None:
+def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
     """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place.
 
     axis: JSON schema of an axis without bounds.
@@ -149,7 +149,9 @@ def with_bounds(properties: Schema, axis: Schema) -> None:
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
             words = ("inf", "+inf") if parameter.rigid else ()
-            properties[name]["anyOf"] = [bounded(kind, parameter.allowed.bound, words) for kind in kinds]
+            properties[name]["anyOf"] = [
+                with_axis_bounds(kind, parameter.allowed.bound, words) for kind in kinds
+            ]
 
 
 def add_arm_conditions(section: Schema, axis: Schema) -> None:
@@ -162,7 +164,7 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
         bound = BOUNDS_OF_ARM.get(name, {})
         if "anyOf" in key:
             kinds = [axis if "$ref" in kind else kind for kind in key["anyOf"]]
-            key["anyOf"] = [bounded(kind, bound) for kind in kinds]
+            key["anyOf"] = [with_axis_bounds(kind, bound) for kind in kinds]
         if name not in QUANTITIES:
             continue
         sign = "[+]?" if bound else "[+-]?"
@@ -171,32 +173,35 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
             if node.get("type") == "string":
                 node["pattern"] = pattern
     of_one = ["length", "young"]
-    circle = all_of([*of_one, "radius"], none_of(["width", "height", "segments"]))
-    rectangle = all_of([*of_one, "width", "height"], none_of([*SECTION_SIDES[0], "segments"]))
-    pieces = all_of(["segments"], none_of([*SECTION_SIDES[0], *SECTION_SIDES[1]]))
+    circle = all_keys_given([*of_one, "radius"], no_key_given(["width", "height", "segments"]))
+    rectangle = all_keys_given([*of_one, "width", "height"], no_key_given([*SECTION_SIDES[0], "segments"]))
+    pieces = all_keys_given(["segments"], no_key_given([*SECTION_SIDES[0], *SECTION_SIDES[1]]))
     section["allOf"] = [
         {"oneOf": [circle, rectangle, pieces]},
-        {"not": all_of(["inner_radius", "tip_radius"])},
-        *({"not": all_of(pair)} for pair in combinations(LOAD_AXES, 2)),
+        {"not": all_keys_given(["inner_radius", "tip_radius"])},
+        *({"not": all_keys_given(pair)} for pair in combinations(LOAD_AXES, 2)),
     ]
 
 
-def points_of(needed: Iterable[str], lists: bool) -> Schema:
+def points_condition(needed: Iterable[str], lists: bool) -> Schema:
     """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
     needed: names of the parameters of the task. lists: whether the task accepts a file of points. If F is
     needed, either the arm has a load or F is given; otherwise both are forbidden.
     """
     axes = tuple(name for name in needed if PARAMETERS[name].default is None)
-    loads = [all_of([name]) for name in LOAD_AXES]
+    loads = [all_keys_given([name]) for name in LOAD_AXES]
     loaded = {"properties": {"arm": {"anyOf": loads}}}
-    unloaded = {"properties": {"arm": none_of(LOAD_AXES)}}
+    unloaded = {"properties": {"arm": no_key_given(LOAD_AXES)}}
     load = {"oneOf": [key_is_given("F"), loaded]} if "F" in axes else unloaded
-    none_listed = none_of(["points", "columns"])
-    ways = [all_of(axes, none_of(["arm"]), none_listed), all_of(["arm"], none_listed, load)]
+    none_listed = no_key_given(["points", "columns"])
+    ways = [
+        all_keys_given(axes, no_key_given(["arm"]), none_listed),
+        all_keys_given(["arm"], none_listed, load),
+    ]
     if lists:
-        ways.append(all_of(["points"], none_of(["arm", *LINEAR_PARAMETERS])))
-    return {"anyOf": ways} if "F" in axes else {"anyOf": ways, **none_of(["F"])}
+        ways.append(all_keys_given(["points"], no_key_given(["arm", *LINEAR_PARAMETERS])))
+    return {"anyOf": ways} if "F" in axes else {"anyOf": ways, **no_key_given(["F"])}
 
 
 def iterate_subschemas(schema: Any) -> Iterable[Schema]:

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from ..model.material.build import STANDARD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
-from .arm.shape import OF_MATERIAL, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
+from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
 from .material import MaterialSection
 from .values import Number, StrictSection, Text
@@ -137,7 +137,7 @@ class Config(StrictSection):
         arm = self.parameters.arm
         if arm is None:
             return self
-        own = next((name for name in (*OF_MATERIAL, *SHAPE_KEYS) if getattr(arm, name) is not None), "")
+        own = next((name for name in (*MATERIAL_KEYS, *SHAPE_KEYS) if getattr(arm, name) is not None), "")
         if self.material is not None and own:
             raise ValueError(
                 f"material and parameters.arm.{own} are both given; give law and section in parameters.arm"

@@ -20,7 +20,7 @@ class StrictSection(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
-def as_number(value: Any) -> float:
+def as_float(value: Any) -> float:
     """Float from a YAML number or the texts inf and -inf; ValueError for other values."""
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
@@ -35,7 +35,7 @@ def as_number(value: Any) -> float:
     return number
 
 
-def overflows(text: str) -> bool:
+def overflows_float(text: str) -> bool:
     """Whether a text is a decimal number that is too large for a float, such as 1e400."""
     try:
         return any(c.isdigit() for c in text) and not text.lstrip("+-").isdigit() and isinf(float(text))
@@ -45,9 +45,9 @@ def overflows(text: str) -> bool:
 
 def cell_number(cell: str) -> float:
     """Float from the text in a cell of a CSV file; ValueError for a text that is no number."""
-    if "_" in cell or not cell.isascii() or overflows(cell):
+    if "_" in cell or not cell.isascii() or overflows_float(cell):
         raise ValueError
-    return as_number(float(cell))
+    return as_float(float(cell))
 
 
 def short_repr(value: Any) -> str:
@@ -86,7 +86,7 @@ def as_text(value: Any) -> Any:
 Text = Annotated[str, BeforeValidator(as_text)]
 Number = Annotated[
     float,
-    BeforeValidator(as_number),
+    BeforeValidator(as_float),
     PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
 ]
 """Type of a number in a config: a float. JSON stores infinite numbers as text."""
@@ -188,12 +188,12 @@ def as_axis(value: Any) -> Axis:
     if isinstance(value, Axis):
         return value
     if isinstance(value, dict):
-        return _range(value)
+        return _axis_from_range(value)
     if not isinstance(value, list | tuple):
-        return Axis(values=(as_number(value),))
+        return Axis(values=(as_float(value),))
     if not value:
         raise ValueError("the list is empty; give at least one number")
-    numbers = tuple(as_number(item) for item in value)
+    numbers = tuple(as_float(item) for item in value)
     if any(b <= a for a, b in zip(numbers[:-1], numbers[1:], strict=True)):
         raise ValueError(
             f"{short_repr(value)} is not sorted; list the numbers in increasing order, each once"
@@ -201,7 +201,7 @@ def as_axis(value: Any) -> Axis:
     return Axis(values=numbers)
 
 
-def _range(value: dict) -> Axis:
+def _axis_from_range(value: dict) -> Axis:
     known = ("start", "stop", "num", "spacing")
     for key in value:
         if key not in known:
@@ -209,8 +209,8 @@ def _range(value: dict) -> Axis:
     for key in known[:3]:
         if key not in value:
             raise ValueError(f"a range needs start, stop and num, and {key} is missing")
-    start = as_number(value["start"])
-    stop = as_number(value["stop"])
+    start = as_float(value["start"])
+    stop = as_float(value["stop"])
     num = value["num"]
     if isinstance(num, float) and num.is_integer():  # such as 1e3
         num = int(num)
@@ -232,10 +232,10 @@ def _range(value: dict) -> Axis:
     return Axis(start=start, stop=stop, num=num, spacing=spacing)
 
 
-def axis_of(resolved: dict[str, Any]) -> Axis:
+def axis_from_resolved(resolved: dict[str, Any]) -> Axis:
     """The `Axis` from its keys and values in a resolved config; ValueError or TypeError if invalid."""
     values = resolved.get("values")
-    return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_number, values))}))
+    return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_float, values))}))
 
 
 Values = Annotated[Axis, BeforeValidator(as_axis)]

@@ -14,7 +14,7 @@ from .scales import SCALES
 from .sharing import state_of_text
 from .solving import needs as kinds
 from .solving.diagrams import has_uniform_rods
-from .solving.needs import Needs, needs, state_to_solve
+from .solving.needs import AnswerInputs, answer_inputs, state_to_solve
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .solving.solving_status import progress_text, solving_text
@@ -43,9 +43,9 @@ class Page:
         self.solving: set[str] = set()
         self.progress: dict[str, str] = {}
         """Progress of each running solve, as text, by kind of question."""
-        self.asked: dict[str, Needs] = {}
+        self.asked: dict[str, AnswerInputs] = {}
         """Part of the state, and dragged tip, on which the latest question of each kind depends, see
-        `needs`."""
+        `answer_inputs`."""
         self.drawn_around: PageState | None = None
         """State around which the drawn diagram was solved; None before the first answer of a solver."""
         self.contents = PageContents(self.change, self.load)
@@ -53,7 +53,7 @@ class Page:
         self.contents.connect(document, self._connections())
         self.contents.beating.on_drag(self.drag)
         if stored is not None and stored.diagram is not None:
-            self.asked["diagram"] = needs(Question("diagram", state))
+            self.asked["diagram"] = answer_inputs(Question("diagram", state))
             self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
@@ -162,7 +162,7 @@ class Page:
     def _ask_slow_questions(self) -> None:
         self.contents.sharing.write()
         for kind in kinds.IDLE_KINDS:
-            if needs(Question(kind, self.state)) == self.asked.get(kind):
+            if answer_inputs(Question(kind, self.state)) == self.asked.get(kind):
                 continue
             if self.state.tab == "rod" and not has_uniform_rods(self.state):
                 self.asked.pop(kind, None)
@@ -180,7 +180,7 @@ class Page:
         state = state_to_solve(kind, self.state, self.drawn_around)
         filmed = self.stored if (kind, tip) == ("film", None) else None
         question = Question(kind, state, tip, None if filmed is None else filmed.cycle_to_film(state))
-        needed = needs(question)
+        needed = answer_inputs(question)
         if self.asked.get(kind) == needed:
             return
         self.asked[kind] = needed
@@ -207,7 +207,7 @@ class Page:
         kind = question.kind
         if (newest := self.asked.get(kind)) is None:  # the user has entered invalid values meanwhile
             return
-        is_newest = newest == needs(question)
+        is_newest = newest == answer_inputs(question)
         if reply.outcome == "progress":
             if is_newest and kind in self.solving:
                 self.progress[kind] = progress_text(**reply.content)
@@ -219,7 +219,7 @@ class Page:
             return
         if reply.outcome == "answer":
             if kind == "cycles":
-                self.asked["diagram"] = needs(replace(question, kind="diagram"))
+                self.asked["diagram"] = answer_inputs(replace(question, kind="diagram"))
             if kind in ("cycles", "diagram"):
                 self.drawn_around = question.state
             self.contents.show(kind, reply.content, question.state)

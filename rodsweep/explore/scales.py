@@ -9,7 +9,7 @@ from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
 from ..model.units import in_si
 from ..post.summary.arm.arm import quantity_words
-from .state import PageState, number, rod_of
+from .state import PageState, float_or_text, rod_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class ControlScale:
             if self.unit:
                 quantity = QUANTITIES[self.name]
                 return in_si(self.name, text, quantity.unit, quantity.example) * self.factor
-            found = number(text)
+            found = float_or_text(text)
         except InputError:
             return None
         return found if isinstance(found, float) else None
@@ -101,7 +101,7 @@ def length_axis(state: PageState) -> PictureAxis:
     return PictureAxis("L", 1.0) if length is None else PictureAxis(scale.unit, length)
 
 
-def _of_rod(
+def _rod_scale(
     name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False
 ) -> ControlScale:
     """Scale of a rod's parameter `name`. low, high, logarithmic, has_inf: as in `ControlScale`."""
@@ -111,7 +111,7 @@ def _of_rod(
     return ControlScale(name=name, label=label, low=low, high=high, logarithmic=logarithmic, has_inf=has_inf)
 
 
-def _of_arm(
+def _arm_scale(
     name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
     """Scale of an arm's quantity `name`. low, high, unit, factor, logarithmic: as in `ControlScale`."""
@@ -125,22 +125,22 @@ SCALES = {
     "rod": {
         scale.name: scale
         for scale in (
-            _of_rod("F", -20, 200, logarithmic=False),
-            _of_rod("k1", 10, 1e7, has_inf=True),
-            _of_rod("k2", 1, 1e7, has_inf=True),
-            _of_rod("gamma3", 1e-6, 10),
-            _of_rod("gamma1", 0.1, 10),
-            _of_rod("taper", 0.3, 2, logarithmic=False),
+            _rod_scale("F", -20, 200, logarithmic=False),
+            _rod_scale("k1", 10, 1e7, has_inf=True),
+            _rod_scale("k2", 1, 1e7, has_inf=True),
+            _rod_scale("gamma3", 1e-6, 10),
+            _rod_scale("gamma1", 0.1, 10),
+            _rod_scale("taper", 0.3, 2, logarithmic=False),
         )
     },
     "arm": {
         scale.name: scale
         for scale in (
-            _of_arm("length", 1, 100, "cm", 1e2),
-            _of_arm("radius", 0.5, 50, "mm", 1e3),
-            _of_arm("young", 1, 1e4, "kPa", 1e-3),
-            _of_arm("viscosity", 1e-2, 1e3, "Pa s", 1.0),
-            _of_arm("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
+            _arm_scale("length", 1, 100, "cm", 1e2),
+            _arm_scale("radius", 0.5, 50, "mm", 1e3),
+            _arm_scale("young", 1, 1e4, "kPa", 1e-3),
+            _arm_scale("viscosity", 1e-2, 1e3, "Pa s", 1.0),
+            _arm_scale("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
         )
     },
 }

@@ -26,9 +26,9 @@ from .solving.solvers import Solvers
 from .state import PageState
 from .stored_results import StoredResults
 
-ADDRESS = "127.0.0.1"
+LISTEN_ADDRESS = "127.0.0.1"
 """IP address on which the server listens."""
-HOSTS = (ADDRESS, "localhost")
+HOSTS = (LISTEN_ADDRESS, "localhost")
 """Host names under which a browser on this machine may open the page."""
 UNUSED_SESSION_MILLISECONDS = 5000
 """A session ends this time after its page was closed, in milliseconds; until then a page whose connection was
@@ -89,7 +89,7 @@ class ExploreServer:
     def __init__(self, state: PageState, stored: StoredResults | None = None, port: int = 0):
         self.state = state
         self.stored = stored
-        sockets = _bound(port)
+        sockets = _bound_sockets(port)
         self.port: int = sockets[0].getsockname()[1]
         self.solvers = Solvers()
         application = Application(FunctionHandler(self._open))
@@ -106,7 +106,7 @@ class ExploreServer:
     @property
     def url(self) -> str:
         """Address of the page, for a browser."""
-        return f"http://{ADDRESS}:{self.port}/"
+        return f"http://{LISTEN_ADDRESS}:{self.port}/"
 
     def start(self) -> None:
         """Starts the server and the solver processes. The server answers browsers once the event loop
@@ -128,10 +128,10 @@ class ExploreServer:
         document.on_session_destroyed(lambda context: page.close())
         context = document.session_context
         arguments = {} if context is None else context.request.arguments
-        page.open(_query(arguments))
+        page.open(_page_query(arguments))
 
 
-def _query(arguments: dict[str, list[bytes]]) -> str:
+def _page_query(arguments: dict[str, list[bytes]]) -> str:
     """Query string of the page's address, without Bokeh's own arguments. arguments: values by name, from the
     HTTP request.
     """
@@ -141,9 +141,9 @@ def _query(arguments: dict[str, list[bytes]]) -> str:
     return urlencode({name: text for name, text in own.items() if not name.startswith("bokeh-")})
 
 
-def _bound(port: int) -> list[socket.socket]:
+def _bound_sockets(port: int) -> list[socket.socket]:
     try:
-        return bind_sockets(port, ADDRESS)
+        return bind_sockets(port, LISTEN_ADDRESS)
     except OSError as error:
         raise InputError(f"--port {port}: {error.strerror}; without --port any free port is taken") from None
 

@@ -10,7 +10,7 @@ from bokeh.model import DataModel
 from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer, Row, Select
 
 from ..config.document.parsing import parse
-from ..config.document.reading import validated
+from ..config.document.reading import validated_config
 from ..errors import InputError
 from .page_style import style_sheet, template_text
 from .pictures.card import Card
@@ -158,4 +158,4 @@ def state_of_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     tree = parse(text, where)
     if not isinstance(tree, dict):
         raise InputError(f"{where} does not consist of keys and values; give task and parameters")
-    return state_of(validated(tree), Path(where), F_max)
+    return state_of(validated_config(tree), Path(where), F_max)

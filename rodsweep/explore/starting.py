@@ -7,7 +7,7 @@ from ..errors import InputError
 from .solving.forks import start_fork_server
 
 
-def explore(source: Path | None, port: int, is_opened: bool) -> None:
+def serve_page(source: Path | None, port: int, is_opened: bool) -> None:
     """Serves the page until the user presses Ctrl-C.
 
     source: result file or config whose rod or arm is shown first; None for a default rod. port: TCP port; 0

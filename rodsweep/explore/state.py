@@ -10,10 +10,10 @@ from urllib.parse import parse_qsl, urlencode
 
 from ..api.arm import Arm
 from ..api.rod import SoftRod
-from ..config.document.reading import yaml_of
-from ..config.document.refusals import hint_of
+from ..config.document.reading import tree_yaml
+from ..config.document.refusals import unknown_key_hint
 from ..config.tasks import CONFIGS
-from ..config.values import overflows, short_repr
+from ..config.values import overflows_float, short_repr
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 
@@ -97,7 +97,7 @@ class PageState:
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         for name, text in self.rod.items():
-            if overflows(text.strip()):
+            if overflows_float(text.strip()):
                 raise InputError(
                     f"parameters.{name}: {short_repr(text)} is too large for a floating-point number"
                 )
@@ -107,12 +107,12 @@ class PageState:
         """Parameters of the tab "rod" as numbers by name, without a taper of 1. A text that is not a number
         is returned as text.
         """
-        found = {name: number(text) for name, text in self.rod.items()}
+        found = {name: float_or_text(text) for name, text in self.rod.items()}
         return {name: value for name, value in found.items() if name != "taper" or value != 1}
 
     def largest_force(self) -> float:
         """`F_max` as a number. Raises InputError unless the number is finite and positive."""
-        value = number(self.F_max)
+        value = float_or_text(self.F_max)
         if not (isinstance(value, float) and 0 < value < float("inf")):
             raise InputError(
                 f"F_max = {short_repr(self.F_max)} is not allowed; it must be a finite number above 0"
@@ -134,7 +134,7 @@ class PageState:
         tree |= {"material": dict(LAWS[self.law])} if LAWS[self.law] else {}
         if task in LARGEST_FORCE_KEYS:
             tree[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
-        return yaml_of(tree)
+        return tree_yaml(tree)
 
     def python(self) -> str:
         """Python lines that solve the rod or arm of the visible tab with `rodsweep`."""
@@ -149,13 +149,13 @@ def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
     return subject.parameters if isinstance(subject, SoftRod) else SoftRod(arm=subject).parameters
 
 
-def number(text: str) -> Any:
+def float_or_text(text: str) -> Any:
     """`text` as a float; the unchanged text if it is not a valid number, for a later error message."""
     try:
         value = float(text)
     except ValueError:
         return text
-    return text if isnan(value) or overflows(text.strip()) else value
+    return text if isnan(value) or overflows_float(text.strip()) else value
 
 
 def from_address(query: str, default: PageState | None = None) -> PageState:
@@ -164,19 +164,21 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     """
     state = default or PageState()
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    tab = _choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
+    tab = _require_choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
-    law = _choice("law", given.pop("law", state.law), LAWS)
-    across = _choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
+    law = _require_choice("law", given.pop("law", state.law), LAWS)
+    across = _require_choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
     state = replace(state, law=law, across=across, F_max=given.pop("F_max", state.F_max))
     known = TAB_DEFAULTS[tab]
     for name in given:
         if name not in known:
-            raise InputError(f"unknown key {short_repr(name)} in the address; {hint_of(name, list(known))}")
+            raise InputError(
+                f"unknown key {short_repr(name)} in the address; {unknown_key_hint(name, list(known))}"
+            )
     return state.with_values(**given)
 
 
-def _choice(key: str, given: str, known: Any) -> str:
+def _require_choice(key: str, given: str, known: Any) -> str:
     """Returns `given` if it is one of `known`; raises InputError otherwise. key: name of the choice, for the
     message.
     """

@@ -64,18 +64,20 @@ def state_of(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageStat
     F_max = _largest_force(config, F_max)
     if config.parameters.arm is not None:
         return replace(_state_of_arm(config, path), F_max=F_max)
-    material = _law(config, path)
+    material = _law_key(config, path)
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
         raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
-    rod = {name: _text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()}
-    across = _across("rod", axes)
+    rod = {
+        name: _middle_value_text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()
+    }
+    across = _second_parameter("rod", axes)
     state = PageState(rod=rod, law=material, across=across, F_max=F_max)
     F = axes.get("F", np.zeros(1))
     if len(F) > 1:
         if material == "linear":
             F_possible = F[crushing_force({n: float(rod[n]) for n in ("k1", "taper")}) > F]
-            state = state.with_values(F=_text(F_possible if len(F_possible) else F))
+            state = state.with_values(F=_middle_value_text(F_possible if len(F_possible) else F))
         if F.max() > 0:
             state = replace(state, F_max=f"{F.max():g}")
     return state
@@ -88,7 +90,7 @@ def _largest_force(config: Config, default: str) -> str:
     key = LARGEST_FORCE_KEYS.get(config.task)
     options: Any = getattr(config, config.task, None)
     if key is not None and getattr(options, "along", "F") == "F":
-        return _exact(getattr(options, key))
+        return _exact_number_text(getattr(options, key))
     return default
 
 
@@ -107,11 +109,11 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     for name, values in axes.items():
         scale = SCALES["arm"][name]
         value = scale.factor * float(values[len(values) // 2])
-        texts[name] = scale.text(value) if len(values) > 1 else f"{_exact(value)} {scale.unit}"
-    return PageState(tab="arm", arm=texts, law=_law(config, path), across=_across("arm", axes))
+        texts[name] = scale.text(value) if len(values) > 1 else f"{_exact_number_text(value)} {scale.unit}"
+    return PageState(tab="arm", arm=texts, law=_law_key(config, path), across=_second_parameter("arm", axes))
 
 
-def _across(tab: str, axes: Mapping[str, np.ndarray]) -> str:
+def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
     """Of the possible second parameters of a tab's diagram, the parameter with the most values in `axes`; ""
     if no parameter has several values. axes: values, (n,), by name.
     """
@@ -119,7 +121,7 @@ def _across(tab: str, axes: Mapping[str, np.ndarray]) -> str:
     return max(several, key=lambda name: len(axes[name]), default="")
 
 
-def _law(config: Config, path: Path) -> str:
+def _law_key(config: Config, path: Path) -> str:
     """Constitutive law of a config, as a key of `LAWS`. Raises InputError if the arm has a profile."""
     build = config.build
     if build.profile is not None:
@@ -128,12 +130,12 @@ def _law(config: Config, path: Path) -> str:
     return next((key for key, value in LAWS.items() if value == words), "linear")
 
 
-def _text(values: np.ndarray) -> str:
+def _middle_value_text(values: np.ndarray) -> str:
     """Middle of the values, (n,), as text: rounded, or with all digits if there is one value."""
-    return f"{values[len(values) // 2]:.6g}" if len(values) > 1 else _exact(values[0])
+    return f"{values[len(values) // 2]:.6g}" if len(values) > 1 else _exact_number_text(values[0])
 
 
-def _exact(value: float) -> str:
+def _exact_number_text(value: float) -> str:
     """A number with all its digits, except the last, in which the conversion of units makes errors."""
     return f"{value:.15g}"
 

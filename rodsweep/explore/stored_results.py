@@ -17,7 +17,7 @@ from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import sentences_in
 from .scales import SCALES
 from .solving.branches import drawn_branches
-from .solving.diagrams import Dataset, words_of
+from .solving.diagrams import Dataset, flag_words
 from .state import PageState
 
 AnswerVariables = dict[str, Any]
@@ -74,7 +74,7 @@ class StoredResults:
             return None
         places = np.unravel_index(numbers[0], self.data["status"].shape) if self.dims else ()
         point = self.data.isel({name: [int(i)] for name, i in zip(self.dims, places, strict=True)})
-        is_filmed = words_of(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES
+        is_filmed = flag_words(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES
         return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
@@ -110,7 +110,9 @@ class StoredResults:
             if name not in free:
                 value = SCALES[state.tab][name].value(text)
                 own = self._values(state.tab, name)
-                same &= np.array([value is not None and _stands_for(value, each) for each in own], dtype=bool)
+                same &= np.array(
+                    [value is not None and _matches_control(value, each) for each in own], dtype=bool
+                )
         return np.flatnonzero(same)
 
     def _at(self, numbers: NDArray[np.integer]) -> Dataset:
@@ -129,7 +131,7 @@ class StoredResults:
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
         point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
-        status = str(words_of(point["status"]))
+        status = str(flag_words(point["status"]))
         F = float(point["F"])
         k1 = float(point["k1"])
         is_drawn = np.isfinite(point["shape_x"].values).all()
@@ -153,7 +155,7 @@ class StoredResults:
             return None
         line = self._at(numbers)
         y = line["tip_y_max"].values
-        words = words_of(line["status"])
+        words = flag_words(line["status"])
         y = np.where(words == "straight", 0.0, y)
         known = np.isfinite(y)
         stable = np.where(words[known] == "unstable", 0, 1)
@@ -169,7 +171,7 @@ class StoredResults:
             return None
         rod = int(numbers[0])
         point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
-        if words_of(point["status"]) == "missing":
+        if flag_words(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return (
@@ -181,7 +183,7 @@ class StoredResults:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
 
 
-def _stands_for(value: float, stored: float) -> bool:
+def _matches_control(value: float, stored: float) -> bool:
     """Whether `value`, from a control, equals the value `stored`, or `stored` rounded to one of the
     CONTROL_DIGITS, up to EQUALITY_TOLERANCE.
     """

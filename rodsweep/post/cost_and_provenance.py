@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..results.file.provenance import RANK_SHARES, kernels_of
+from ..results.file.provenance import RANK_SHARES, blas_kernels_in
 from ..results.file.view import View
 from ..wording import counted, duration, plural
 
@@ -31,7 +31,7 @@ def origin_lines(a: dict[str, Any]) -> list[str]:
     return [
         f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
-        f"BLAS: {'; '.join(kernels_of(a))}",
+        f"BLAS: {'; '.join(blas_kernels_in(a))}",
     ]
 
 

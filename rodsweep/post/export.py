@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from ..config.axes import words
+from ..config.axes import joined_names
 from ..errors import InputError
 from ..results.file.view import View
 from ..wording import counted
@@ -68,5 +68,5 @@ def _sentence(table: Table, view: View) -> str:
     if table.empty_points:
         text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"
     if table.others:
-        text += f"; --table takes {words(table.others, 'or')} instead"
+        text += f"; --table takes {joined_names(table.others, 'or')} instead"
     return text

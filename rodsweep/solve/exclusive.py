@@ -18,7 +18,7 @@ from threading import RLock, current_thread, main_thread
 from types import FrameType
 from typing import Any, ParamSpec, Self, TypeVar
 
-from ..watch import MakePosition, reporting_to
+from ..watch import PositionMaker, reporting_to
 from .backend.solver_pools import destroy_pooled_solvers
 
 P = ParamSpec("P")
@@ -97,7 +97,7 @@ class DeferredSignals:
         self._restore()
         self._call_handlers()
 
-    def call_due(self, _: MakePosition) -> None:
+    def call_due(self, _: PositionMaker) -> None:
         """Calls the handlers of the signals that arrived since the last call; passes on an exception of a
         handler."""
         if self._due and current_thread() is main_thread():

@@ -17,41 +17,41 @@ from ..model.rod import Rod
 from .points.points import Points
 from .points.stretches import Stretches
 
-MAX_SAMPLE = 200
+MAX_SAMPLED_POINTS = 200
 """Largest number of points whose meshes are computed for an estimate."""
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
 """Parameters for which large values make branches of cycles expensive. For all other parameters, small values
 are expensive."""
-FIXED_MS = 0.03
+SPECTRUM_FIXED_MS = 0.03
 """Measured time of the solve of a spectrum that does not depend on the number of unknowns, in ms."""
-LINEAR_MS = 2.2e-3
+SPECTRUM_MS_PER_UNKNOWN = 2.2e-3
 """Measured time of the orthogonalisation in the solve of a spectrum, in ms per unknown."""
-CUBIC_MS = 1.5e-7
+SPECTRUM_MS_PER_CUBED_UNKNOWN = 1.5e-7
 """Measured time of the dense factorisation in the solve of a spectrum, in ms per cubed number of unknowns."""
-SPARSE_FROM = 300
+MIN_SPARSE_UNKNOWNS = 300
 """Number of unknowns above which the solver factorises sparse matrices instead of dense matrices."""
-SPARSE_MS = 8e-3
+SPARSE_MS_PER_UNKNOWN = 8e-3
 """Time of the solve of a spectrum with a sparse factorisation, in ms per unknown."""
 CERTIFICATE_MS = 0.15
 """Time to certify one spectrum by winding numbers, in ms."""
 ARM_SPECTRUM_MS = 4.0
 """Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
 arms."""
-GROWING_MS = 0.08
+MS_PER_SQUARED_UNSTABLE_MODE = 0.08
 """Time to find all unstable modes of an arm that is not uniform, divided by the squared number of these
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
 2.8 times as long."""
-MOST_FOLLOWED_GROWING = 9
+MAX_EXTRA_UNSTABLE_MODES = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
 FIRST_POINT_COST = 2.0
 """Time of the first point of a stretch, divided by the time of a point that is solved alone."""
-FOLLOWED_MS = 0.006
+FOLLOWED_POINT_MS = 0.006
 """Time per point of a stretch, in which eigenvalues are continued from a neighbouring point, in ms."""
-FOLLOWED_ARM_MS = 0.15
+FOLLOWED_ARM_POINT_MS = 0.15
 """Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 30
 random arms."""
-SEARCH_MS = 24.0
+THRESHOLD_SEARCH_MS = 24.0
 """Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
 four times as long."""
 SEARCH_CERTIFICATE_MS = 16.0
@@ -74,7 +74,7 @@ HOPF_POINTS_MS = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 COST_OF_TWO_MESHES = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
-FINER_MESH = 4 / 3
+FINER_MESH_RATIO = 4 / 3
 """Number of unknowns of the second mesh divided by the number of unknowns of the first mesh, in a spectrum by
 Krylov-Schur."""
 MODES_MS = 1.5
@@ -88,16 +88,17 @@ CHAINED_CYCLE_SECONDS = 0.01
 """Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
 """Time of a limit cycle by time integration to a relative accuracy of 1e-5, in s: mean over 40 rods."""
-BRANCH_SECONDS = 0.004
-"""All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING, in
-seconds, where F is the largest force of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12
-to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to 21 s, all within a factor of three of the formula and most
-within two; some near F = k1 take four times as long. Branches of six cones, over F and over the taper, took
-0.6 to 2 times as long as foreseen (0.2 to 11 s, tapers from 0.5 to 1.5)."""
-BRANCH_ACCURACY = -0.17
-"""Exponent of the accuracy in the formula of BRANCH_SECONDS."""
-BRANCH_BENDING = 1.5
-"""Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS."""
+BRANCH_SECONDS_PER_FORCE = 0.004
+"""All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 +
+F/k2)^BRANCH_BENDING_EXPONENT, in seconds, where F is the largest force of the range, or k1. Fourteen random
+rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to 21 s, all within a
+factor of three of the formula and most within two; some near F = k1 take four times as long. Branches of six
+cones, over F and over the taper, took 0.6 to 2 times as long as foreseen (0.2 to 11 s, tapers from 0.5 to
+1.5)."""
+BRANCH_ACCURACY_EXPONENT = -0.17
+"""Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
+BRANCH_BENDING_EXPONENT = 1.5
+"""Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS_PER_FORCE."""
 MEMORY_PER_UNKNOWN = 40_000
 """Memory of a rank per unknown of its largest mesh, in bytes."""
 BASE_MEMORY = 200_000_000
@@ -123,7 +124,7 @@ def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
 
     certify: whether each search is certified. of_arms: whether any arm is not uniform.
     """
-    uniform = SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
+    uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
     return Estimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
 
 
@@ -152,14 +153,14 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
     reach: smallest and largest value of the parameter. accuracy: relative accuracy of the cycles.
     """
-    indices = sampled(points)
+    indices = sampled_points(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
     taper = np.asarray(values.get("taper", 1.0))
     weakest = np.minimum(taper, 1.0) ** 2
     F = np.clip(values["F"], 0.0, values["k1"] * weakest)  # a rod under tension has no cycles
-    per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
+    per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
     # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
-    each = per_force * F / taper**2 * (1 + F / (values["k2"] * weakest)) ** BRANCH_BENDING
+    each = per_force * F / taper**2 * (1 + F / (values["k2"] * weakest)) ** BRANCH_BENDING_EXPONENT
     return Estimate(float(np.mean(each)) * points.count if indices.size else 0.0)
 
 
@@ -177,10 +178,12 @@ def estimate_followed(alone: Estimate, stretches: Stretches, points: Points, mod
     alone. modes: number of eigenvalues.
     """
     share = FIRST_POINT_COST * stretches.count / points.count
-    rods = [points.rod(int(index)) for index in sampled(points)]
-    each = FOLLOWED_ARM_MS if any(not rod.standard for rod in rods) else FOLLOWED_MS
+    rods = [points.rod(int(index)) for index in sampled_points(points)]
+    each = FOLLOWED_ARM_POINT_MS if any(not rod.standard for rod in rods) else FOLLOWED_POINT_MS
     growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
-    left_alone = np.where(growing > modes + MOST_FOLLOWED_GROWING, GROWING_MS * growing**2, 0.0)
+    left_alone = np.where(
+        growing > modes + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
+    )
     each += float(left_alone.mean()) if rods else 0.0
     return replace(alone, seconds=alone.seconds * min(1.0, share) + points.count * 1e-3 * each)
 
@@ -190,7 +193,7 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
     accuracy: relative accuracy.
     """
     alone = estimate_spectra(points, modes, accuracy, certify=False)
-    unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
+    unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH_RATIO * alone.unknowns[1]))
     return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
@@ -199,16 +202,18 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     none of these points has a rod. modes: number of eigenvalues. accuracy: relative accuracy. certify:
     whether spectra are certified.
     """
-    rods = [points.rod(int(index)) for index in sampled(points)]
+    rods = [points.rod(int(index)) for index in sampled_points(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
         return Estimate(0.0)
     varied = sum(not rod.standard for rod in rods) / len(rods)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
-    dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
-    each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
+    dense = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
+    each = np.where(n <= MIN_SPARSE_UNKNOWNS, dense, SPARSE_MS_PER_UNKNOWN * n) + (
+        CERTIFICATE_MS if certify else 0
+    )
     growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
-    each += varied * ARM_SPECTRUM_MS + GROWING_MS * growing**2
+    each += varied * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
@@ -224,9 +229,11 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
     return resolution_for(expected_wave_number(modes, wave), accuracy).unknowns
 
 
-def sampled(points: Points) -> NDArray[np.int64]:
-    """Flat indices, (n,), of at most MAX_SAMPLE evenly spaced points of a sweep, without points to which the
-    rod model does not apply.
+def sampled_points(points: Points) -> NDArray[np.int64]:
+    """Flat indices, (n,), of at most MAX_SAMPLED_POINTS evenly spaced points of a sweep, without points to
+    which the rod model does not apply.
     """
-    indices = np.unique(np.linspace(0, points.count - 1, min(MAX_SAMPLE, points.count)).astype(np.int64))
+    indices = np.unique(
+        np.linspace(0, points.count - 1, min(MAX_SAMPLED_POINTS, points.count)).astype(np.int64)
+    )
     return indices[[points.has_rod(int(index)) for index in indices]]

@@ -12,7 +12,7 @@ from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
 from ..solve.changes.unstable_modes import end_below_crushing
-from .cost_estimate import sampled
+from .cost_estimate import sampled_points
 from .points.points import Points
 
 
@@ -34,7 +34,7 @@ def largest_first_mesh(
     mesh_of: function from a rod to its initial mesh. ends: ends, (n,), of the range in which each rod is
     searched, by name of the parameter; meshes are compared at these values.
     """
-    indices = {*sampled(points).tolist(), *_corners(points)}
+    indices = {*sampled_points(points).tolist(), *_corners(points)}
     rods = (
         rod for index in sorted(indices) for rod in _rods_at_parameter_ends(points.rod(index), ends or {})
     )

@@ -9,9 +9,9 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from .remaining_time import Pace, in_words, rate_in_words
+from .remaining_time import Pace, duration_text, rate_in_words
 
-FIRST_SECONDS = 1.0
+QUIET_SECONDS = 1.0
 """Seconds before progress is shown for the first time; a shorter sweep shows no progress."""
 LINE_SECONDS = 10.0
 """Seconds between two progress lines in a log."""
@@ -76,7 +76,7 @@ class ProgressReporter:
         """Records the number `done` of finished points, and displays it if due; 0 starts the clock."""
         if not done:
             self.began = time.monotonic()
-            self.next = self.began + FIRST_SECONDS
+            self.next = self.began + QUIET_SECONDS
         self.done = done
         self.begun = 0.0
         self.where = ""
@@ -99,7 +99,7 @@ class ProgressReporter:
         passed = now - self.began
         rate = rate_in_words(self.done, passed) if self.total else ""
         seconds = self.pace.remaining(self.done, passed, self.begun) if self.pace else None
-        left = "" if seconds is None else f"about {in_words(seconds)} left"
+        left = "" if seconds is None else f"about {duration_text(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:
             self.bar.start()

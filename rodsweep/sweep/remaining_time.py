@@ -9,11 +9,11 @@ included. The module reads no clock: the caller passes all times.
 
 from math import exp
 
-PACE_FROM = 0.5
+PACE_WINDOW_START = 0.5
 """The time per point is measured after this fraction of the points that are finished now."""
 MIN_POINTS = 2
 """Minimum number of points finished after the first record; with fewer points there is no time per point."""
-MIN_BEGUN = 0.1
+MIN_FRACTION_DONE = 0.1
 """Minimum sum of the fractions done of unfinished points, for an estimate without finished points. For
 smaller sums, the time of starting up dominates."""
 TIME_CONSTANT = 0.25
@@ -68,17 +68,17 @@ class Pace:
         includes the wait since the latest record. Parameters as in `remaining`.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
-        None if their sum is below MIN_BEGUN.
+        None if their sum is below MIN_FRACTION_DONE.
         """
         if not self.records or done < self.records[0][0] + MIN_POINTS:
-            return now / (done + begun) if begun >= MIN_BEGUN else None
-        half = (record for record in reversed(self.records) if record[0] <= PACE_FROM * done)
+            return now / (done + begun) if begun >= MIN_FRACTION_DONE else None
+        half = (record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * done)
         points, began = next(half, self.records[0])
         latest = self.records[-1][1]
         return max((latest - began) / (done - points), (now - began) / (done - points + (begun or 1.0)))
 
 
-def in_words(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """Text of a duration with at most two significant digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
@@ -95,4 +95,4 @@ def rate_in_words(done: int, seconds: float) -> str:
     if not done or not seconds:
         return ""
     rate = done / seconds
-    return f"{rate:.3g}/s" if rate >= 1 else f"{in_words(1 / rate)} a point"
+    return f"{rate:.3g}/s" if rate >= 1 else f"{duration_text(1 / rate)} a point"

@@ -12,7 +12,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Protocol
 
-from ..watch import MakePosition, SolvePosition, SolveStopped
+from ..watch import PositionMaker, SolvePosition, SolveStopped
 
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
@@ -117,7 +117,7 @@ class RankListener:
         self.next_poll = 0.0
         self.next_report = time.monotonic() + POSITION_SECONDS
 
-    def __call__(self, make_position: MakePosition) -> None:
+    def __call__(self, make_position: PositionMaker) -> None:
         """Handles a solver's report at the position `make_position()`; raises SolveStopped if the solve must
         end.
         """

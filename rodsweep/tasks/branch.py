@@ -79,14 +79,14 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
     special points.
     """
     every = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
-    cycles = [_cycle(point, along) | {"branch": number} for number, point in every]
+    cycles = [_cycle_values(point, along) | {"branch": number} for number, point in every]
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
     after = {crossing.at: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
     specials = [
-        _special(one, starts[number - 1], after.get(one.at))
+        _special_point_values(one, starts[number - 1], after.get(one.at))
         | {"special_branch": number, "special_meets": others.get((number, index), -1)}
         for number, curve in enumerate(result.curves, 1)
         for index, one in enumerate(curve.special)
@@ -116,7 +116,7 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     return numbers
 
 
-def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
+def _cycle_values(point: "BranchPoint", along: str) -> dict[str, Any]:
     """A cycle of a branch as variables of the file. along: the followed parameter."""
     own = {
         f"branch_{along}": "at",
@@ -134,7 +134,7 @@ SPECIAL_POINT_FIELDS = {
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
-def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
+def _special_point_values(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
     """Variables of the file for one special point.
 
     start: index, among all cycles of the rod, of the first cycle of the point's branch. hopf: crossing of the

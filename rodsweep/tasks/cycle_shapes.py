@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..config.document.reading import validated
+from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
@@ -32,7 +32,7 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
     shape = view.variables["status"].shape
     added: dict[str, np.ndarray] = {}
     for number in numbers:
-        job, record = _solved(view, number)
+        job, record = _solve_stored_point(view, number)
         for name in (variable.name for variable in SHAPE + TIP + ENERGY):
             values = np.asarray(record[name])
             table = added.setdefault(name, np.full((*shape, *values.shape), np.nan))
@@ -41,12 +41,12 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
     return replace(view, variables=dict(view.variables) | added)
 
 
-def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
+def _solve_stored_point(view: View, number: int) -> tuple[Job, dict[str, Any]]:
     """Solves a point of the file again; returns (job of the point, variables of its cycle). number: number of
     the point, from 1. Raises InputError if the cycle cannot be solved here, or ends in a state that differs
     from the stored state.
     """
-    job = _job(view, number)
+    job = _job_of_point(view, number)
     try:
         solver = job.solver()
         solver.warm_up()
@@ -66,7 +66,7 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
     return job, record
 
 
-def _job(view: View, number: int) -> Job:
+def _job_of_point(view: View, number: int) -> Job:
     """Job that solves one point of the file, with the config of the file but without a neighbour's cycle as
     initial guess. number: number of the point, from 1.
     """
@@ -85,4 +85,4 @@ def _job(view: View, number: int) -> Job:
         "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
-    return job_of(Path(view.path.name), validated(tree), tree)
+    return job_of(Path(view.path.name), validated_config(tree), tree)

@@ -20,12 +20,12 @@ from ..results.layouts.limit_cycle import (
     TIP,
     TRANSIENT,
 )
-from ..results.layouts.variables import Filled, Variable, outcome_values
+from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
 from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import ChainedWork, Chains
-from ..sweep.points.grid import refuse_outside
+from ..sweep.points.grid import require_in_range
 from ..wording import counted
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
@@ -39,9 +39,9 @@ SWEEP_OPTIONS = ("method", "along", "direction", "time")
 cycle."""
 MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
 """Field of `_StoredMultipliers` by name of the variable, where the two names differ."""
-FINITE_STIFFNESS = Range(isfinite, "a finite number")
+K2_WITH_TAU1 = Range(isfinite, "a finite number")
 """Values of k2 for which tau1 exists."""
-POSITIVE_DRAG = Range(lambda value: value > 0, "a number above 0")
+GAMMA3_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
 """Values of gamma3 for which tau1 exists."""
 
 
@@ -54,8 +54,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            refuse_outside(FINITE_STIFFNESS, "k2", self.points.of_rods["k2"], "", why)
-            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.of_rods["gamma3"], "", why)
+            require_in_range(K2_WITH_TAU1, "k2", self.points.of_rods["k2"], "", why)
+            require_in_range(GAMMA3_WITH_TAU1, "gamma3", self.points.of_rods["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:
@@ -79,7 +79,7 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Hopf points of the straight rod on the lines of points."""
         lines = hopf_lines_of(self.points)
         if lines:
@@ -212,11 +212,11 @@ class LimitCycleTask(Task):
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
-            values |= _along(TIP, cycle.tip) | _along(ENERGY, cycle.energy)
+            values |= _values_of_arrays(TIP, cycle.tip) | _values_of_arrays(ENERGY, cycle.energy)
         if options.shapes:
-            values |= _along(SHAPE, cycle.shape)
+            values |= _values_of_arrays(SHAPE, cycle.shape)
         if options.transient:
-            values |= _along(TRANSIENT, cycle.transient)
+            values |= _values_of_arrays(TRANSIENT, cycle.transient)
         return values
 
 
@@ -228,7 +228,7 @@ class _StoredMultipliers(NamedTuple):
     multipliers: Complex
 
 
-def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
+def _values_of_arrays(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
     """Values of variables by name, from arrays in the order of the variables; NaN for all variables if
     `arrays` is None.
     """

@@ -12,8 +12,8 @@ from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH, MODE_NUMBERS
-from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
-from ..results.layouts.variables import Filled, outcome_values
+from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
+from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .hopf.force_changes import force_changes
@@ -37,7 +37,7 @@ class ModesTask(CertifiedTask):
         """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
-    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
         as in `Task.afterwards`.
         """
@@ -89,7 +89,7 @@ class ModesTask(CertifiedTask):
 def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
-    values = outcome_values(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
+    values = outcome_values(MODE_VARIABLES + POINT_VARIABLES, vectors.resolution, result, result.spectrum)
     values |= outcome_values(MODE_NUMBERS, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     for name, field in zip(fields, (*vectors.right, *vectors.deformation, *vectors.left), strict=True):

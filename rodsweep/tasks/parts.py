@@ -150,7 +150,7 @@ def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """
     dragged = bool((columns["gamma3"] > 0).any())
     return [
-        *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
+        *(_deformation_row(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
         ("rotational drag", dragged, "gamma3 > 0" if dragged else "gamma3 = 0"),
     ]
 
@@ -163,10 +163,10 @@ def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> li
     """
     if config.standard:
         return []
-    shapes = _shapes(config, columns)
+    shapes = _shape_texts(config, columns)
     return [
         ("variation along the arm", bool(shapes), " with ".join(shapes) or "uniform"),
-        ("law", True, _law(config)),
+        ("law", True, _law_text(config)),
     ]
 
 
@@ -181,10 +181,10 @@ def arms_line(
     """
     if config.standard:
         return ""
-    shapes = _shapes(config, columns) or ["a uniform arm"]
+    shapes = _shape_texts(config, columns) or ["a uniform arm"]
     if len(shapes) == 1 and shapes[0].startswith(("a profile", "a smooth profile")):
         shapes = ["an arm", *shapes]
-    arms = f"{' with '.join(shapes)} of {_law(config)}"
+    arms = f"{' with '.join(shapes)} of {_law_text(config)}"
     mesh = first_mesh()
     if mesh is None:
         return arms
@@ -193,7 +193,7 @@ def arms_line(
     return f"{arms}; at first {count} of order {mesh.order}{', for the finest mesh' * several}"
 
 
-def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
+def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     """Texts on the tapers and the profile of the arms; empty for uniform arms. columns: as in `arms_line`."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
@@ -201,11 +201,11 @@ def _shapes(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
     shapes = [] if (tapers == 1).all() else [f"{ratios} {ends}"]
     profile = config.build.profile
     if profile is not None:
-        shapes.append(_profile(config, profile))
+        shapes.append(_profile_text(config, profile))
     return shapes
 
 
-def _profile(config: Config, profile: Profile) -> str:
+def _profile_text(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
     radius.
     """
@@ -220,13 +220,13 @@ def _profile(config: Config, profile: Profile) -> str:
     return f"{rows} with {counted(jumps, 'jump')}" if jumps else rows
 
 
-def _law(config: Config) -> str:
+def _law_text(config: Config) -> str:
     """Text describing the constitutive law and the cross-section."""
     law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
     return f"{law} with a swelling section" if config.build.section == "swelling" else law
 
 
-def _deformation(parameter: Parameter, values: np.ndarray) -> CheckRow:
+def _deformation_row(parameter: Parameter, values: np.ndarray) -> CheckRow:
     name = parameter.name
     what = parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)

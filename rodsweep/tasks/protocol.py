@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..results.file.view import View
-from ..results.layouts.variables import Filled
+from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..sweep.cost_estimate import Estimate
 from ..sweep.points.chains import ChainedWork, Chains, State
@@ -65,7 +65,9 @@ class JointVariables(Protocol):
     def empty_result(self) -> NamedArrays:
         """Empty result, for a work item whose solver raised an unforeseen exception."""
 
-    def variables(self, view: View, items: Any, results: Mapping[int, NamedArrays]) -> Sequence[Filled]:
+    def variables(
+        self, view: View, items: Any, results: Mapping[int, NamedArrays]
+    ) -> Sequence[FilledVariable]:
         """The variables that depend on all points, for the result file; called on the first rank only.
 
         view: the file with all points. items: the work items. results: results of all work items, by number.
@@ -148,13 +150,13 @@ class Task(ABC):
         """
         return {}
 
-    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
         among the ranks. By default empty.
         """
         return ()
 
-    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Variables of the file computed from the results of all points; called on the first rank only.
 
         values: variables of the points by name, shape (points, own dimensions), readable by slices. By

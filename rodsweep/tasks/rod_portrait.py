@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..config.document.reading import validated
+from ..config.document.reading import validated_config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
@@ -29,7 +29,7 @@ MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
 """Default of the largest force, equal to the default of the task thresholds."""
-Solve = Callable[[Job], View]
+SolveJob = Callable[[Job], View]
 """Function that solves the only point of a job."""
 
 
@@ -56,10 +56,10 @@ class PortraitRequest:
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
         tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
         tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
-        return job_of(Path(task), validated(tree), tree)
+        return job_of(Path(task), validated_config(tree), tree)
 
 
-def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResults:
+def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodResults:
     """Solves and returns all results of a portrait.
 
     solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`
@@ -85,7 +85,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
         if (view := solved("modes", {}, F)) is not None
     }
     ranges = RodBranches(views["branch"]).stable_cycles if "branch" in views else []
-    cycles = [(F, view) for F in cycle_forces(ranges) if (view := _cycle(solved, F)) is not None]
+    cycles = [(F, view) for F in cycle_forces(ranges) if (view := _cycle_at_force(solved, F)) is not None]
     if not modes:
         missing.setdefault("modes", f"no threshold is known up to F = {request.F_max:g}")
     if not cycles:
@@ -101,7 +101,7 @@ def rod_results(request: PortraitRequest, solve: Solve = solved_view) -> RodResu
     )
 
 
-def _cycle(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
+def _cycle_at_force(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
     """The limit cycle at the force F, started from the Hopf point or, if this fails, from a large deflection.
 
     solved: function (task, options, F) that solves a task, and returns None for invalid input.

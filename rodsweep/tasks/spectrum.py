@@ -17,8 +17,13 @@ from ..model.longitudinal import longitudinal_rates
 from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
-from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal, longitudinal_parameters
-from ..results.layouts.variables import Filled, outcome_values
+from ..results.layouts.spectrum import (
+    EACH_FOLLOWED_POINT,
+    MODE_VARIABLES,
+    longitudinal,
+    longitudinal_parameters,
+)
+from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
@@ -63,7 +68,7 @@ class SpectrumTask(CertifiedTask):
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[Filled, ...]:
+    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Longitudinal growth rates, if requested, along the parameters on which these rates depend. Empty if
         not requested.
         """
@@ -98,7 +103,7 @@ class SpectrumTask(CertifiedTask):
         grid = np.meshgrid(*columns.values(), indexing="ij")
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
-    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
         as in `Task.afterwards`.
         """
@@ -192,7 +197,7 @@ def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> n
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:
     """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
-    values = outcome_values(EACH_MODE + EACH_FOLLOWED_POINT, result)
+    values = outcome_values(MODE_VARIABLES + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
             values[f"{field}_real"] = vector.real

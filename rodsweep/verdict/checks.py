@@ -63,11 +63,11 @@ def checks_of(assessment: "Assessment") -> list[Check]:
     return [
         slenderness(arm),
         compression(assessment, effects["compression"]),
-        *inertia(effects["inertia of the arm"], effects["inertia of the fluid"]),
-        *reynolds(effects["Reynolds number"]),
-        *wall(effects.get("flattening of the wall")),
-        weight(effects.get("weight"), arm),
-        poisson(arm),
+        *inertia_checks(effects["inertia of the arm"], effects["inertia of the fluid"]),
+        *reynolds_check(effects["Reynolds number"]),
+        *wall_checks(effects.get("flattening of the wall")),
+        weight_check(effects.get("weight"), arm),
+        poisson_check(arm),
     ]
 
 
@@ -80,7 +80,7 @@ def slenderness(arm: SlenderArm) -> Check:
         if fine
         else f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
     )
-    return Check(_doubt(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
+    return Check(_doubtful_or_fine(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
 
 def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
@@ -100,7 +100,7 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
     ending = (
         "a linear law of the material is accurate",
-        f"rubber is some {100 * stiffening(largest):.1g} % stiffer at this compression",
+        f"rubber is some {100 * rubber_stiffening(largest):.1g} % stiffer at this compression",
         "real materials are no longer linear at this compression",
     )[validity]
     shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
@@ -134,14 +134,14 @@ def _shortening(arm: SlenderArm, F: float) -> float:
     return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
 
 
-def stiffening(strain: float) -> float:
+def rubber_stiffening(strain: float) -> float:
     """Relative increase of the tangent modulus E (1 + 2/h^3)/3 of neo-Hookean rubber over E, at the stretch
     ratio h = 1 - `strain`.
     """
     return float(2 * ((1 - strain) ** -3 - 1) / 3)
 
 
-def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
+def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     """Check of the inertia of the arm and of the fluid at the flutter threshold; an empty list if the arm
     does not flutter.
     """
@@ -161,7 +161,7 @@ def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     return [Check(validity, sentence, of_verdict=True)]
 
 
-def reynolds(number: Effect) -> list[Check]:
+def reynolds_check(number: Effect) -> list[Check]:
     """Check of the Reynolds number of beating with amplitude L/2 at the frequency of flutter; an empty list
     if the arm does not flutter. number: the effect "Reynolds number".
     """
@@ -177,7 +177,7 @@ def reynolds(number: Effect) -> list[Check]:
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
 
 
-def wall(effect: Effect | None) -> list[Check]:
+def wall_checks(effect: Effect | None) -> list[Check]:
     """Check of the flattening of a tube's section in beating of large amplitude; an empty list if the section
     is not a tube (`effect` is None).
     """
@@ -200,7 +200,7 @@ def wall_check(effect: Effect) -> Check:
     return Check(validity, sentence)
 
 
-def weight(effect: Effect | None, arm: SlenderArm) -> Check:
+def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     """Check of weight minus buoyancy against bending stiffness. effect: None if the density difference is
     unknown.
     """
@@ -223,18 +223,20 @@ def weight(effect: Effect | None, arm: SlenderArm) -> Check:
     return Check(validity, f"Weight: {upright}{sags}; {ending}.", of_verdict=True)
 
 
-def poisson(arm: SlenderArm) -> Check:
+def poisson_check(arm: SlenderArm) -> Check:
     """Check of Poisson's ratio against USUAL_POISSON."""
     fine = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
     why = "usual for soft materials" if fine else "unusual: rubbers and gels are near 0.5"
-    return Check(_doubt(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only.")
+    return Check(
+        _doubtful_or_fine(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only."
+    )
 
 
 def _validity(effect: Effect) -> Validity:
     return Validity(int(effect.validity))
 
 
-def _doubt(doubtful: bool) -> Validity:
+def _doubtful_or_fine(doubtful: bool) -> Validity:
     return Validity.doubtful if doubtful else Validity.applies
 
 

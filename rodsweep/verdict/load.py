@@ -10,7 +10,7 @@ from .flutter import Span
 TYPICAL_FLUTTER_FORCE = 36.0
 """Typical flutter force, in k3/L^2. If the user gave no load, the SI prefix of the load (Pa, kPa) is chosen
 for this force."""
-ROUNDING = 1e-12
+ROUNDING_TOLERANCE = 1e-12
 """Relative tolerance when rounding down. Without this tolerance, 4.7 could be printed as 4.69."""
 MAX_TYPED_LENGTH = 6
 """A number of at most this many characters is reported as the user typed it; a longer number is rounded to
@@ -54,8 +54,9 @@ class Load:
             if given is not None
             else compact(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
-        self.given = "" if given is None else _short(given, float(getattr(arm.si, self.name)), si)
-        """The load as the user typed it, rounded by `_short` if long; empty if the arm has no load."""
+        self.given = "" if given is None else _shortened_load(given, float(getattr(arm.si, self.name)), si)
+        """The load as the user typed it, rounded by `_shortened_load` if long; empty if the arm has no
+        load."""
         self.scale = written_in(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
@@ -67,10 +68,10 @@ class Load:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
         value = F * self.scale
         unit = 10.0 ** (floor(log10(value)) - 2)
-        return f"{three_digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
+        return f"{three_digits(floor(value / unit * (1 + ROUNDING_TOLERANCE)) * unit)} {self.unit}"
 
 
-def _short(given: object, value: float, si: str) -> str:
+def _shortened_load(given: object, value: float, si: str) -> str:
     """The load `given` as the user typed it, rounded to four digits if its number is long. A load given as a
     number is written in the SI unit `si`, in which it is `value`.
     """

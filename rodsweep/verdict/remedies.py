@@ -21,7 +21,7 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     """One sentence per kind of neglected effect beyond its limit, the effect with the largest ratio to its
     limit first.
     """
-    first, *others = _one_of_a_kind(assessment.effects_with(Validity.does_not_apply))
+    first, *others = _first_of_each_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
     says = [
@@ -55,7 +55,7 @@ def as_multiple(effect: Effect) -> str:
     return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
 
 
-def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
+def _first_of_each_kind(effects: list[Effect]) -> list[Effect]:
     """The first effect of each kind. effects: in decreasing order of the ratio to the limit."""
     return list({effect_kind(effect): effect for effect in reversed(effects)}.values())[::-1]
 

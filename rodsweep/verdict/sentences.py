@@ -24,12 +24,18 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
         return ["For some drags the thresholds could not be found: " + "; ".join(plane.found.failures) + "."]
     beyond = assessment.effects_with(Validity.does_not_apply)
     if not beyond:
-        return [*_verdict(plane), *_other_plane(planes, "is")]
+        return [*_verdict(plane), *_second_plane_sentences(planes, "is")]
     headline = not_applicable_sentences(plane.arm, assessment)
     if assessment.of_thresholds == Validity.does_not_apply:
-        return [*headline, *_without(plane, effect_kinds_in_words(beyond)), *_other_plane(planes, "would be")]
+        return [
+            *headline,
+            *_flutter_without_effects(plane, effect_kinds_in_words(beyond)),
+            *_second_plane_sentences(planes, "would be"),
+        ]
     flutter = plane.found.force(ChangeKind.hopf)
-    known = "No flutter was found" if flutter is None else f"Flutter, at {_where(plane, flutter)},"
+    known = (
+        "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
+    )
     return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]
 
 
@@ -44,24 +50,24 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
         stays = f": it stays straight at {load.given}" if load.given else ""
         if found.end < arm.F:
             stays = f": whether the arm beats at {load.given} is not known"
-        return [f"The arm does not flutter {_until(plane, load)}{stays}."]
+        return [f"The arm does not flutter {_search_end_clause(plane, load)}{stays}."]
     rate = found.frequency(ChangeKind.hopf)
     beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
     if arm.load is None:
-        says = [f"The arm flutters at {_where(plane, flutter)}: above, it gives way and{beats}."]
+        says = [f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{beats}."]
     else:
-        says = [_place(plane, flutter, load), f"Above, the straight arm gives way and{beats}."]
+        says = [_load_against_flutter(plane, flutter, load), f"Above, the straight arm gives way and{beats}."]
     if not flutter.for_every_drag:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
         some = "" if back.for_every_drag else ", for part of the range of drag"
         says.append(f"The straight arm is stable again above {load.of(back)}{some}.")
     else:
-        says.append(f"The straight arm does not become stable again {_until(plane, load)}.")
-    return says + _swinging(found, load)
+        says.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
+    return says + _oscillation_sentences(found, load)
 
 
-def _where(plane: PlaneOfMotion, flutter: Span) -> str:
+def _flutter_load_text(plane: PlaneOfMotion, flutter: Span) -> str:
     """Range of the flutter load over the drags as text; for a rectangular section, followed by the name of
     the plane of motion.
     """
@@ -69,13 +75,13 @@ def _where(plane: PlaneOfMotion, flutter: Span) -> str:
     return f"{where} in {plane.name}" if plane.name else where
 
 
-def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
+def _load_against_flutter(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
     """Sentence that compares the arm's load with the range of the flutter load over the drags and says
     whether the arm beats.
     """
     F = plane.arm.F
     found = plane.found
-    where = _where(plane, flutter)
+    where = _flutter_load_text(plane, flutter)
     if F <= 0:
         return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
     if flutter.low > F:
@@ -90,10 +96,10 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
         return f"{load.given} is beyond flutter, at {where}: the straight arm is stable again."
     if not all(unstable):
         return f"{load.given} lies in the range of flutter, {where}: drag decides whether the arm beats."
-    return f"{load.given} is {_above(F, flutter)} flutter, at {where}: the arm beats."
+    return f"{load.given} is {_excess_text(F, flutter)} flutter, at {where}: the arm beats."
 
 
-def _above(F: float, flutter: Span) -> str:
+def _excess_text(F: float, flutter: Span) -> str:
     """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
     "3 times", if the factor is larger than 2.
     """
@@ -101,7 +107,7 @@ def _above(F: float, flutter: Span) -> str:
     return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
 
-def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
+def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
     found = plane.found
@@ -109,21 +115,21 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     flutter = found.force(ChangeKind.hopf)
     rate = found.frequency(ChangeKind.hopf)
     if flutter is None:
-        return [f"Without {neglected} the arm would not flutter {_until(plane, load)}."]
+        return [f"Without {neglected} the arm would not flutter {_search_end_clause(plane, load)}."]
     beats = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
-    says = [f"Without {neglected} the arm would flutter at {_where(plane, flutter)}{beats}."]
+    says = [f"Without {neglected} the arm would flutter at {_flutter_load_text(plane, flutter)}{beats}."]
     if arm.load is None or arm.F <= 0:
         return says
     if flutter.low > arm.F:
         place = f"{percent_range_text(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
     elif flutter.high < arm.F:
-        place = _above(arm.F, flutter)
+        place = _excess_text(arm.F, flutter)
     else:
         place = "inside the range of"
     return [*says, f"{load.given} would be {place} that threshold."]
 
 
-def _other_plane(planes: Planes, verb: str) -> list[str]:
+def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     """List of one sentence on flutter in the second plane of a rectangular section; empty for other sections.
     verb: "is" or "would be".
     """
@@ -134,12 +140,12 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
         return [f"The threshold in {second.name} could not be found."]
     flutter = second.found.force(ChangeKind.hopf)
     if flutter is None:
-        return [f"In {second.name} there {verb} no flutter {_until(second, Load(second.arm))}."]
+        return [f"In {second.name} there {verb} no flutter {_search_end_clause(second, Load(second.arm))}."]
     decides = "" if planes.always_first else "; for part of the range of drag, flutter starts in this plane"
     return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
 
 
-def _until(plane: PlaneOfMotion, load: Load) -> str:
+def _search_end_clause(plane: PlaneOfMotion, load: Load) -> str:
     """Clause that states the load at which the search ends, and whether this load crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.crushing_force:
@@ -147,7 +153,7 @@ def _until(plane: PlaneOfMotion, load: Load) -> str:
     return f"up to {end}, where the search ends"
 
 
-def _swinging(found: FlutterRange, load: Load) -> list[str]:
+def _oscillation_sentences(found: FlutterRange, load: Load) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
     found.
     """

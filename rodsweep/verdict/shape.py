@@ -30,11 +30,11 @@ def station_words(station: Station) -> str:
     sides = {"radius": station.section.drag_radius}
     if isinstance(station.section, Tube):
         sides["inner radius"] = station.section.inner_radius
-    parts = [f"{name} {_in_prefix(value, 'm')}" for name, value in sides.items()]
-    return ", ".join([*parts, _in_prefix(station.young, "Pa")])
+    parts = [f"{name} {_with_si_prefix(value, 'm')}" for name, value in sides.items()]
+    return ", ".join([*parts, _with_si_prefix(station.young, "Pa")])
 
 
-def _in_prefix(value: float, si: str) -> str:
+def _with_si_prefix(value: float, si: str) -> str:
     """A value in the SI unit `si` as text with four digits and a prefix: "6 mm"."""
     factor, unit = compact(value, si)
     return f"{value * factor:.4g} {unit}"

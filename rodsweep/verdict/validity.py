@@ -126,7 +126,7 @@ def thickness_factor(arm: SlenderArm) -> float:
         return nan
     factor = 1.0
     for _ in range(MAX_THINNING_ITERATIONS):
-        thinner = _scaled(arm, factor)
+        thinner = _with_scaled_section(arm, factor)
         found = FlutterRange((flutter_forces(thinner, thinner.drags[0]),))
         effects = effects_at_flutter(thinner, found)
         excess = viscosity_factor(effects)
@@ -138,7 +138,7 @@ def thickness_factor(arm: SlenderArm) -> float:
     return nan
 
 
-def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
+def _with_scaled_section(arm: SlenderArm, factor: float) -> SlenderArm:
     """The arm without its load, with all sides of the section multiplied by `factor`."""
     given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
     section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}

@@ -22,7 +22,7 @@ from rodsweep.api import options
 from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
 from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.cli import commands
-from rodsweep.config.document.reading import yaml_of
+from rodsweep.config.document.reading import tree_yaml
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
@@ -152,9 +152,9 @@ def test_sweep_gives_the_dataset_of_the_file(name, command, monkeypatch):
 def test_text_of_the_config_gives_the_same_points(tmp_path):
     """It is what ranks are given, and what the Dataset carries."""
     tree = config_tree("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
-    again = job_from(YAML(typ="safe").load(yaml_of(tree)))
+    again = job_from(YAML(typ="safe").load(tree_yaml(tree)))
     assert again.resolved == job_from(tree).resolved
-    assert again.text == yaml_of(tree)
+    assert again.text == tree_yaml(tree)
 
 
 @pytest.mark.parametrize("name", list(small.CONFIGS))
@@ -565,7 +565,7 @@ def test_what_is_no_result_is_not_opened(tmp_path):
 @pytest.mark.parametrize("progress", [None, False, True])
 def test_a_long_solve_is_shown_where_it_is_asked_for_or_a_terminal_is(progress, monkeypatch, capsys):
     """The display is due at once; standard error is no terminal here."""
-    monkeypatch.setattr("rodsweep.sweep.progress.FIRST_SECONDS", 0.0)
+    monkeypatch.setattr("rodsweep.sweep.progress.QUIET_SECONDS", 0.0)
     monkeypatch.setattr("rodsweep.sweep.progress.BAR_SECONDS", 0.0)
     monkeypatch.setattr("rodsweep.sweep.stop.POSITION_SECONDS", 0.0)
     asked = {} if progress is None else {"progress": progress}

@@ -15,7 +15,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.api.answers.frames import frame_of
 from rodsweep.api.solved import StoredResult
-from rodsweep.cli.checking import describe_job
+from rodsweep.cli.checking import print_job_check
 from rodsweep.post.headline.one_rod import ColumnTexts
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
@@ -186,7 +186,7 @@ def test_check_stays_in_the_window(name, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(WINDOW))
     page = io.StringIO()
     with redirect_stdout(page):
-        describe_job(make_job(ROOT / "configs" / f"{name}.yaml", ()))
+        print_job_check(make_job(ROOT / "configs" / f"{name}.yaml", ()))
     lines = page.getvalue().splitlines()
     assert max(map(len, lines)) <= WINDOW
     assert any(line.startswith("expected: ") for line in lines)

@@ -16,10 +16,16 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, study_peers
+from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, peers_of_study
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
-from rodsweep.bench.spectrum.arms import ARMS, UnsolvedArms, arm_spectra, arm_table, exact_arm_spectrum
+from rodsweep.bench.spectrum.arms import (
+    ARM_RODS,
+    UnsolvedArms,
+    arm_table,
+    exact_arm_spectrum,
+    measure_arm_spectra,
+)
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.rodsweep_spectrum import (
     CERTIFIED_NAME,
@@ -29,15 +35,15 @@ from rodsweep.bench.spectrum.rodsweep_spectrum import (
     rodsweep_spectrum,
 )
 from rodsweep.bench.spectrum.study import (
+    ELEMENT_ORDERS,
     HARD_RODS,
-    ORDERS,
     SPECTRUM_RACE,
     hard_rod_table,
     krylov_schur,
     measure_hard_rods,
     spectrum_study,
 )
-from rodsweep.bench.study import Contender, Measurement, Study, every_nth_setting, measure_case, race
+from rodsweep.bench.study import Contender, Measurement, Study, every_nth_setting, measure_case, time_runs
 from rodsweep.cli.benching import machine_attributes
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
@@ -71,7 +77,7 @@ def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():
 def test_the_solver_alone_converges_to_the_exact_eigenvalues():
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
     roots = exact_spectrum(EASY, MODE_COUNT)
-    errors = [relative_error(krylov_schur(EASY, size), roots) for size in ORDERS]
+    errors = [relative_error(krylov_schur(EASY, size), roots) for size in ELEMENT_ORDERS]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
     assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
@@ -83,7 +89,7 @@ def test_own_error_on_the_hard_rods_is_rounding():
             assert relative_error(rodsweep_spectrum(rod, certify), exact_spectrum(rod, MODE_COUNT)) < 1e-14
 
 
-@pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
+@pytest.mark.parametrize("rod", ARM_RODS.values(), ids=list(ARM_RODS))
 def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
     """The other code loses digits in stiff arms."""
     found = dense_arm.eigenvalues(rod, p=10)[:MODE_COUNT]
@@ -94,16 +100,16 @@ def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
 
 def test_no_arm_is_solved_twice():
     """A solved arm is kept, and its second spectrum would cost nothing."""
-    arm = UnsolvedArms(ARMS["cone"])
+    arm = UnsolvedArms(ARM_RODS["cone"])
     forces = [arm.next_arm().F for _ in range(60)]
     assert len(set(forces)) == 60
-    assert forces[-1] < ARMS["cone"].F * (1 + 1e-13)
+    assert forces[-1] < ARM_RODS["cone"].F * (1 + 1e-13)
 
 
 def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
-    monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
+    monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     bad = Contender("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
-    lines = arm_table(arm_spectra([bad], 1), 1).splitlines()
+    lines = arm_table(measure_arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
     for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR):
         (line,) = (line for line in lines if line.startswith(f"| {name} |"))
@@ -125,7 +131,7 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
 def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
     monkeypatch.setattr("rodsweep.bench.study.SHORT_RUN_SECONDS", np.inf)
     order = []
-    raced = race([lambda: order.append("a"), lambda: order.append("b") or 7], [2, 1])
+    raced = time_runs([lambda: order.append("a"), lambda: order.append("b") or 7], [2, 1])
     assert order == ["a", "b", "a", "a", "b", "b", "a", "a"]
     assert [timed.outcome for timed in raced] == [None, 7]
     assert [len(timed.seconds) for timed in raced] == [2, 1]
@@ -134,7 +140,7 @@ def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
 def test_race_makes_long_runs_once_a_round(monkeypatch):
     monkeypatch.setattr("rodsweep.bench.study.SHORT_RUN_SECONDS", 0.0)
     order = []
-    race([lambda: order.append("a"), lambda: order.append("b")], [2, 0])
+    time_runs([lambda: order.append("a"), lambda: order.append("b")], [2, 0])
     assert order == ["a", "b", "a", "a"]
 
 
@@ -151,14 +157,14 @@ def test_slow_method_is_run_once():
 def test_time_of_other_programs_is_counted():
     """The program ends when it has taken a tenth of a second of the processor, however long that may last."""
     words = [sys.executable, "-c", "import time\nwhile time.process_time() < 0.1: pass"]
-    (timed,) = race([lambda: subprocess.run(words, check=True)], [1])
+    (timed,) = time_runs([lambda: subprocess.run(words, check=True)], [1])
     assert timed.median > 0.05
 
 
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
-    monkeypatch.setattr(arms, "ARMS", {"cone": ARMS["cone"]})
+    monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     exact = Contender("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
     study = spectrum_study(quick=True, peers=Peers({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."]))
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
@@ -273,8 +279,8 @@ def write_peers(directory):
 def test_a_study_without_peers_in_the_folder_has_none(tmp_path):
     package = peer_package(None)
     assert package.__file__ == str(ROOT / "benchmarks" / "__init__.py")
-    assert study_peers(package, "sweep", True, tmp_path) is NO_PEERS
-    assert study_peers(None, "spectrum", True, tmp_path) is NO_PEERS
+    assert peers_of_study(package, "sweep", True, tmp_path) is NO_PEERS
+    assert peers_of_study(None, "spectrum", True, tmp_path) is NO_PEERS
     assert peers_left_out(["sweep"]) == ""
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from surveyed import survey_only
 
-from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
+from rodsweep.bench.limit_cycle.integrators import DEFAULT_INTEGRATOR, IntegrationTask
 from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
-    FOLLOWING,
-    WAITING,
+    FOLLOWING_RACE,
+    WAITING_RACE,
     limit_cycle_study,
     time_at_error,
     time_at_error_table,
@@ -60,7 +60,9 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
 
 def test_returns_lie_on_the_section():
     at = cycle()
-    steps = DEFAULT.integrate(1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period))
+    steps = DEFAULT_INTEGRATOR.integrate(
+        1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
+    )
     found = tip_returns(at.beam, steps)
     angle = at.beam.tip(found.states)[2]
     assert len(found.times) >= 6
@@ -82,8 +84,10 @@ def test_table_at_equal_error_states_the_ratios():
             for factor, error in ((0.5, 1e-5), (2, 1e-7))
         ]
 
-    text = time_at_error_table([*pair(DEFAULT.name, 10.0), *pair("slow", 25.0), *pair("rough", 8.0)[:1]])
-    assert f"| {DEFAULT.name} | 10.00 | 1.00 | 1.00 |" in text
+    text = time_at_error_table(
+        [*pair(DEFAULT_INTEGRATOR.name, 10.0), *pair("slow", 25.0), *pair("rough", 8.0)[:1]]
+    )
+    assert f"| {DEFAULT_INTEGRATOR.name} | 10.00 | 1.00 | 1.00 |" in text
     assert "| slow | 25.00 | 2.50 | 2.50 |" in text
     assert "| rough |  |  |  |" in text
 
@@ -146,7 +150,7 @@ def test_the_benchmark_times_rodsweep_alone(tmp_path):
     assert "| 27.43 | waiting, ARKIMEX 5 (default) |" in text
     assert "| ARKIMEX 5 (default) |" in text.split("times the default's time")[1]
     assert {m.case for m in study.measurements} == {"error of the period", "error of the largest tip y"}
-    assert {m.method for m in study.measurements} == {DEFAULT.name}
+    assert {m.method for m in study.measurements} == {DEFAULT_INTEGRATOR.name}
     study.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
@@ -158,13 +162,13 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     def gives_up(leg):
         raise ArithmeticError("too stiff")
 
-    double = replace(DEFAULT, name="double", tolerances=(1e-5, 1e-8), waiting=(1e-7,))
+    double = replace(DEFAULT_INTEGRATOR, name="double", tolerances=(1e-5, 1e-8), waiting=(1e-7,))
     failing = [Contender("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
     peers = Peers(
         contenders={
-            FOLLOWING: double.following_contenders() + failing,
-            WAITING: double.settling_contenders() + failing,
+            FOLLOWING_RACE: double.following_contenders() + failing,
+            WAITING_RACE: double.settling_contenders() + failing,
         },
         sections=[lambda rounds: ([f"a section of {rounds}"], [further])],
         notes=["A note."],

@@ -20,12 +20,12 @@ from rodsweep.bench.sweep.launch import (
     CommandRun,
     SweepCase,
     launcher_words,
-    mixed_forces,
     run_case,
+    shuffled_forces,
     spectrum_case,
 )
 from rodsweep.bench.sweep.study import (
-    TWO_COMMANDS,
+    TWO_COMMAND_CASE,
     growth_table,
     instant_table,
     sweep_measurement,
@@ -66,11 +66,11 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
     monkeypatch.setattr(sweep, "QUICK_SPECTRUM_COUNT", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLE_COUNT", 2)
-    monkeypatch.setattr(eigenvalue_following, "QUICK_GRIDS", eigenvalue_following.QUICK_GRIDS[1:])
+    monkeypatch.setattr(eigenvalue_following, "QUICK_GRID_PAIRS", eigenvalue_following.QUICK_GRID_PAIRS[1:])
     command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED_COMMAND[1:])
     study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
-    assert (f"| {TWO_COMMANDS} | 16 | 1 |" in study.text) == bool(launcher_words(2))
+    assert (f"| {TWO_COMMAND_CASE} | 16 | 1 |" in study.text) == bool(launcher_words(2))
     assert "| no solver | 400 | 1 |" in study.text
     assert "| resumed | 400 | 1 |" in study.text
     assert growth_table([]) in study.text
@@ -157,7 +157,7 @@ def test_growth_is_that_of_each_step():
 
 
 def test_uneven_forces_lie_on_both_sides_of_the_hopf_point_and_close_to_it():
-    forces = mixed_forces(60)
+    forces = shuffled_forces(60)
     assert len(forces) == 60
     distance = forces / HOPF_FORCE - 1
     assert distance.min() < -0.5

@@ -13,9 +13,9 @@ from rodsweep.bench.thresholds import study as thresholds
 from rodsweep.bench.thresholds.study import (
     ARM_CASES,
     ARM_INTRODUCTION,
-    CASES,
     HOPF,
     ONSET,
+    UNIFORM_CASES,
     FirstThreshold,
     ThresholdCase,
     measure_rods,
@@ -23,10 +23,10 @@ from rodsweep.bench.thresholds.study import (
     thresholds_study,
 )
 
-CASE = {case.name: case for case in CASES}
+CASE = {case.name: case for case in UNIFORM_CASES}
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", UNIFORM_CASES, ids=lambda case: case.name)
 def test_numbers_of_the_cases_are_those_of_the_reference(case):
     rods = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
     rod = next(r for r in rods if all(float(r[k]) == getattr(case, k) for k in ("k1", "k2", "gamma3")))

@@ -24,8 +24,8 @@ from benchmarks.limit_cycle.continuation import (
     ratio_table,
 )
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
-from rodsweep.bench.limit_cycle.integrators import DEFAULT, IntegrationTask
-from rodsweep.bench.limit_cycle.study import FOLLOWING, WAITING
+from rodsweep.bench.limit_cycle.integrators import DEFAULT_INTEGRATOR, IntegrationTask
+from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
 from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, AccurateCycle
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
@@ -41,13 +41,13 @@ from rodsweep.bench.study import Measurement
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.motion.integrator import integrator
 
-FAMILIES = (DEFAULT, *installed_families())
+FAMILIES = (DEFAULT_INTEGRATOR, *installed_families())
 FOLLOWED = few(FAMILIES, 4)
 ORDERS = {
     "ARKIMEX 2": (2, 1e-4, 1e-5),
     "ARKIMEX 3": (3, 1e-5, 1e-7),
     "ARKIMEX 4": (4, 3e-6, 1e-8),
-    DEFAULT.name: (5, 1e-5, 3e-7),
+    DEFAULT_INTEGRATOR.name: (5, 1e-5, 3e-7),
     "ROSW ra34pw2": (3, 1e-4, 1e-6),
     "ROSW rodas3": (3, 1e-4, 1e-6),
 }
@@ -87,7 +87,7 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
     assert tight.seconds > 0
 
 
-@pytest.mark.parametrize("name", only([DEFAULT.name], ORDERS))
+@pytest.mark.parametrize("name", only([DEFAULT_INTEGRATOR.name], ORDERS))
 def test_order_of_the_errors(name):
     order, *tolerances = ORDERS[name]
     family, at = next(f for f in FAMILIES if f.name == name), cycle()
@@ -105,14 +105,14 @@ def test_order_of_the_errors(name):
 def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch, tmp_path):
     monkeypatch.setattr(cycle_peers, "optional_module", lambda _: None)
     found = peers(quick=True, folder=tmp_path)
-    assert CVODE not in [contender.method for contender in found.of(FOLLOWING)]
+    assert CVODE not in [contender.method for contender in found.of(FOLLOWING_RACE)]
     assert found.skipped[0] == CVODE_SKIPPED
 
 
 def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
     found = peers(quick=True, folder=tmp_path)
-    assert {c.method for c in found.of(FOLLOWING)} == {family.name for family in installed_families()}
-    assert {c.method for c in found.of(WAITING)} == {f.name for f in installed_families() if f.waiting}
+    assert {c.method for c in found.of(FOLLOWING_RACE)} == {family.name for family in installed_families()}
+    assert {c.method for c in found.of(WAITING_RACE)} == {f.name for f in installed_families() if f.waiting}
     assert (AUTO_SKIPPED in found.skipped) == (not found.sections)
     assert (CVODE_SKIPPED in found.skipped) == (CVODE not in {family.name for family in installed_families()})
 

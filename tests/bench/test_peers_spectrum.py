@@ -10,7 +10,7 @@ from benchmarks.spectrum.eigensolvers import (
     dense_inverse,
     displacement_elements,
 )
-from rodsweep.bench.spectrum.arms import ARM_RACE, ARMS, UnsolvedArms, exact_arm_spectrum
+from rodsweep.bench.spectrum.arms import ARM_RACE, ARM_RODS, UnsolvedArms, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT
 from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE
@@ -30,7 +30,7 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
     assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
 
 
-@pytest.mark.parametrize("rod", ARMS.values(), ids=list(ARMS))
+@pytest.mark.parametrize("rod", ARM_RODS.values(), ids=list(ARM_RODS))
 def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
     roots = exact_arm_spectrum(rod)
     for (name,), own in grouped_by_fields(arm_contenders(), "method").items():

@@ -34,10 +34,17 @@ from benchmarks.thresholds.spectra_by_force import (
     threshold_on_grid,
 )
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds.study import CASES, HOPF, ONSET, ThresholdCase, measure_rods, threshold_table
+from rodsweep.bench.thresholds.study import (
+    HOPF,
+    ONSET,
+    UNIFORM_CASES,
+    ThresholdCase,
+    measure_rods,
+    threshold_table,
+)
 
-CASE = {case.name: case for case in CASES}
-FLUTTERING = [case for case in CASES if not isnan(case.hopf)]
+CASE = {case.name: case for case in UNIFORM_CASES}
+FLUTTERING = [case for case in UNIFORM_CASES if not isnan(case.hopf)]
 FLOOR = 3e-12
 """Relative error of a threshold that the mesh of MESH_ACCURACY leaves, and M(F) by its rounding ten times."""
 needs_pycont = pytest.mark.skipif(
@@ -94,7 +101,7 @@ def test_a_grid_too_coarse_for_the_window_misses_it():
     assert isnan(threshold_by_steps(brentq, growth_rate, 1e-6, case).force)
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", UNIFORM_CASES, ids=lambda case: case.name)
 def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case):
     M0, M1, M2 = matrix_polynomial(case)
     for F in (0.0, case.onset + 1, 0.9 * case.search_end):

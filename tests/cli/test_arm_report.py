@@ -14,7 +14,7 @@ from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, wor
 from rodsweep.solve.changes.thresholds import ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.verdict.arm import arm_report
-from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, stiffening
+from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
 from rodsweep.verdict.load import Load
 from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
@@ -105,7 +105,7 @@ def test_rubber_is_stiffer_under_compression_as_stated():
     """Neo-Hookean: engineering stress E (x - 1/x^2)/3 at the stretch x."""
     x, step = 0.9, 1e-6
     slope = ((x + step - 1 / (x + step) ** 2) - (x - step - 1 / (x - step) ** 2)) / (2 * step) / 3
-    assert 1 + stiffening(0.1) == pytest.approx(slope, rel=1e-6)
+    assert 1 + rubber_stiffening(0.1) == pytest.approx(slope, rel=1e-6)
 
 
 def test_a_load_that_crushes_the_material_is_beyond_the_model_while_flutter_is_not():

@@ -11,7 +11,7 @@ from surveyed import survey_only
 
 from rodsweep import __version__
 from rodsweep.api.dataset import open_result
-from rodsweep.config.document.reading import canonical, validated
+from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.results.file.combination.identity import fingerprint_of
 from rodsweep.results.file.validation import FORMAT
@@ -274,9 +274,9 @@ def test_what_changes_no_number_makes_no_other_config(text, old, new, is_same):
 
 def asked(text):
     """The fingerprint of the config of a grid."""
-    config = validated(YAML(typ="safe").load(text))
+    config = validated_config(YAML(typ="safe").load(text))
     columns = [config.parameters.axes[name].array() for name in config.names]
-    return fingerprint_of(canonical(config), columns)
+    return fingerprint_of(resolved_config(config), columns)
 
 
 @pytest.mark.parametrize(

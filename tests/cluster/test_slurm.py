@@ -14,7 +14,7 @@ from ranks import PATIENCE
 from slow_runs import FOR_EVER, slowly
 
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.variables import MISSING
+from rodsweep.results.layouts.variables import MISSING_STATUS
 
 from .slurm import CannotStart, Slurm, started_slurm, wait_for
 
@@ -210,7 +210,7 @@ def test_shards_of_an_array_are_merged_when_all_have_ended(quick_slurm, expected
     assert log(quick_slurm).count(STOPPED) == 1
     assert "108 points from 3 files, 0 missing" in log(quick_slurm)
     parts = [content(path)["status"] for path in quick_slurm.directory.glob("c-*-of-3.h5")]
-    assert [(part != MISSING).sum() for part in parts] == [36, 36, 36]
+    assert [(part != MISSING_STATUS).sum() for part in parts] == [36, 36, 36]
     assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 

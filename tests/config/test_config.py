@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from rodsweep.config.document.reading import config_of, text_of
+from rodsweep.config.document.reading import config_of, config_yaml
 from rodsweep.config.document.refusals import similar_keys
 from rodsweep.errors import InputError
 from rodsweep.tasks.running.job import make_job
@@ -418,7 +418,7 @@ def test_a_list_may_have_a_column_of_tapers_in_every_task(tmp_path, task):
     assert made.layout.parameters == (*names, "taper")
     assert not made.config.standard
     assert config_of(made.resolved) == made.config
-    assert job(tmp_path, text_of(made.config)).points.identity[-1].tolist() == [0.5, 0.8]
+    assert job(tmp_path, config_yaml(made.config)).points.identity[-1].tolist() == [0.5, 0.8]
 
 
 def test_columns_are_those_of_the_header(tmp_path):

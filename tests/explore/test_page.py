@@ -16,7 +16,7 @@ from rodsweep.explore.page_style import template_text
 from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
 from rodsweep.explore.pictures.diagram import BOUNDARY_COLOURS, DiagramCell, cells, unstable_count_words
 from rodsweep.explore.pictures.numbers import number_text
-from rodsweep.explore.solving.diagrams import CRUSHED, NOT_KNOWN
+from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from rodsweep.explore.solving.needs import INSTANT_KINDS
 from rodsweep.explore.solving.questions import Question, Reply, answer_to
 from rodsweep.explore.state import PageState
@@ -215,7 +215,7 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
 
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     picture = page_with(ImmediateSolvers(())).contents.diagram
-    counts = np.array([[0, 1, 2, NOT_KNOWN, CRUSHED]])
+    counts = np.array([[0, 1, 2, UNKNOWN_COUNT, CRUSHED_COUNT]])
     assert [unstable_count_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
         "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
     ]  # fmt: skip

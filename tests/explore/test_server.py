@@ -15,7 +15,7 @@ from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 from tornado.web import Application, RequestHandler
 from tornado.websocket import websocket_connect
 
-from rodsweep.explore.server import ADDRESS, ExploreServer, UndelayedServer
+from rodsweep.explore.server import LISTEN_ADDRESS, ExploreServer, UndelayedServer
 from rodsweep.explore.state import PageState
 
 LONGEST = 60
@@ -27,7 +27,7 @@ async def connected(server: ExploreServer, origin: str) -> str:
     page = (await AsyncHTTPClient().fetch(server.url)).body.decode()
     token = re.search(r'"token":"([^"]+)"', page)[1]
     request = HTTPRequest(
-        f"ws://{ADDRESS}:{server.port}/ws",
+        f"ws://{LISTEN_ADDRESS}:{server.port}/ws",
         headers={"Origin": origin, "Sec-WebSocket-Protocol": f"bokeh, {token}"},
     )
     connection = await websocket_connect(request, subprotocols=["bokeh", token])
@@ -93,9 +93,9 @@ def test_small_changes_are_sent_at_once():
 
     async def run() -> None:
         server = UndelayedServer(Application([("/", Seen)]))
-        server.listen(0, ADDRESS)
+        server.listen(0, LISTEN_ADDRESS)
         (listening,) = server._sockets.values()
-        await AsyncHTTPClient().fetch(f"http://{ADDRESS}:{listening.getsockname()[1]}/")
+        await AsyncHTTPClient().fetch(f"http://{LISTEN_ADDRESS}:{listening.getsockname()[1]}/")
         server.stop()
 
     asyncio.run(run())
@@ -136,7 +136,7 @@ def test_ctrl_c_ends_the_server_with_all_its_processes(number):
 
 def test_a_port_in_use_is_refused(command):
     with socket.socket() as other:
-        other.bind((ADDRESS, 0))
+        other.bind((LISTEN_ADDRESS, 0))
         other.listen()
         port = other.getsockname()[1]
         done = command.afresh("explore", "--port", port)

@@ -20,7 +20,7 @@ from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.lists import number_points
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.sections import section
-from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps
+from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, pixel_classes
@@ -47,7 +47,7 @@ def test_rightmost_and_smallest_roots_differ():
 def test_line_is_broken_where_another_root_takes_over():
     x = np.arange(8.0)
     w = np.stack([x + 0j, np.where(x < 5, 1.0, 200.0) + 0.1 * x], axis=1)
-    broken_x, broken_w = with_gaps(x, w)
+    broken_x, broken_w = with_gaps_between_roots(x, w)
     assert np.flatnonzero(np.isnan(broken_x)).tolist() == [5]
     assert np.isnan(broken_w[5]).all()
 

@@ -14,8 +14,8 @@ from rodsweep.post.summary import show_summary
 from rodsweep.results.file.provenance import (
     FAILURE_REASONS,
     MAX_FAILURE_REASONS,
+    joined_failure_reasons,
     merged_history,
-    united_reasons,
 )
 from rodsweep.results.layouts.phase_diagram import CLASSES, CURVE_ENDS
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -192,10 +192,10 @@ def test_files_that_are_merged_keep_the_reasons_of_both():
     assert merged_history(attributes)[FAILURE_REASONS] == f"{one}\n{other}"
     assert FAILURE_REASONS not in merged_history([{}])
     assert (
-        united_reasons("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[FAILURE_REASONS].count(
-            "F="
-        )
+        joined_failure_reasons("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[
+            FAILURE_REASONS
+        ].count("F=")
         == 1
     )
     many = "\n".join(f"F={i}.0: failed {'x' * i}" for i in range(2 * MAX_FAILURE_REASONS))
-    assert len(united_reasons(many)[FAILURE_REASONS].splitlines()) == MAX_FAILURE_REASONS
+    assert len(joined_failure_reasons(many)[FAILURE_REASONS].splitlines()) == MAX_FAILURE_REASONS

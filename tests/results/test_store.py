@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rodsweep.api.dataset import open_result
-from rodsweep.config.document.reading import canonical, validated
+from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.results.file import exchange, points, validation
 from rodsweep.results.file.combination.identity import config_difference
@@ -24,8 +24,8 @@ from rodsweep.results.run import journal as pages_of
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals, read_reasons
 from rodsweep.sweep.points.points import Points
 
-CONFIG = canonical(
-    validated(
+CONFIG = resolved_config(
+    validated_config(
         {
             "task": "spectrum",
             "parameters": dict.fromkeys(("F", "k1", "k2", "gamma3"), 1),
@@ -98,7 +98,7 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     journal(whole, range(count))
     whole.add_journals({})
     monkeypatch.setattr(pages_of, "BYTES_A_BLOCK", 3 * (LAYOUT.record.itemsize + 4))
-    monkeypatch.setattr(points, "POINTS_AT_ONCE", 2)
+    monkeypatch.setattr(points, "MAX_BLOCK_POINTS", 2)
     store = Store(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)
@@ -271,7 +271,7 @@ def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path
 
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(exchange, "LOCK_PATIENCE", 0.3)
+    monkeypatch.setattr(exchange, "LOCK_TIMEOUT", 0.3)
     store = Store(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
         Store(tmp_path / "a.h5", plan())

@@ -18,7 +18,7 @@ from contents import content, same
 from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.variables import MISSING
+from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.results.run.journal import JOURNAL_HEAD, journal_directory
 from rodsweep.tasks.running.job import make_job
 
@@ -112,7 +112,7 @@ def points_on_disk(path):
     if not path.exists():
         return 0
     view = read_view(path)
-    return int((view.variables["status"] != MISSING).sum())
+    return int((view.variables["status"] != MISSING_STATUS).sum())
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from kernels import other_kernels
 
 from rodsweep.results.file.provenance import (
     KERNELS_ATTRIBUTE,
-    kernels_of,
+    blas_kernels_in,
     kernels_sentence,
     merged_blas_kernels,
 )
@@ -65,8 +65,8 @@ def test_libraries_are_named_by_who_uses_them(monkeypatch, loaded, said):
 
 def test_kernels_of_several_runs_are_kept_once_each():
     assert merged_blas_kernels(["b", "a"], ["a"]) == "a\nb"
-    assert kernels_of({KERNELS_ATTRIBUTE: "a\nb"}) == ["a", "b"]
-    assert kernels_of({}) == ["unknown"], "an earlier version did not ask"
+    assert blas_kernels_in({KERNELS_ATTRIBUTE: "a\nb"}) == ["a", "b"]
+    assert blas_kernels_in({}) == ["unknown"], "an earlier version did not ask"
     assert kernels_sentence("a") == ""
     assert "2 BLAS kernels (a; b)" in kernels_sentence("a\nb")
 
@@ -85,7 +85,7 @@ def test_one_kernel_is_recorded_and_nothing_said(command):
     run = command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5")
     again = command("run", "c.yaml", "-o", "c.h5", ranks=2)
     assert "BLAS" not in run.stdout + again.stdout
-    assert kernels_of(read_view(command.directory / "c.h5").attributes) == [blas()]
+    assert blas_kernels_in(read_view(command.directory / "c.h5").attributes) == [blas()]
     assert blas() in command("show", "c.h5").stdout
 
 
@@ -103,7 +103,7 @@ def test_other_kernel_is_told_on_resume_and_merge_and_gives_the_same_numbers(com
         assert run.returncode == 0, run.stderr
         assert run.stdout.count(f"{name}: computed in parts by 2 BLAS kernels") == 1
         attributes = read_view(command.directory / name).attributes
-        assert set(kernels_of(attributes)) == {blas(), next(iter(others.values()))}
+        assert set(blas_kernels_in(attributes)) == {blas(), next(iter(others.values()))}
         assert same_spectra(content(command.directory / name), plain)
     # Later runs that compute nothing, or nothing else, change nothing of it.
     assert "BLAS" not in command("run", "c.yaml", "-o", "merged.h5").stdout

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rodsweep.sweep.progress import on_terminal
-from rodsweep.sweep.remaining_time import RECORD_RATIO, Pace, in_words, rate_in_words
+from rodsweep.sweep.remaining_time import RECORD_RATIO, Pace, duration_text, rate_in_words
 
 RANDOM = np.random.default_rng(3)
 COLD, WARM = 0.1, 0.01
@@ -118,7 +118,7 @@ def test_memory_does_not_grow_with_the_points():
     [(0.0, "0 s"), (8.4, "8 s"), (86.0, "86 s"), (87.0, "1.4 min"), (600, "10 min"), (5220, "1.4 h")],
 )
 def test_times_are_said_to_two_digits(seconds, text):
-    assert in_words(seconds) == text
+    assert duration_text(seconds) == text
 
 
 def test_rates_are_said_by_the_point_where_it_is_slow():

@@ -15,7 +15,7 @@ from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
 from rodsweep.post.summary.arm.validity import validity_sentence
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import NOT_KNOWN, VALIDITY
+from rodsweep.results.layouts.arm import VALIDITY, VALIDITY_NOT_KNOWN
 from rodsweep.results.layouts.phase_diagram import CLASSES
 from rodsweep.tasks.arm.validity import HOPF_KINDS, MOTION_OF_TASK, ArmValidity
 
@@ -74,7 +74,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
     if crossings == 8:
         assert (data.model_applies > Validity.applies).all()
         return
-    assert (data.model_applies == NOT_KNOWN).all()
+    assert (data.model_applies == VALIDITY_NOT_KNOWN).all()
     assert np.isnan(data.neglected_excess).all()
     validity = {v.name: data[v.name].values.ravel() for v in VALIDITY}
     said = "whether the model applies is not known at all 2 points: a motion may have been missed"
@@ -99,7 +99,7 @@ def test_a_search_that_failed_is_no_arm_at_rest():
     assert record["model_applies"] == Validity.applies
     judge = ArmValidity(made.config, made.points, solver.statuses)
     failed = next(status for status in solver.statuses if status.name == "failed")
-    assert judge.of(record | {"status": int(failed)}, 0)["model_applies"] == NOT_KNOWN
+    assert judge.of(record | {"status": int(failed)}, 0)["model_applies"] == VALIDITY_NOT_KNOWN
 
 
 def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():

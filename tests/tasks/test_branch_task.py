@@ -20,7 +20,7 @@ from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.summary import branch as summary
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
-from rodsweep.results.layouts.variables import MISSING
+from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.tasks.branch import branch_values
@@ -212,7 +212,7 @@ def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(comma
 def test_rods_that_are_missing_are_not_said_to_have_no_branch(command):
     shown(command, CONFIG.format(k1="[100, 150]", stop=90))
     view = read_view(command.directory / "c.h5")
-    view.variables["status"][0] = MISSING
+    view.variables["status"][0] = MISSING_STATUS
     assert "none" not in draw(view, command.directory / "c.png")
 
 

@@ -12,7 +12,7 @@ from known_cycles import TORUS, make_view
 from ranks import wait_for_end
 from surveyed import few
 
-from rodsweep.cli.checking import describe_job
+from rodsweep.cli.checking import print_job_check
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
 from rodsweep.post.summary.limit_cycle import limit_cycle_summary
@@ -21,7 +21,7 @@ from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
-from rodsweep.results.run.journal import Journal, drop_files
+from rodsweep.results.run.journal import Journal, delete_matching_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
 from rodsweep.sweep.points.ranges import IndexSet
@@ -184,7 +184,7 @@ def test_what_the_task_cannot_use_is_refused_in_one_sentence(tmp_path, text, sen
 
 
 def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
-    describe_job(
+    print_job_check(
         job_of(
             tmp_path,
             config(f"{NEIGHBOUR}, direction: down, samples: 1000, shapes: 50, nodes: 65, transient: 500"),
@@ -204,7 +204,7 @@ def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
         "s on one rank",
     ):
         assert words in text, words
-    describe_job(job_of(tmp_path, config()))
+    print_job_check(job_of(tmp_path, config()))
     text = " ".join(capsys.readouterr().out.split())
     for words in (
         "8 points (2 x 1 x 2 x 1 x 2), each started from the leading mode with tip deflection 0.01 L",
@@ -394,9 +394,9 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     file = filled_file(tmp_path)
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.tasks.running.job import make_job\n"
+        "from rodsweep.cli.checking import print_job_check\nfrom rodsweep.tasks.running.job import make_job\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
-        "describe_job(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
+        "print_job_check(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "c.yaml"), str(file)]
@@ -541,7 +541,7 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
     for place in range(0, len(data), 7):
         path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
         assert kept.read(0) is None
-    drop_files(tmp_path, CHECKPOINTS)
+    delete_matching_files(tmp_path, CHECKPOINTS)
     assert not list(tmp_path.iterdir())
 
 

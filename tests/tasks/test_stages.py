@@ -9,13 +9,13 @@ import rodsweep
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.figures import FIGURES
 from rodsweep.post.summary import SUMMARIES
-from rodsweep.results.layouts import LAYOUTS
+from rodsweep.results.layouts import LAYOUT_MAKERS
 from rodsweep.tasks import TASKS
 
 PACKAGE = Path(rodsweep.__file__).parent
 STAGES = {
     "config/task": CONFIGS,
-    "results/layouts": LAYOUTS,
+    "results/layouts": LAYOUT_MAKERS,
     "tasks": TASKS,
     "post/summary": SUMMARIES,
     "post/figures": FIGURES,

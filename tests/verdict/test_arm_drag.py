@@ -305,8 +305,8 @@ def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
     tube = OVER_LOADS.replace("radius: 4 mm", "radius: 4 mm\n    inner_radius: 2 mm")
     (tmp_path / "a.yaml").write_text(tube, encoding="utf-8")
     code = (
-        "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import describe_job\n"
-        "from rodsweep.tasks.running.job import make_job\ndescribe_job(make_job(Path(sys.argv[1]), ()))\n"
+        "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import print_job_check\n"
+        "from rodsweep.tasks.running.job import make_job\nprint_job_check(make_job(Path(sys.argv[1]), ()))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]

@@ -29,7 +29,7 @@ def series_of(column: Column) -> Any:
     if column.is_boolean:
         return column.values.astype(bool)
     if column.words:
-        return np.array(words_of(column), dtype=object)
+        return np.array(column_texts(column), dtype=object)
     if column.values.dtype.kind in "iu" and column.absent.any():
         return pd.Series(column.values, dtype="Int64").mask(column.absent)
     if column.values.dtype.kind == "f":
@@ -37,6 +37,6 @@ def series_of(column: Column) -> Any:
     return np.array(column.values)
 
 
-def words_of(column: Column) -> list[str | None]:
+def column_texts(column: Column) -> list[str | None]:
     """Values of a column as texts; None stands for a missing value."""
     return [text or None for text in column.text()]

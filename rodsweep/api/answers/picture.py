@@ -11,7 +11,7 @@ from typing import Any, Literal, ParamSpec, TypedDict, TypeVar, Unpack
 
 import xarray as xr
 
-from ...config.document.call_arguments import in_sentences, unknown
+from ...config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.figures import draw
@@ -44,13 +44,13 @@ PLOT_EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 
 def as_python_arguments(sentence: str) -> str:
     """A sentence in which arguments of `rs.plot` replace options of `rodsweep plot`."""
-    sentence = AT_OPTION.sub(_place, sentence)
+    sentence = AT_OPTION.sub(_at_argument_text, sentence)
     for option, argument in ARGUMENTS_OF_OPTIONS:
         sentence = option.sub(argument, sentence)
     return sentence
 
 
-def _place(match: re.Match[str]) -> str:
+def _at_argument_text(match: re.Match[str]) -> str:
     """The argument `at` of `rs.plot` as Python code, from a match of AT_OPTION. Only values that are not
     numbers are quoted.
     """
@@ -58,7 +58,7 @@ def _place(match: re.Match[str]) -> str:
     return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
-def refusing_in_python(function: Callable[P, R]) -> Callable[P, R]:
+def naming_python_arguments(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: an InputError of the function names the arguments of `rs.plot` instead of command-line
     options.
     """
@@ -85,7 +85,7 @@ class FigureOptions(TypedDict, total=False):
     style: str | None
 
 
-def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
+def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> None:
     """Raises InputError for the first argument whose value is not allowed.
 
     choices: (value, allowed values) by name of the argument; the value None is always allowed.
@@ -126,7 +126,7 @@ class Picture:
     """The rendered figure, PNG, or GIF for an animation."""
 
     @one_at_a_time
-    @refusing_in_python
+    @naming_python_arguments
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg; .gif or .mp4 for an animation) and returns a
         sentence about the figure."""
@@ -153,8 +153,8 @@ class Picture:
 
 
 @one_at_a_time
-@in_sentences(PLOT_EXAMPLE)
-@refusing_in_python
+@refusing_wrong_arguments(PLOT_EXAMPLE)
+@naming_python_arguments
 def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
@@ -172,8 +172,10 @@ def plot(
     """
     for name in look:
         if name not in FigureOptions.__annotations__:
-            raise unknown(name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__])
-    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS))
+            raise unknown_argument_error(
+                name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
+            )
+    _require_allowed_choices(roots=(roots, ROOTS), what=(what, KINDS))
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")

@@ -82,8 +82,8 @@ def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: s
 
 def brief_text(printed: PrintedAnswer) -> str:
     """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
-    lines = [*_heads(printed), *_number_lines(printed)]
-    more = _more(printed)
+    lines = [*_folded_heading(printed), *_number_lines(printed)]
+    more = _remaining_numbers_line(printed)
     lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - more.count("\n") - 1)
     return "\n".join([*lines, more])
 
@@ -97,19 +97,22 @@ def brief_html(printed: PrintedAnswer) -> str:
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
         parts.append(_html_table([name, unit], rows))
-    return "".join([*parts, f"<p>{escape(' '.join(_more(printed).split()))}</p>"])
+    return "".join([*parts, f"<p>{escape(' '.join(_remaining_numbers_line(printed).split()))}</p>"])
 
 
 def whole_text(printed: PrintedAnswer) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, and the lists."""
-    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
-    parts = ["\n".join(_heads(printed)), "\n".join(["numbers", *rows_with_prose(rows)]) if rows else ""]
+    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers]
+    parts = [
+        "\n".join(_folded_heading(printed)),
+        "\n".join(["numbers", *rows_with_prose(rows)]) if rows else "",
+    ]
     for name, columns in printed.lists.items():
-        lines = [wrap_cell_text(_title(name, columns, printed.totals.get(name, 0)))]
+        lines = [wrap_cell_text(_list_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
             digits = printed.rod.lists[name]
             kept = [column for column in columns if not column.absent.all()]
-            cells = [column_cells((c.name, _unit(c)), digits.texts(c.name)) for c in kept]
+            cells = [column_cells((c.name, _unit_text(c)), digits.texts(c.name)) for c in kept]
             for number, block in enumerate(blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
@@ -118,23 +121,23 @@ def whole_text(printed: PrintedAnswer) -> str:
 
 def whole_html(printed: PrintedAnswer) -> str:
     """Long HTML of an answer, with the content of `whole_text`."""
-    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit(c), c.meaning) for c in printed.numbers]
+    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
-        parts.append(f"<p>{escape(_title(name, columns, printed.totals.get(name, 0)))}</p>")
+        parts.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
         digits = printed.rod.lists[name]
-        heads = [tuple(column.name for column in columns), tuple(map(_unit, columns))]
+        heads = [tuple(column.name for column in columns), tuple(map(_unit_text, columns))]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
         parts.append(_html_table(heads, rows_of) if rows_of else "")
     return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
 
 
-def _heads(printed: PrintedAnswer) -> list[str]:
+def _folded_heading(printed: PrintedAnswer) -> list[str]:
     """Lines of the heading, folded at the maximum width of a line."""
     return [line for text in printed.heading if text for line in wrap_cell_text(text).splitlines()]
 
 
-def _title(name: str, columns: Sequence[Column], total: int) -> str:
+def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     """Title of a list: name and number of rows. total: number of items found, printed if larger than the
     number of rows. columns: columns of the list.
     """
@@ -151,7 +154,7 @@ def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
         column = printed.rod.column(name)
         if column is not None:
             ((value, error),) = printed.rod.points.pairs(column.name)
-            pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", _unit(column)))
+            pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", _unit_text(column)))
     return pairs
 
 
@@ -159,7 +162,7 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
     value.
     """
-    room = MAX_BRIEF_LINES - len(_heads(printed)) - 2  # beside the empty line and the last line
+    room = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
     pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
     if not pairs:
         return []
@@ -185,7 +188,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     width = -len(COLUMN_GAP)
     for column in columns if count else ():
         values, errors = zip(*digits.pairs(column.name)[:room], strict=True)
-        added = [column_cells((column.name, _unit(column)), values)]
+        added = [column_cells((column.name, _unit_text(column)), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
         if width > WIDTH:
@@ -206,7 +209,7 @@ def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
     return ["", *block] + ([f"and {count - rows} more"] if count > rows + 1 else [])
 
 
-def _more(printed: PrintedAnswer) -> str:
+def _remaining_numbers_line(printed: PrintedAnswer) -> str:
     """Line that names `.table()` for all numbers, and the lists with their numbers of rows."""
     rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
     rows.update(printed.row_counts)
@@ -214,7 +217,7 @@ def _more(printed: PrintedAnswer) -> str:
     return wrap_cell_text(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
 
-def _unit(column: Column) -> str:
+def _unit_text(column: Column) -> str:
     return "" if column.unit == "1" else column.unit
 
 

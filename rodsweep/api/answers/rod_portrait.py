@@ -7,7 +7,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ...config.document.call_arguments import in_sentences
+from ...config.document.call_arguments import refusing_wrong_arguments
 from ...post.figures.request import Drawing
 from ...post.rod_portrait.paragraph import paragraph
 from ...post.rod_portrait.picture import portrait_figure
@@ -93,7 +93,7 @@ class RodPortrait:
         return portrait_figure(self.results, with_words=False)
 
     @one_at_a_time
-    @in_sentences(SAVE_EXAMPLE)
+    @refusing_wrong_arguments(SAVE_EXAMPLE)
     def save(self, path: str | Path) -> str:
         """Writes the portrait (.png, .pdf, .svg, or .html with tables) and returns a sentence about the
         file."""
@@ -112,7 +112,7 @@ class RodPortrait:
         return {"image/png": image.getvalue(), "text/plain": repr(self)}
 
 
-def portrait_of(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
+def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
     """Solves all results of a portrait in this process, and returns the portrait. rod: text of the rod.
     progress: as in `rod.portrait`. Raises InputError for an invalid request.
     """

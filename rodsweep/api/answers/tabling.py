@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from ...config.document.call_arguments import in_sentences
+from ...config.document.call_arguments import refusing_wrong_arguments
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.tables import Tables
@@ -19,13 +19,13 @@ from .answer import Answer
 from .frames import frame_of
 
 TABLE_EXAMPLE = 'rs.table(data, "crossings")'
-Result = xr.Dataset | Answer | str | Path
+TableSource = xr.Dataset | Answer | str | Path
 """Result from which `rs.table` makes a table; text and paths name a result file."""
 
 
 @one_at_a_time
-@in_sentences(TABLE_EXAMPLE)
-def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ()) -> pd.DataFrame:
+@refusing_wrong_arguments(TABLE_EXAMPLE)
+def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] = ()) -> pd.DataFrame:
     """A table of a result, with one row per item and the item's parameters in each row.
 
     name: `points`, or a list of the task such as `modes`, `crossings` or `branches`. The default is the table

@@ -63,7 +63,7 @@ class IntegratorFamily:
         return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
-def petsc_run(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
+def petsc_trajectory(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
     """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
     ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
     "arkimex" and "5". tolerance: see the module.
@@ -78,9 +78,9 @@ def petsc_run(family: str, variant: str, tolerance: float, task: IntegrationTask
 
 WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances at which integrators run until the motion is periodic, from the loosest."""
-DEFAULT = IntegratorFamily(
+DEFAULT_INTEGRATOR = IntegratorFamily(
     "ARKIMEX 5 (default)",
-    partial(petsc_run, "arkimex", "5"),
+    partial(petsc_trajectory, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),
     WAITING_TOLERANCES,
 )

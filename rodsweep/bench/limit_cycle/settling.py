@@ -9,16 +9,16 @@ from math import inf, isfinite, log, nan
 import numpy as np
 
 from ...solve.motion.leading_mode import leading_mode
-from ..study import Contender, TimedRuns, by_method, markdown_table, race
+from ..study import Contender, TimedRuns, by_method, markdown_table, time_runs
 from .integrators import IntegrationTask
 from .tracking import (
     CYCLE_FORCE,
     FOLLOWED_PERIODS,
-    SETTLED_WITHIN,
+    SETTLING_TOLERANCE,
     START_DEFLECTION,
     ReferenceCycle,
-    cycle_at,
     orbit_of,
+    solve_cycle_at_force,
     state_on_cycle,
     tip_returns,
 )
@@ -80,25 +80,29 @@ def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int
     waiting = {
         method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()
     }
-    cycle = cycle_at(CYCLE_FORCE)
-    left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
-    waits = [SettlingMethod(CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
+    cycle = solve_cycle_at_force(CYCLE_FORCE)
+    left = _cycle_error(at, cycle.measures.period, cycle.measures.tip_y_max)
+    waits = [
+        SettlingMethod(
+            CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, left, partial(solve_cycle_at_force, CYCLE_FORCE)
+        )
+    ]
     waits += waiting.values()
-    waits += _near_hopf([c for c in every if waiting[c.method].setting == c.setting])
-    return settling_table(waits, race([wait.run for wait in waits], [rounds] * len(waits)))
+    waits += _methods_near_hopf([c for c in every if waiting[c.method].setting == c.setting])
+    return settling_table(waits, time_runs([wait.run for wait in waits], [rounds] * len(waits)))
 
 
 def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
     """Table of the methods `waits`, with returns, times and errors. raced: times of each method."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
-        f"returns agree to {SETTLED_WITHIN:.0e}. The integrator has the loosest tolerance at which the "
+        f"returns agree to {SETTLING_TOLERANCE:.0e}. The integrator has the loosest tolerance at which the "
         "returns agree and the errors of the period and of y are no larger than this; the user is assumed to "
-        "know this tolerance. "
-        "solve_cycle has the same accuracy; its time includes "
+        "know this tolerance. solve_cycle has the same accuracy; its time includes "
         f"the choice of mesh and the proof of stability. At F = {NEAR_HOPF_F:g} the number of periods is a "
-        f"lower bound, ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time follows from the time "
-        "per period; the error is the estimate of solve_cycle and, for waiting, the required accuracy.\n\n"
+        f"lower bound, ln({SETTLING_TOLERANCE:.0e})/ln(largest multiplier), and the time follows from the "
+        "time per period; the error is the estimate of solve_cycle and, for waiting, the required "
+        "accuracy.\n\n"
     ) + markdown_table(
         "F | method | tolerance | returns | ms | error",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
@@ -106,13 +110,14 @@ def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) 
     )
 
 
-def _error(at: ReferenceCycle, period: float, height: float) -> float:
+def _cycle_error(at: ReferenceCycle, period: float, height: float) -> float:
     return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
 
 
 def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
-    y are accurate, within SETTLED_WITHIN. settings: contenders of one integrator, from the loosest tolerance.
+    y are accurate, within SETTLING_TOLERANCE. settings: contenders of one integrator, from the loosest
+    tolerance.
     """
     task = IntegrationTask(
         at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
@@ -127,28 +132,32 @@ def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender])
             continue
         sizes = np.linalg.norm(found.states[1:], axis=1)
         distances = np.linalg.norm(np.diff(found.states, axis=0), axis=1) / sizes
-        settled = list(map(int, np.flatnonzero(distances <= SETTLED_WITHIN)))
+        settled = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
         for k in settled[:1]:
-            left = _error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
-            if left <= SETTLED_WITHIN:
+            left = _cycle_error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
+            if left <= SETTLING_TOLERANCE:
                 again = partial(contender.run, task._replace(duration=float(found.times[k + 1])))
                 return SettlingMethod(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
     return SettlingMethod(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
 
 
-def _near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
+def _methods_near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
     periodic is estimated from the largest Floquet multiplier. settled: contender of each integrator."""
-    cycle = cycle_at(NEAR_HOPF_F)
+    cycle = solve_cycle_at_force(NEAR_HOPF_F)
     task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
-    count = log(SETTLED_WITHIN) / log(cycle.multiplier)
+    count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     waits = [
-        SettlingMethod(NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF_F))
+        SettlingMethod(
+            NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(solve_cycle_at_force, NEAR_HOPF_F)
+        )
     ]
     for contender in settled:
         run = partial(contender.run, task)
         times = count / FOLLOWED_PERIODS
         way = WAITING_PREFIX + contender.method
-        waits.append(SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLED_WITHIN, run, times))
+        waits.append(
+            SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLING_TOLERANCE, run, times)
+        )
     return waits

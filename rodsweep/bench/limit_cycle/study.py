@@ -11,15 +11,8 @@ from math import isfinite, log, nan
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.reference_rod import warm_up
 from ..peers import Peers
-from ..study import (
-    Measurement,
-    Study,
-    count_text,
-    every_nth_setting,
-    grouped_by_fields,
-    markdown_table,
-)
-from .integrators import DEFAULT
+from ..study import Measurement, Study, count_text, every_nth_setting, grouped_by_fields, markdown_table
+from .integrators import DEFAULT_INTEGRATOR
 from .settling import compare_settling
 from .sweeping import QUICK_RODS, RODS, measure_sweep_points, sweep_introduction, sweep_table
 from .tracking import (
@@ -36,11 +29,14 @@ ROUND_COUNT = 9
 """Number of timed rounds."""
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
-FOLLOWING = "following"
+FOLLOWING_RACE = "following"
 """Name of the race in which integrators follow a cycle for some periods."""
-WAITING = "waiting"
+WAITING_RACE = "waiting"
 """Name of the race in which integrators run until the motion is periodic."""
-DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
+ERROR_NAMES_BY_PANEL = {
+    "error of the period": "period_error",
+    "error of the largest tip y": "amplitude_error",
+}
 """Names of the errors in the figure, by the title of the panel."""
 
 
@@ -51,10 +47,14 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     at = solve_reference()
-    followers = every_nth_setting([*DEFAULT.following_contenders(), *peers.of(FOLLOWING)], stride)
+    followers = every_nth_setting(
+        [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)], stride
+    )
     found = measure_following(at, followers, rounds)
     blocks = [introduction(rounds), *peers.notes, work_table(found), time_at_error_table(found)]
-    blocks.append(compare_settling(at, [*DEFAULT.settling_contenders(), *peers.of(WAITING)], rounds))
+    blocks.append(
+        compare_settling(at, [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)], rounds)
+    )
     undrawn = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
     blocks += [sweep_introduction(), sweep_table(undrawn)]
     for section in peers.sections:
@@ -63,7 +63,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
         undrawn += further
     drawn = [
         replace(m, case=case, error=m.extra.get(error, m.error))
-        for case, error in DRAWN_ERRORS.items()
+        for case, error in ERROR_NAMES_BY_PANEL.items()
         for m in found
     ]
     return Study(
@@ -109,7 +109,7 @@ def time_at_error_table(measurements: Sequence[Measurement]) -> str:
         median = [m.seconds for m in own]
         least = [m.least_seconds for m in own]
         at[method] = time_at_error(TARGET_ERROR, errors, median), time_at_error(TARGET_ERROR, errors, least)
-    default, by_least = at[DEFAULT.name]
+    default, by_least = at[DEFAULT_INTEGRATOR.name]
     rows = [
         {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / by_least}
         for method, (median, least) in at.items()

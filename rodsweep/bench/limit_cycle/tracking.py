@@ -50,7 +50,7 @@ FOLLOWED_PERIODS = 6.3
 on the cycle."""
 TARGET_ERROR = 1e-6
 """Error at which integrators are compared: the larger of the relative errors of period and amplitude."""
-SETTLED_WITHIN = 1e-7
+SETTLING_TOLERANCE = 1e-7
 """Relative accuracy requested from `solve_cycle`. An integrated motion is periodic if the relative distance
 between the states at two successive returns is at most this number."""
 START_DEFLECTION = 0.1
@@ -63,7 +63,7 @@ SPLINE_DEGREE = 7
 """Degree of the interpolating spline through the states after the small steps."""
 NEWTON_CORRECTION_COUNT = 2
 """Number of Newton steps that correct a return found on the spline, which has errors of 1e-8 rad."""
-REPEATED_STEP_FACTOR = 1.25
+SMALL_STEPS_DURATION_RATIO = 1.25
 """Ratio of the total duration of the small steps to the repeated step. With the ratio 1 the return could be
 missed."""
 
@@ -84,9 +84,9 @@ def cycle_request(accuracy: float) -> CycleRequest:
     return CycleRequest(accuracy, START_DEFLECTION, 1, 0, 0, 0, MAX_RETURNS)
 
 
-def cycle_at(force: float) -> Cycle:
+def solve_cycle_at_force(force: float) -> Cycle:
     """The cycle of FIG5_ROD at F = `force`, solved as in the task `limit_cycle`."""
-    return solve_cycle(FIG5_ROD.changed(F=force), cycle_request(SETTLED_WITHIN), along="F")
+    return solve_cycle(FIG5_ROD.changed(F=force), cycle_request(SETTLING_TOLERANCE), along="F")
 
 
 def orbit_of(cycle: Cycle) -> Orbit:
@@ -106,7 +106,7 @@ def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 
 def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
-    near = orbit_of(cycle_at(CYCLE_FORCE)).on_mesh(
+    near = orbit_of(solve_cycle_at_force(CYCLE_FORCE)).on_mesh(
         mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES
     )
     orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
@@ -163,7 +163,7 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     heights = []
     for k in rising:
         again = _integrate_in_small_steps(
-            beam, run.states[k], REPEATED_STEP_FACTOR * (run.times[k + 1] - run.times[k])
+            beam, run.states[k], SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
         )
         when = float(_spline(again.times, again.states @ row).roots(extrapolate=False)[0])
         for _ in range(NEWTON_CORRECTION_COUNT):

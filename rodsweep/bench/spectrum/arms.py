@@ -31,20 +31,20 @@ from .rodsweep_spectrum import (
 
 ARM_RACE = "arms"
 """Name of the race of spectra of arms."""
-SEGMENTS = Profile(
+FIVE_SEGMENT_PROFILE = Profile(
     (0.0, 0.2, 0.2, 0.4, 0.4, 0.6, 0.6, 0.8, 0.8, 1.0),
     tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6, 1.2, 1.2, 0.5, 0.5, 0.8, 0.8)),
 )
 """Profile of an arm of five segments, with radii of 1, 0.6, 1.2, 0.5 and 0.8 times the radius at the
 clamp."""
-ARMS = {
+ARM_RODS = {
     "cone": Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5),
-    "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=SEGMENTS)),
+    "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=FIVE_SEGMENT_PROFILE)),
     "cone of rubber": Rod(
         F=16.0, k1=2e2, k2=1e4, gamma3=1e-4, taper=0.5, build=Build("neo_hookean", "swelling")
     ),
 }
-ORDERS = (6, 8, 10, 12, 14, 16, 20)
+ELEMENT_ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements on which eigensolvers are run."""
 EDGE_ACCURACY = 1e-2
 """Accuracy for which the edges of the elements are chosen; the orders in ORDERS make the mesh more
@@ -81,12 +81,12 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     return roots
 
 
-def arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
+def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
     """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem.
     peers: contenders of the peers. rounds: number of timed rounds.
     """
     measurements = []
-    for name, rod in ARMS.items():
+    for name, rod in ARM_RODS.items():
         judge = partial(_error_field, exact_arm_spectrum(rod))
         measurements += measure_case(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
@@ -116,7 +116,7 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
         f"reaches this error, {count_text(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
         "Errors are relative distances from the roots of D, with elements that resolve 16 times the |w|:\n\n"
-    ) + markdown_table(" | ".join(["method", *ARMS]), "{method} | {cells}", rows)
+    ) + markdown_table(" | ".join(["method", *ARM_RODS]), "{method} | {cells}", rows)
 
 
 def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
@@ -159,6 +159,6 @@ def contenders() -> list[Contender]:
     ]
     krylov = [
         Contender(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
-        for order in ORDERS
+        for order in ELEMENT_ORDERS
     ]
     return own + krylov

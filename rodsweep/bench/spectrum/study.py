@@ -28,10 +28,10 @@ from ..study import (
     markdown_table,
     measure_case,
     nan_median,
-    race,
     result_or_error,
+    time_runs,
 )
-from .arms import ARM_RACE, arm_spectra, arm_table
+from .arms import ARM_RACE, arm_table, measure_arm_spectra
 from .exact import exact_spectrum, relative_error
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
@@ -44,7 +44,7 @@ from .rodsweep_spectrum import (
     rodsweep_spectrum,
 )
 
-ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
+ELEMENT_ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 """Orders of the elements of rodsweep's pencil on which eigensolvers are run."""
 SPECTRUM_RACE = "spectrum"
 """Name of the race of spectra of rods."""
@@ -89,7 +89,7 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     targets = TARGET_ERRORS[: 1 if quick else None]
     blocks = [equal_error_table(every, rods, exact, target, rounds) for target in targets]
     measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
-    arms = arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
+    arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
     return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms)
 
@@ -125,7 +125,7 @@ def equal_error_table(
         for i, rod in enumerate(rods)
         if name in fit[i]
     }
-    timed = dict(zip(runs, race(list(runs.values()), [rounds] * len(runs)), strict=True))
+    timed = dict(zip(runs, time_runs(list(runs.values()), [rounds] * len(runs)), strict=True))
     rows = []
     for name in names:
         reached = [i for i in range(len(rods)) if name in fit[i]]
@@ -168,7 +168,7 @@ def hard_rod_table(measurements: Sequence[Measurement]) -> str:
     rows = [
         {
             "method": method,
-            "cells": " | ".join(hard_cell(own) for own in grouped_by_fields(every, "case").values()),
+            "cells": " | ".join(hard_rod_cell(own) for own in grouped_by_fields(every, "case").values()),
         }
         for (method,), every in grouped_by_fields(measurements, "method").items()
     ]
@@ -179,7 +179,7 @@ def hard_rod_table(measurements: Sequence[Measurement]) -> str:
     ) + markdown_table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
-def hard_cell(measurements: Sequence[Measurement]) -> str:
+def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `hard_rod_table` for one method on one rod. measurements: at all sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
@@ -207,6 +207,6 @@ def contenders() -> list[Contender]:
         Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
         *(
             Contender(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
-            for size in ORDERS
+            for size in ELEMENT_ORDERS
         ),
     ]

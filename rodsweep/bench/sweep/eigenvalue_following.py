@@ -22,9 +22,9 @@ spectrum: {{modes: 4, follow: {4}}}
 """
 """Config of a sweep, as a format string. Fields: 0 to 3: numbers of values of F, k1, k2 and gamma3; 4: value
 of `follow`; F_max; taper."""
-FOLLOWED = "followed"
+FOLLOWED_METHOD = "followed"
 """Name of the method for sweeps whose eigenvalues are followed."""
-ALONE = "alone"
+ALONE_METHOD = "alone"
 """Name of the method for sweeps whose points are solved one by one."""
 
 
@@ -44,7 +44,7 @@ class ComparedGrids:
     taper: float = 1.0
 
 
-GRIDS = (
+GRID_PAIRS = (
     ComparedGrids("512 of F", (512, 2, 98, 2), (512, 2, 5, 2)),
     ComparedGrids("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
     ComparedGrids("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
@@ -52,7 +52,7 @@ GRIDS = (
     ComparedGrids("512 of F, cones", (512, 2, 4, 2), (32, 2, 4, 2), F_max=20.0, taper=0.5),
 )
 """Pairs of grids that are timed."""
-QUICK_GRIDS = (
+QUICK_GRID_PAIRS = (
     ComparedGrids("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
     ComparedGrids("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
     ComparedGrids("64 of F, cones", (64, 2, 2, 2), (2, 2, 2, 2), F_max=20.0, taper=0.5),
@@ -61,19 +61,19 @@ QUICK_GRIDS = (
 
 
 def followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
-    """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED, then
-    ALONE.
+    """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED_METHOD,
+    then ALONE_METHOD.
 
     folder: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
     small grids.
     """
     found = []
-    for axis in QUICK_GRIDS if quick else GRIDS:
-        for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
+    for axis in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
+        for method, shape in ((FOLLOWED_METHOD, axis.shape), (ALONE_METHOD, axis.smaller)):
             directory = folder / f"{method} {axis.name}".replace(" ", "_")
             directory.mkdir()
             text = FOLLOWED_CONFIG.format(
-                *shape, str(method == FOLLOWED).lower(), F_max=axis.F_max, taper=axis.taper
+                *shape, str(method == FOLLOWED_METHOD).lower(), F_max=axis.F_max, taper=axis.taper
             )
             (directory / CONFIG_NAME).write_text(text)
             case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)

@@ -83,13 +83,13 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     directory `directory`. points: number of points. kind: kind of solver.
     """
     directory.mkdir()
-    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in mixed_forces(points).tolist()]
+    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
     (directory / CONFIG_NAME).write_text(CYCLE_CONFIG)
     return SweepCase("limit cycles", points, (directory,), kind)
 
 
-def mixed_forces(count: int) -> np.ndarray:
+def shuffled_forces(count: int) -> np.ndarray:
     """Forces F far below, just below, just above and far above HOPF_FORCE, in random order, (count,)."""
     below = count // 5
     close = count // 6

@@ -36,7 +36,7 @@ from .launch import (
 
 SWEEP_SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Numbers of points of the sweeps with the instant solver, in a complete and in a quick run."""
-SINGLE_RUN_FROM = 10**6
+SINGLE_RUN_POINTS = 10**6
 """Sweeps with the instant solver and this number of points or more are run only once."""
 SPECTRUM_COUNT, QUICK_SPECTRUM_COUNT = 200_000, 6_000
 """Number of points of the sweep of spectra, in a complete and in a quick run."""
@@ -44,7 +44,7 @@ CYCLE_COUNT, QUICK_CYCLE_COUNT = 200, 10
 """Number of points of the sweep of limit cycles, in a complete and in a quick run."""
 ROUND_COUNT, CYCLE_ROUND_COUNT, QUICK_ROUND_COUNT = 3, 2, 1
 """Numbers of timed rounds of spectra, of limit cycles, and of all sweeps of a quick run."""
-TWO_COMMANDS = "spectra, two commands"
+TWO_COMMAND_CASE = "spectra, two commands"
 """Name of the case of two simultaneous commands, each with half of the spectra on one rank; its speed is an
 upper bound for the speed of two ranks."""
 MEGABYTE = 1e6
@@ -98,7 +98,7 @@ def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int])
     run(cycle_case(folder / "first_cycle", 1, SOLVED), 1)
     entries = [(spectra, n, rounds) for n in ranks]
     if len(ranks) > 1:
-        halves = [spectrum_case(folder / f"half{i}", TWO_COMMANDS, count // 2, SOLVED) for i in (0, 1)]
+        halves = [spectrum_case(folder / f"half{i}", TWO_COMMAND_CASE, count // 2, SOLVED) for i in (0, 1)]
         apart = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
         entries.append((apart, 1, rounds))
     return measure_in_turn(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
@@ -112,7 +112,7 @@ def instant_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
     entries = []
     for size in sizes:
         case = spectrum_case(folder / f"instant{size}", "no solver", size, INSTANT)
-        entries += [(case, n, 1 if size >= SINGLE_RUN_FROM else rounds) for n in ranks]
+        entries += [(case, n, 1 if size >= SINGLE_RUN_POINTS else rounds) for n in ranks]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
@@ -159,7 +159,7 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
     )
 
 
-def row_numbers(m: Measurement) -> dict[str, object]:
+def numbers_of_row(m: Measurement) -> dict[str, object]:
     """Numbers of a measured sweep, by name, for a row of a table."""
     microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
     return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
@@ -176,7 +176,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
             "inside": nan if m is one else one.extra["inside_seconds"] / m.extra["inside_seconds"],
             "busy": 100 * m.extra["share_busy"],
         }
-        rows.append(row_numbers(m) | gains)
+        rows.append(numbers_of_row(m) | gains)
     return markdown_table(
         "sweep | points | ranks | s | points a second | gain | gain inside | % busy "
         "| µs a point outside the solver | MB a rank | processors busy elsewhere",
@@ -198,7 +198,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
         "{case} | {points:.0f} | {ranks:.0f} | {seconds:.2f} | {microseconds:.1f} "
         "| {rss_megabytes_first:.1f} | {rss_megabytes_other:.1f} | {file_bytes_per_point:.1f} "
         "| {journal_bytes_per_point:.1f}",
-        map(row_numbers, measurements),
+        map(numbers_of_row, measurements),
     )
 
 

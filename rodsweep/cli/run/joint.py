@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...results.file.view import read_view
-from ...results.layouts.variables import Filled
+from ...results.layouts.variables import FilledVariable
 from ...results.run.checkpoints import ItemResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
@@ -17,10 +17,10 @@ from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import JointVariables, NamedArrays
-from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, UnitNote
+from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
 from ...watch import SolveStopped, reporting_to
 
-UNIT_NOUN = "halves of curves"
+HALF_CURVE_NOUN = "halves of curves"
 """Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 
@@ -45,7 +45,7 @@ class JointWork:
         together: JointVariables,
         output: Path,
         fingerprint: str,
-        note: UnitNote,
+        note: ItemExceptionNote,
         stop: StopRequest,
     ):
         """together: computes the variables. output: the result file. fingerprint: of config and points. note:
@@ -82,7 +82,7 @@ class JointWork:
             todo = DependentItemQueue(items, self.results, self.team.size)
         self._exchange_starts(items)
         shown = (
-            ProgressReporter(None, f"{title}, curves", UNIT_NOUN)
+            ProgressReporter(None, f"{title}, curves", HALF_CURVE_NOUN)
             if self.team.first and title
             else SilentProgress()
         )
@@ -116,7 +116,7 @@ class JointWork:
             self.note(items.item_label(item), error)
             yield item, self.together.empty_result()
 
-    def variables(self, items: Any) -> Sequence[Filled] | None:
+    def variables(self, items: Any) -> Sequence[FilledVariable] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
         before these variables were complete. items: half curves, as in `PendingJointWork`.
         """

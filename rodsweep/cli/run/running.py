@@ -21,13 +21,7 @@ from ...tasks.running.job import Job, job_of, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_shared_constants
-from .contribution import (
-    MAX_FAILURES_PRINTED,
-    RunContribution,
-    RunEnd,
-    last_run_attributes,
-    run_history,
-)
+from .contribution import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
 from .joint import JointWork, PendingJointWork
 from .options import RunOptions
 from .point_work import PointWork
@@ -68,7 +62,7 @@ class _RankRun:
         self.options = options
         self.shard = options.shard
         self.began = time.monotonic()
-        self.started = provenance.now()
+        self.started = provenance.utc_time()
         self.seconds = 0.0
         self.log = TracebackLog(output, team.rank, self._file_and_folder_text, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
@@ -168,7 +162,9 @@ class _RankRun:
     def _record_blas_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
         before = self.store.attributes()
-        kernels = provenance.merged_blas_kernels(provenance.kernels_of(before), self.kernels.splitlines())
+        kernels = provenance.merged_blas_kernels(
+            provenance.blas_kernels_in(before), self.kernels.splitlines()
+        )
         if kernels != before.get(provenance.KERNELS_ATTRIBUTE):
             self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):
@@ -185,7 +181,7 @@ class _RankRun:
         if variables is None:
             self.store.add_journals({"stopped": self.stop.name})
             return True
-        self.store.finish({"finished": provenance.now(), "stopped": self.stop.name}, variables)
+        self.store.finish({"finished": provenance.utc_time(), "stopped": self.stop.name}, variables)
         if self.joint:
             self.joint.kept.drop()
         return False

@@ -17,18 +17,18 @@ from ...model.parameters import PARAMETERS
 
 LOAD_AXES = (*LOADS, *RELATIVE)
 """Names of the config keys for the load, absolute or relative to flutter. An arm has at most one load."""
-AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
+SINGLE_PARAMETER_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """Name of the only parameter that depends on a quantity of the arm, by name of the quantity. Quantities on
 which several parameters depend are not included."""
-CHANGED_PARAMETER = AXIS_OF | dict.fromkeys(RELATIVE, "F")
+CHANGED_PARAMETER = SINGLE_PARAMETER_OF | dict.fromkeys(RELATIVE, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
-STORED_ALONG = AXIS_OF | {"drag": "gamma3", "tau2": "gamma3"}
+PARAMETER_STORED_ALONG = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
 """Name of the parameter along whose axis a result file stores a quantity or unit that has several values."""
-FLUID = ("viscosity", "fluid_density", "density_difference")
+FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
 """Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
 viscosity, and the densities are used only to test whether the model applies."""
-ALL_BUT_LOAD = (
+NON_LOAD_KEYS = (
     "length",
     "young",
     "radius",
@@ -37,7 +37,7 @@ ALL_BUT_LOAD = (
     "width",
     "height",
     "poisson",
-    *FLUID,
+    *FLUID_QUANTITIES,
     "drag",
 )
 """Names of all quantities of an arm except the load."""
@@ -51,15 +51,15 @@ MOST_POINTS = 1_000_000
 parameters of all points are kept in memory."""
 
 
-def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
+def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:
     """Names of the axes of a grid over an arm's quantities; empty if the points form a grid of parameters.
 
     sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
     in_diagram: whether the points are the rows of a phase diagram.
     """
-    given = (name for name in (*ALL_BUT_LOAD, *LOAD_AXES) if name in sizes)
+    given = (name for name in (*NON_LOAD_KEYS, *LOAD_AXES) if name in sizes)
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE]
-    if all(name in (STORED_ALONG if in_diagram else AXIS_OF) for name in quantities):
+    if all(name in (PARAMETER_STORED_ALONG if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
         return ()
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))
 

@@ -9,7 +9,7 @@ from ...errors import InputError
 from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
 from ...model.arm.quantities import RELATIVE, UNITS
 from ...model.units import in_si, share_of_flutter, split_quantity, written_in
-from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short_repr
+from ..values import AXIS_SCHEMA, Axis, as_axis, as_float, short_repr
 
 RANGE_ENDS = ("start", "stop")
 """Keys of the ends of a range."""
@@ -27,15 +27,15 @@ def as_quantities(value: Any, info: ValidationInfo) -> Axis:
 
 def _axis_in_si(name: str, value: Any) -> Axis:
     if isinstance(value, dict):
-        ends = {end: _read(name, value[end]) for end in ("start", "stop") if end in value}
+        ends = {end: _si_number(name, value[end]) for end in ("start", "stop") if end in value}
         try:
             return as_axis(value | ends)
         except ValueError as error:
             remark = _without_unit(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
             raise ValueError(f"{error}{remark}") from None
     if isinstance(value, list | tuple):
-        return as_axis([_read(name, each) for each in value])
-    return as_axis(_read(name, value))
+        return as_axis([_si_number(name, each) for each in value])
+    return as_axis(_si_number(name, value))
 
 
 def _without_unit(name: str, span: dict[str, Any]) -> str:
@@ -48,12 +48,12 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
     return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""
 
 
-def _read(name: str, value: Any) -> float:
+def _si_number(name: str, value: Any) -> float:
     """Number in SI units from `value`, a number or a text with a unit; ValueError for other values. name:
     name of the quantity.
     """
     if not isinstance(value, str):
-        return as_number(value)
+        return as_float(value)
     try:
         return in_si(f"parameters.arm.{name}", value, *UNITS[name])
     except InputError as error:
@@ -91,7 +91,7 @@ def _loads_in_flutter_loads(value: Any) -> tuple[list[float | None], bool]:
     """Returns (shares, is_relative). shares: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
-    shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
+    shares = [None if one is None else share_of_flutter(one) for one in _written_values(value)]
     return shares, any(share is not None for share in shares)
 
 
@@ -110,7 +110,7 @@ def as_drags(value: Any) -> Axis:
     return Axis(values=tuple(float(index) for index in sorted({DRAGS.index(name) for name in names})))
 
 
-def drags_written(values: list[float]) -> list[str]:
+def drag_names(values: list[float]) -> list[str]:
     """Names of drag estimates from `values`, their indices in DRAGS."""
     return [DRAGS[int(index)] for index in values]
 
@@ -119,11 +119,11 @@ def typed_unit(name: str, axis: Axis) -> str:
     """First unit that the user typed for the values of an axis of the quantity `name`; the SI unit if no unit
     was typed.
     """
-    units = [split_quantity(value)[1] for value in _each(axis.written) if isinstance(value, str)]
+    units = [split_quantity(value)[1] for value in _written_values(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
 
-def given_text(quantities: Mapping[str, Axis]) -> str:
+def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
     """Text with names, values and typed units of an arm's quantities, like "length 10 cm, radius 5 mm".
 
     A remark at the end names the quantities that were given without a unit.
@@ -133,26 +133,26 @@ def given_text(quantities: Mapping[str, Axis]) -> str:
     for name, axis in quantities.items():
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":
-            names = drags_written(axis.array().tolist())
+            names = drag_names(axis.array().tolist())
             words.append(f"drag {RANGE_OF_DRAG if len(names) == len(DRAGS) else ' and '.join(names)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{written_in(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
         words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
-        if unit and not all(isinstance(one, str) for one in _each(axis.written)):
+        if unit and not all(isinstance(one, str) for one in _written_values(axis.written)):
             bare.append(name)
     remark = f" ({' and '.join(bare)} without a unit: SI)" if bare else ""
     return f"{', '.join(words)}{remark}".replace("_", " ")
 
 
-def _each(written: Any) -> list[Any]:
+def _written_values(written: Any) -> list[Any]:
     """List of the values in `written`, a quantity as the user wrote it; for a range, [start, stop]."""
     if isinstance(written, Mapping):
         return [written.get(end) for end in RANGE_ENDS]
     return list(written) if isinstance(written, list | tuple) else [written]
 
 
-def _schema() -> dict[str, Any]:
+def _quantity_schema() -> dict[str, Any]:
     """JSON schema of the values that `as_quantities` accepts: axes of numbers or of texts with a unit."""
     each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
@@ -162,13 +162,18 @@ def _schema() -> dict[str, Any]:
     }
 
 
-NAMED_DRAG = {"enum": list(DRAGS)}
+DRAG_NAME_SCHEMA = {"enum": list(DRAGS)}
 """JSON schema of the name of a drag estimate."""
-Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_schema())]
+Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_quantity_schema())]
 Drags = Annotated[
     Axis,
     BeforeValidator(as_drags),
     WithJsonSchema(
-        {"anyOf": [{"enum": [RANGE_OF_DRAG, *DRAGS]}, {"type": "array", "items": NAMED_DRAG, "minItems": 1}]}
+        {
+            "anyOf": [
+                {"enum": [RANGE_OF_DRAG, *DRAGS]},
+                {"type": "array", "items": DRAG_NAME_SCHEMA, "minItems": 1},
+            ]
+        }
     ),
 ]

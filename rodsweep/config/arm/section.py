@@ -16,9 +16,9 @@ from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..material import LawName, SectionName
 from ..values import Axis, StrictSection, Values
-from .axes import ALL_BUT_LOAD, AXIS_OF, LOAD_AXES, STATUS_OF_ERROR, UncoveredArm
-from .quantities import Drags, Quantities, drags_written, with_relative_load
-from .shape import OF_MATERIAL, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
+from .axes import LOAD_AXES, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
+from .quantities import Drags, Quantities, drag_names, with_relative_load
+from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
 Allowed = Field(
     description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
@@ -96,7 +96,7 @@ class ArmSection(StrictSection):
     @property
     def material(self) -> dict[str, Any]:
         """Values of the given keys among segments, law and section, by key."""
-        return {name: getattr(self, name) for name in OF_MATERIAL if getattr(self, name) is not None}
+        return {name: getattr(self, name) for name in MATERIAL_KEYS if getattr(self, name) is not None}
 
     @property
     def is_nonuniform(self) -> bool:
@@ -132,19 +132,19 @@ class ArmSection(StrictSection):
 
         A quantity that varies between points has the value None.
         """
-        varied = AXIS_OF if self.is_grid else self.varying_quantities
+        varied = SINGLE_PARAMETER_OF if self.is_grid else self.varying_quantities
         numbers = {n: None if n in varied else value for n, value in self.first_values.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
 
     @property
     def is_grid(self) -> bool:
         """Whether the points form a grid of parameters, that is, every axis changes exactly one parameter."""
-        return all(name in AXIS_OF for name in self.varying_quantities)
+        return all(name in SINGLE_PARAMETER_OF for name in self.varying_quantities)
 
     @property
     def quantity_axes(self) -> dict[str, Axis]:
         """Axes of the given quantities by name, the load last."""
-        names = (*ALL_BUT_LOAD, *LOAD_AXES)
+        names = (*NON_LOAD_KEYS, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def require_allowed_keys(self) -> None:
@@ -228,7 +228,7 @@ class ArmSection(StrictSection):
 
     def sections(self) -> Iterator[dict[str, float]]:
         """Yields all quantities of every arm except the load, in SI units by name, in row-major order."""
-        names = [name for name in ALL_BUT_LOAD if name in self.quantity_axes]
+        names = [name for name in NON_LOAD_KEYS if name in self.quantity_axes]
         for values in product(*(self.quantity_axes[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
@@ -238,10 +238,10 @@ class ArmSection(StrictSection):
         values: quantities in SI units, by name. loaded: whether the load is included; a load relative to
         flutter is always left out. Raises UncoveredArm if the rod model does not apply to the arm.
         """
-        section: dict[str, Any] = {name: value for name, value in values.items() if name in ALL_BUT_LOAD}
+        section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
         has_load = loaded and self.load_axis in LOADS
         section |= {str(self.load_axis): values[str(self.load_axis)]} if has_load else NO_LOAD
-        (drag,) = drags_written([section.pop("drag", 0.0)])
+        (drag,) = drag_names([section.pop("drag", 0.0)])
         try:
             return SlenderArm(**section, **self.material, drag=drag)
         except InputError as error:

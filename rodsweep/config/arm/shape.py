@@ -16,7 +16,7 @@ from .axes import UncoveredArm
 if TYPE_CHECKING:
     from .section import ArmSection
 
-OF_MATERIAL = ("segments", "law", "section")
+MATERIAL_KEYS = ("segments", "law", "section")
 """Keys of an arm that correspond to the config section `material` of a dimensionless rod."""
 SHAPE_KEYS = ("tip_radius", "segments")
 """Keys of an arm that varies along its length."""

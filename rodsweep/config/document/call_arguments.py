@@ -7,13 +7,13 @@ from typing import ParamSpec, TypeVar
 
 from ...errors import InputError
 from ..values import short_repr
-from .refusals import hint_of
+from .refusals import unknown_key_hint
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
+def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Decorator: wrong arguments of a call raise an InputError that quotes `example`, not a TypeError."""
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
@@ -48,14 +48,14 @@ def require_matching_arguments(
         if name in by_place[: len(values)]:
             raise InputError(f"{name} is given twice; write it as in {example}")
         if not takes_any and name not in known:
-            raise unknown(name, [word for word in known if word != "self"])
+            raise unknown_argument_error(name, [word for word in known if word != "self"])
     given = {*by_place[: len(values)], *named}
     for parameter in ours:
         if parameter.name in known and parameter.default is Parameter.empty and parameter.name not in given:
             raise InputError(f"{parameter.name} is missing; write it as in {example}")
 
 
-def unknown(name: str, known: list[str]) -> InputError:
+def unknown_argument_error(name: str, known: list[str]) -> InputError:
     """InputError for an unknown argument `name`, which suggests the most similar of the names `known`, or
     lists all of these names."""
-    return InputError(f"unknown key {name}; {hint_of(name, known)}")
+    return InputError(f"unknown key {name}; {unknown_key_hint(name, known)}")

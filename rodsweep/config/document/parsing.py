@@ -13,7 +13,7 @@ from ruamel.yaml.events import AliasEvent, Event, ScalarEvent
 from ruamel.yaml.parser import Parser
 
 from ...errors import InputError
-from ..values import overflows, printable_name, short_repr
+from ..values import overflows_float, printable_name, short_repr
 
 LARGEST_FILE = 100_000
 """Maximum size of a config file, in bytes: about 15,000 numbers, read in a second. Longer lists of points
@@ -110,5 +110,5 @@ def _refuse_scalar(event: ScalarEvent) -> None:
         raise InputError(f"{short_repr(text)} has characters that cannot be printed")
     if event.style is None and text == "<<":
         raise InputError("merge keys (<<) are not allowed in a config")
-    if event.style is None and overflows(text):
+    if event.style is None and overflows_float(text):
         raise InputError(f"{short_repr(text)} is too large for a floating-point number")

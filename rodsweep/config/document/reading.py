@@ -13,15 +13,15 @@ from ruamel.yaml import YAML
 
 from ...errors import InputError
 from ...model.parameters import OPTIONAL_PARAMETERS
-from ..arm.quantities import drags_written
+from ..arm.quantities import drag_names
 from ..arm.section import ArmSection
-from ..axes import words
+from ..axes import joined_names
 from ..material import with_profile_read
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
-from ..values import Axis, axis_of, printable_name, short_repr
+from ..values import Axis, axis_from_resolved, printable_name, short_repr
 from .parsing import MAX_DEPTH, parse, read_text
-from .refusals import MAX_KEY_LENGTH, dotted, sentence_of, similar_keys
+from .refusals import MAX_KEY_LENGTH, dotted_key, sentence_of, similar_keys
 
 LONGEST_HEADER = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
@@ -44,16 +44,16 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
         _apply_override(tree, override)
         text += f"\n# --set {override}"
     try:
-        return validated(with_files_read(tree, path.parent)), text
+        return validated_config(with_file_contents(tree, path.parent)), text
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 
 
-def validated(tree: dict[str, Any]) -> Config:
+def validated_config(tree: dict[str, Any]) -> Config:
     """Config from `tree`, nested dicts of keys and values; InputError, which states the first error, if
     invalid.
     """
-    config = CONFIGS[_task(tree)]
+    config = CONFIGS[_task_name(tree)]
     try:
         return config.model_validate(tree)
     except ValidationError as error:
@@ -62,7 +62,7 @@ def validated(tree: dict[str, Any]) -> Config:
         raise InputError(f"{sentence_of(config, problems[0])}{more}") from None
 
 
-def canonical(config: Config) -> dict[str, Any]:
+def resolved_config(config: Config) -> dict[str, Any]:
     """The resolved config, as JSON values: with all defaults and with the axes computed from an arm; inf
     becomes "inf".
     """
@@ -73,9 +73,8 @@ def canonical(config: Config) -> dict[str, Any]:
 
 
 def config_of(resolved: dict[str, Any]) -> Config:
-    """The config from a resolved config that `canonical` returned; ValueError if this version of rodsweep
-    does not accept the config.
-    """
+    """The config from a resolved config that `resolved_config` returned; ValueError if this version of
+    rodsweep does not accept the config."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
@@ -83,14 +82,14 @@ def config_of(resolved: dict[str, Any]) -> Config:
         parameters = _axes_of(resolved["parameters"])
         if "arm" in parameters:
             given = parameters | {"arm": _axes_of(parameters["arm"])}
-            parameters = _without_those_of_the_arm(given, makes_diagram(task))
+            parameters = _without_arm_axes(given, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
         options = {
             name: _axes_of(value) if isinstance(value, dict) else value
             for name, value in resolved[task].items()
             if name not in fields or value != fields[name].default
         }
-        return validated(resolved | {"parameters": parameters, task: options})
+        return validated_config(resolved | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
 
@@ -98,13 +97,13 @@ def config_of(resolved: dict[str, Any]) -> Config:
 def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
     """Keys and values of a section of a resolved config, with axes as `Axis` objects."""
     return {
-        name: axis_of(value) if name != "arm" and isinstance(value, dict) else value
+        name: axis_from_resolved(value) if name != "arm" and isinstance(value, dict) else value
         for name, value in section.items()
     }
 
 
-def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """Keys and values of `parameters` without the axes that `canonical` added from the arm.
+def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
+    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm.
 
     in_diagram: whether the task is phase_diagram.
     """
@@ -117,7 +116,7 @@ def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> d
     }
 
 
-def yaml_of(tree: dict[str, Any]) -> str:
+def tree_yaml(tree: dict[str, Any]) -> str:
     """YAML text of a config file from nested dicts of keys and values."""
     text = StringIO()
     yaml = YAML()
@@ -126,7 +125,7 @@ def yaml_of(tree: dict[str, Any]) -> str:
     return text.getvalue()
 
 
-def text_of(config: Config) -> str:
+def config_yaml(config: Config) -> str:
     """YAML text of a config, with only the keys that differ from their defaults."""
     given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _config_notation(value) for name, value in given["parameters"].items()}
@@ -137,7 +136,7 @@ def text_of(config: Config) -> str:
         for name, value in given.get(config.task, {}).items()
     }
     asked = {config.task: options} if options else {}
-    return yaml_of({"task": config.task} | given | {"parameters": axes} | asked)
+    return tree_yaml({"task": config.task} | given | {"parameters": axes} | asked)
 
 
 def _config_notation(axis: Any) -> Any:
@@ -147,7 +146,7 @@ def _config_notation(axis: Any) -> Any:
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
-        own = {"drag": drags_written(axis["drag"]["values"])} if "drag" in axis else {}
+        own = {"drag": drag_names(axis["drag"]["values"])} if "drag" in axis else {}
         return {name: _config_notation(value) for name, value in axis.items()} | own
     values = axis.get("values", axis)
     return values[0] if isinstance(values, list) and len(values) == 1 else values
@@ -172,19 +171,19 @@ def _apply_override(tree: dict, override: str) -> None:
     for i, name in enumerate(path[:-1]):
         node = node.setdefault(name, {})
         if not isinstance(node, dict):
-            parent = dotted(path[: i + 1])
-            rest = dotted(path[i + 1 :])
+            parent = dotted_key(path[: i + 1])
+            rest = dotted_key(path[i + 1 :])
             raise InputError(f"{where}: {parent} is {short_repr(node)}, which has no key {rest}")
     node[path[-1]] = parse(value, where)
 
 
-def _task(tree: dict) -> str:
+def _task_name(tree: dict) -> str:
     """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
-    known = words(tuple(CONFIGS), "or")
+    known = joined_names(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
         close = similar_keys("task", others)
-        problem = f"unknown key {dotted(close)}; did you mean task?" if close else "task is missing;"
+        problem = f"unknown key {dotted_key(close)}; did you mean task?" if close else "task is missing;"
         raise InputError(f"{problem} it should be {known}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
@@ -198,17 +197,17 @@ def _task(tree: dict) -> str:
     return task
 
 
-def with_files_read(tree: Any, directory: Path) -> Any:
+def with_file_contents(tree: Any, directory: Path) -> Any:
     """The parsed config `tree`, with the profile read from its file, and `parameters.columns` read from the
     header of the file of points.
 
     directory: folder of relative file names. Raises InputError if the file of the profile is not a table of
     numbers.
     """
-    return _with_columns(with_profile_read(tree, directory), directory)
+    return _with_optional_columns(with_profile_read(tree, directory), directory)
 
 
-def _with_columns(tree: Any, directory: Path) -> Any:
+def _with_optional_columns(tree: Any, directory: Path) -> Any:
     """The parsed config `tree`, with `parameters.columns` added if the file of points has optional
     parameters.
     """

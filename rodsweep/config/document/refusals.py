@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from ...model.parameters import PARAMETERS
-from ..axes import words
+from ..axes import joined_names
 from ..schema import Config
 from ..values import printable_name, short_repr
 
@@ -30,14 +30,14 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     `ValidationError.errors()`.
     """
     location = tuple(str(part) for part in problem["loc"])
-    key = dotted(location)
+    key = dotted_key(location)
     kind = problem["type"]
     value = problem["input"]
     if kind == "extra_forbidden":
-        fields = _section(config, location[:-1]).model_fields
+        fields = _section_class(config, location[:-1]).model_fields
         known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
         elsewhere = full_names_of(config, location)
-        hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
+        hint = f"did you mean {elsewhere[0]}?" if elsewhere else unknown_key_hint(location[-1], known)
         return f"unknown key {key}; {hint}"
     if kind == "missing":
         return f"{key} is missing"
@@ -47,17 +47,17 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     if kind == "invalid_key":
         return f"{short_repr(value)} is not a key; keys are words"
     key_alone = location[-1] if location else ""
-    field = _section(config, location[:-1]).model_fields.get(key_alone)
+    field = _section_class(config, location[:-1]).model_fields.get(key_alone)
     allowed = allowed_values_text(field) if field else problem["msg"].removeprefix("Input should be ")
     return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 
 
-def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
+def unknown_key_hint(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
     there_are: beginning of the list.
     """
     close = similar_keys(key, known)
-    return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
+    return f"did you mean {joined_names(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
 
 def similar_keys(key: str, known: Sequence[str]) -> list[str]:
@@ -125,32 +125,32 @@ def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
     task = str(get_args(config.model_fields["task"].annotation)[0])
     found = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
-        if location[-1] in _section(config, section).model_fields and section != tuple(location[:-1]):
-            found.append(dotted((*section, location[-1])))
+        if location[-1] in _section_class(config, section).model_fields and section != tuple(location[:-1]):
+            found.append(dotted_key((*section, location[-1])))
     return found
 
 
-def dotted(location: Sequence[str]) -> str:
+def dotted_key(location: Sequence[str]) -> str:
     """Full name of a key, like "parameters.F.num", from the names of its sections and its own name; shortened
     to MAX_KEY_LENGTH characters. location: these names.
     """
     return printable_name(".".join(location), MAX_KEY_LENGTH)
 
 
-def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
+def _section_class(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
     """Class of the config's section that is reached through the keys in `location`; the last section on the
     way if a key is not a section.
     """
     section: type[BaseModel] = config
     for name in location:
-        kind = model_of(section.model_fields[name])
+        kind = value_type_of_key(section.model_fields[name])
         if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
             break
         section = kind
     return section
 
 
-def model_of(field: FieldInfo) -> Any:
+def value_type_of_key(field: FieldInfo) -> Any:
     """Type of the values of a config key; for an optional key, the type without None."""
     kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
     return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
@@ -166,7 +166,7 @@ def allowed_values_text(field: FieldInfo) -> str:
     if field.description:
         return field.description
     if get_origin(kind) is Literal:
-        return words(get_args(kind), "or")
+        return joined_names(get_args(kind), "or")
     if kind is bool:
         return "true or false"
     if kind is str:

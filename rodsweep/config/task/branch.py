@@ -13,7 +13,7 @@ from ...model.parameters import (
     PARAMETERS,
     all_but,
 )
-from ..axes import DEFAULTS, NonlinearParameters
+from ..axes import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
 from ..schema import Config
 from ..values import Number, StrictSection
 
@@ -84,7 +84,11 @@ class BranchConfig(Config):
         options = sections.get("branch")
         parameters = sections.get("parameters")
         along = options.get("along") if isinstance(options, dict) else None
-        if not isinstance(parameters, dict) or not isinstance(along, str) or along not in DEFAULTS:
+        if (
+            not isinstance(parameters, dict)
+            or not isinstance(along, str)
+            or along not in DEFAULT_VALUES_OF_PARAMETERS
+        ):
             return given
         return sections | {"parameters": {along: None, **parameters}}
 

@@ -5,13 +5,13 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
-from ..arm.axes import AXIS_OF
-from ..axes import NonlinearParameters, words
+from ..arm.axes import SINGLE_PARAMETER_OF
+from ..axes import NonlinearParameters, joined_names
 from ..schema import Config, Nodes
 from ..values import Number, StrictSection
 
-LONGEST = "longest"
-ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+LONGEST_AXIS = "longest"
+ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *SINGLE_PARAMETER_OF, LONGEST_AXIS)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
 class LimitCycleOptions(StrictSection):
@@ -25,7 +25,7 @@ class LimitCycleOptions(StrictSection):
     start: Literal["mode", "neighbour", "hopf"] = "mode"
     """Initial guess at each point: the leading mode, the cycle of a neighbouring point, or the cycle near the
     Hopf point."""
-    along: ChainParameter = LONGEST
+    along: ChainParameter = LONGEST_AXIS
     """Parameter along which the cycle of a point is the initial guess at the next point, or the quantity of
     the arm that changes only this parameter; `longest`: the parameter with the most values."""
     direction: Literal["up", "down"] = "up"
@@ -69,9 +69,9 @@ class LimitCycleConfig(Config):
         """
         sizes = self.parameters.single_parameter_sizes
         given = self.limit_cycle.along
-        if given == LONGEST:
+        if given == LONGEST_AXIS:
             return max(sizes, key=lambda name: sizes[name], default=given)
-        return AXIS_OF.get(given, given)
+        return SINGLE_PARAMETER_OF.get(given, given)
 
     @property
     def options_without_effect(self) -> dict[str, str]:
@@ -99,10 +99,10 @@ class LimitCycleConfig(Config):
         self.refuse_unused()
         arm = self.parameters.arm
         along = self.limit_cycle.along
-        if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
+        if along in SINGLE_PARAMETER_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or set "
-                f"along to {words(NONLINEAR_PARAMETERS, 'or')}"
+                f"along to {joined_names(NONLINEAR_PARAMETERS, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
@@ -113,6 +113,6 @@ class LimitCycleConfig(Config):
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
                 f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "
-                f"{words((*AXIS_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
+                f"{joined_names((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
         return self

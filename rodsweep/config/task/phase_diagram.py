@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 
 from ...model.arm.quantities import RELATIVE
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
-from ..arm.axes import AXIS_OF, FLUID
-from ..axes import DEFAULTS, DiagramParameters, LinearAxes, words
+from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
+from ..axes import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
 from ..schema import Crossings, LinearConfig
 from ..values import Axis, Number, StrictSection
 
@@ -110,7 +110,7 @@ class PhaseDiagramConfig(LinearConfig):
             return self.parameters.constant_parameters["gamma1"]
         if self.parameters.arm is not None:
             return float(self.parameters.arm.grid_axes()["gamma1"].array()[0])
-        return DEFAULTS["gamma1"]
+        return DEFAULT_VALUES_OF_PARAMETERS["gamma1"]
 
     @property
     def options_without_effect(self) -> dict[str, str]:
@@ -160,7 +160,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _two_axes(self) -> "PhaseDiagramConfig":
-        every = words(LINEAR_PARAMETERS, "and")
+        every = joined_names(LINEAR_PARAMETERS, "and")
         if self.parameters.points is not None:
             raise ValueError(
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
@@ -168,17 +168,19 @@ class PhaseDiagramConfig(LinearConfig):
             )
         self.parameters.require(LINEAR_PARAMETERS, or_points=False)
         if self.parameters.arm_axes:
-            several = next(name for name in self.parameters.arm_axes if name not in (*AXIS_OF, "drag"))
-            moves = "no parameter" if several in FLUID else "several parameters at once"
+            several = next(
+                name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
+            )
+            moves = "no parameter" if several in FLUID_QUANTITIES else "several parameters at once"
             why = (
                 "is relative to flutter" if several in RELATIVE else f"has several values, which move {moves}"
             )
             raise ValueError(
                 f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
-                f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters given with the arm"
+                f"{joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given with the arm"
             )
         long = self.plane
-        names = words((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
+        names = joined_names((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
         if len(long) != 2:
             raise ValueError(
                 f"parameters has {len(long)} {'axis' if len(long) == 1 else 'axes'} with more than one value "
@@ -186,7 +188,7 @@ class PhaseDiagramConfig(LinearConfig):
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
-            stiff = words(tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid), "and")
+            stiff = joined_names(tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid), "and")
             raise ValueError(
                 f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
                 f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"

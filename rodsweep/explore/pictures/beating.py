@@ -19,11 +19,11 @@ from .card import (
     POINT_COLOUR,
     STABLE_COLOUR,
     Card,
-    columns,
     empty_source,
     new_figure,
     sentence_of,
     set_axis_range,
+    source_columns,
 )
 
 PERIOD_SECONDS = 2.0
@@ -151,7 +151,7 @@ class BeatingPicture:
         followed by the first.
         """
         path = smooth_tip_path(np.stack([x[:, -1], y[:, -1]], axis=1), is_closed)
-        self.path.data = columns(x=path[:, 0], y=path[:, 1])
+        self.path.data = source_columns(x=path[:, 0], y=path[:, 1])
 
     def _fit(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit

@@ -14,8 +14,8 @@ from .card import (
     STABLE_COLOUR,
     UNSTABLE_COLOUR,
     Card,
+    axis_limits,
     empty_source,
-    limits,
     new_figure,
     set_axis_range,
     vertical_line,
@@ -23,7 +23,7 @@ from .card import (
 
 STABILITY_COLOURS = {1: STABLE_COLOUR, 0: UNSTABLE_COLOUR, -1: NEUTRAL_COLOUR}
 """Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
-NO_CYCLES = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
+NO_CYCLE_COLUMNS = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
 """Columns without values, for an answer that has branches but no separately solved cycles."""
 SIDE_MARGIN = 0.03
 """Margin left and right of the dots of separately solved cycles, as a fraction of their range of loads.
@@ -85,7 +85,7 @@ class BranchPicture:
             "colour": [STABILITY_COLOURS[stable] for _, _, stable in pieces],
             "dash": [STABILITY_DASHES[stable] for _, _, stable in pieces],
         }
-        cycles = found.get("cycles", NO_CYCLES)
+        cycles = found.get("cycles", NO_CYCLE_COLUMNS)
         self.cycles.data = {
             "F": cycles["F"] * load.factor,
             "y": cycles["y"] * length.factor,
@@ -95,8 +95,8 @@ class BranchPicture:
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
             margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
-            set_axis_range(self.card.figure.x_range, *limits(all_F * load.factor, margin))
-            set_axis_range(self.card.figure.y_range, *limits(all_y * length.factor))
+            set_axis_range(self.card.figure.x_range, *axis_limits(all_F * load.factor, margin))
+            set_axis_range(self.card.figure.y_range, *axis_limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]

@@ -69,14 +69,14 @@ def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSou
     return ColumnDataSource({each: [] for each in names}, name=name)
 
 
-def columns(**arrays: Array) -> dict[str, list[Any]]:
+def source_columns(**arrays: Array) -> dict[str, list[Any]]:
     """Columns of a Bokeh data source, as lists by name. Bokeh would send each array in two separate
     messages.
     """
     return {name: array.tolist() for name, array in arrays.items()}
 
 
-def limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
+def axis_limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     """(lower, upper) limit of an axis for `values`, (n,): their range, widened at both ends by the fraction
     `margin`; (-1, 1) for an empty array.
     """

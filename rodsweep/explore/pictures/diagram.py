@@ -12,7 +12,7 @@ from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 from ...arrays import Array
 from ...wording import counted
 from ..scales import ControlScale
-from ..solving.diagrams import CRUSHED, NOT_KNOWN
+from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from .card import (
     FOLD_COLOUR,
     NEUTRAL_COLOUR,
@@ -77,9 +77,9 @@ def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
 
 
 def stability_colour(count: int) -> tuple[str, float]:
-    """(colour, opacity) for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
-    if count in (CRUSHED, NOT_KNOWN):
-        return NEUTRAL_COLOUR, 0.55 if count == CRUSHED else 0.25
+    """(colour, opacity) for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
+    if count in (CRUSHED_COUNT, UNKNOWN_COUNT):
+        return NEUTRAL_COLOUR, 0.55 if count == CRUSHED_COUNT else 0.25
     return (
         (STABLE_COLOUR, 0.18)
         if count == 0
@@ -88,8 +88,8 @@ def stability_colour(count: int) -> tuple[str, float]:
 
 
 def unstable_count_words(count: int) -> str:
-    """Phrase for a number of unstable modes, or for CRUSHED or NOT_KNOWN."""
-    special = {0: "stable", CRUSHED: "crushed by the load", NOT_KNOWN: "not searched, or not known"}
+    """Phrase for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
+    special = {0: "stable", CRUSHED_COUNT: "crushed by the load", UNKNOWN_COUNT: "not searched, or not known"}
     return special.get(count, counted(count, "unstable mode"))
 
 
@@ -170,13 +170,13 @@ class DiagramPicture:
         self.card.reveal()
 
     def _show_curves(self, found: dict[str, Any]) -> None:
-        x, y, kinds = _lines(found, "curve")
+        x, y, kinds = _curves_of_answer(found, "curve")
         self.curves.data = {
             "x": x,
             "y": y,
             "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
         }
-        x, y, kinds = _lines(found, "cycle_curve")
+        x, y, kinds = _curves_of_answer(found, "cycle_curve")
         looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
         self.of_cycles.data = {
             "x": x,
@@ -191,7 +191,7 @@ class DiagramPicture:
         self.point.data = {"x": [x], "y": [y]}
 
 
-def _lines(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
+def _curves_of_answer(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
     """Returns (x, y, kinds), lists with one entry per curve of the answer `found`. x, y: arrays, (points,).
     name: prefix of the curves' variables, such as "curve".
     """

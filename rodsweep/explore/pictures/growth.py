@@ -12,11 +12,11 @@ from .card import (
     STABLE_COLOUR,
     UNSTABLE_COLOUR,
     Card,
-    columns,
+    axis_limits,
     empty_source,
-    limits,
     new_figure,
     set_axis_range,
+    source_columns,
     vertical_line,
 )
 from .numbers import SI_NAMES
@@ -74,9 +74,9 @@ class GrowthPicture:
         rates = found["growth_rate"]
         names = ("first", "second", "third")
         F = found["F"] * load.factor
-        self.rates.data = columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
+        self.rates.data = source_columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
         leading = rates[:, 0]
-        set_axis_range(self.card.figure.y_range, *limits(np.append(leading[np.isfinite(leading)], 0.0)))
+        set_axis_range(self.card.figure.y_range, *axis_limits(np.append(leading[np.isfinite(leading)], 0.0)))
         set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
         self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"

@@ -60,7 +60,7 @@ class NumbersTable:
             self.found.pop(kind, None)
         else:
             self.found[kind] = found
-        parts = [_rows(name, self.found[name]) for name in TABLE_ROWS if name in self.found]
+        parts = [_table_rows(name, self.found[name]) for name in TABLE_ROWS if name in self.found]
         self.root.text = f"<table>{''.join(parts)}</table>"
 
 
@@ -74,7 +74,7 @@ def number_text(value: Any, factor: float = 1.0) -> str:
     return f"{factor * float(first):.{TABLE_DIGITS}g}" if np.isfinite(first) else ""
 
 
-def _rows(kind: str, found: dict[str, Any]) -> str:
+def _table_rows(kind: str, found: dict[str, Any]) -> str:
     rows = []
     for name, meaning in TABLE_ROWS[kind].items():
         if name not in found or SI_NAMES.get(name, f"{name}_si") in found:

@@ -10,12 +10,12 @@ from .card import (
     STABLE_COLOUR,
     UNSTABLE_COLOUR,
     Card,
-    columns,
+    axis_limits,
     empty_source,
-    limits,
     new_figure,
     sentence_of,
     set_axis_range,
+    source_columns,
     vertical_line,
 )
 from .numbers import SI_NAMES
@@ -51,10 +51,10 @@ class SpectrumPicture:
         growth = growth[known]
         frequency = frequency[known]
         colour_script = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
-        self.source.data = columns(growth=growth, frequency=frequency, colour=colour_script)
+        self.source.data = source_columns(growth=growth, frequency=frequency, colour=colour_script)
         figure = self.card.figure
-        set_axis_range(figure.x_range, *limits(np.append(growth, 0.0)))
-        set_axis_range(figure.y_range, *limits(frequency))
+        set_axis_range(figure.x_range, *axis_limits(np.append(growth, 0.0)))
+        set_axis_range(figure.y_range, *axis_limits(frequency))
         figure.xaxis.axis_label, figure.yaxis.axis_label = (
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
@@ -101,6 +101,6 @@ class ModePicture:
         if not np.isfinite(real).all():
             self.card.say(sentence_of(found))
             return
-        self.source.data = columns(u=found["u"], real=real, imaginary=imaginary)
-        set_axis_range(self.card.figure.y_range, *limits(np.append(real, imaginary)))
+        self.source.data = source_columns(u=found["u"], real=real, imaginary=imaginary)
+        set_axis_range(self.card.figure.y_range, *axis_limits(np.append(real, imaginary)))
         self.card.reveal()

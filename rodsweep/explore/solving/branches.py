@@ -7,7 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...post.branch_curves import RodBranches, runs_of
 
-Piece = tuple[Array, Array, int]
+BranchPiece = tuple[Array, Array, int]
 """(F, largest y of the tip, stability) of a part of a branch; F and y: (vertices,). Stability: 1 stable, 0
 unstable, -1 unknown."""
 
@@ -15,10 +15,10 @@ unstable, -1 unknown."""
 def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
     """Variables of the answer "branch" for a rod, by name.
 
-    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`, see `Piece`.
+    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`, see `BranchPiece`.
     special: (F, y, kind, period) of each special point except ends of branches.
     """
-    pieces: list[Piece] = [
+    pieces: list[BranchPiece] = [
         (curve.at[run], curve.y[run], stable) for curve in rod.curves for run, stable in runs_of(curve.stable)
     ]
     straight = rod.straight_pieces((0.0, stop))

@@ -13,7 +13,7 @@ from ...api.sweeping import sweep
 from ...errors import InputError
 from ...model.arm.quantities import QUANTITIES
 from ...model.units import in_si
-from ..state import LAWS, PageState, number
+from ..state import LAWS, PageState, float_or_text
 
 Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
@@ -37,12 +37,13 @@ CYCLE_ACCURACY = 1e-4
 """Relative error of the cycles between special points; the diagram does not show these cycles. For the first
 rod of the page and F up to 200, the default error of 1e-6 takes three times as long, and changes the curves
 of folds and torus points by 2e-8 at most."""
-NOT_KNOWN = -1
+UNKNOWN_COUNT = -1
 """Value of `unstable_count` at a point whose number of unstable modes is unknown."""
-CRUSHED = -2
+CRUSHED_COUNT = -2
 """Value of `unstable_count` at a point whose load crushes the rod."""
-SPAN_RATIO = 10.0
-"""The values of a rod's second parameter extend from 1/SPAN_RATIO to SPAN_RATIO times the present value."""
+PARAMETER_SPAN_RATIO = 10.0
+"""The values of a rod's second parameter extend from 1/PARAMETER_SPAN_RATIO to PARAMETER_SPAN_RATIO times the
+present value."""
 TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
@@ -50,15 +51,15 @@ TAPER_RANGE = (0.4, 1.6)
 def diagram(state: PageState) -> dict[str, Any]:
     """Stability diagram around the rod or arm of `state`, as arrays by name.
 
-    x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, NOT_KNOWN or
-    CRUSHED, (rows, columns). curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve
-    points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
+    x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_COUNT
+    or CRUSHED_COUNT, (rows, columns). curve_x, curve_y, curve_number, curve_kind: stability boundaries,
+    (curve points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
     crossing_kind: thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.subject()
     if state.tab == "arm":
-        return _of_arm(state)
-    return _of_phases(state) if has_uniform_rods(state) else _of_thresholds(state)
+        return _diagram_of_arms(state)
+    return _diagram_of_rods(state) if has_uniform_rods(state) else _diagram_from_thresholds(state)
 
 
 def cycle_diagram(state: PageState) -> dict[str, Any]:
@@ -74,9 +75,9 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
             "on the tab Rod"
         )
     cycles = {"cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"]}
-    found = _of_phases(state, SLOW_ROW_COUNT, cycles)
+    found = _diagram_of_rods(state, SLOW_ROW_COUNT, cycles)
     curves = {name: values for name, values in found.items() if name.startswith("cycle_")}
-    return _of_phases(state) | curves
+    return _diagram_of_rods(state) | curves
 
 
 def can_follow_cycle_curves(state: PageState) -> bool:
@@ -96,23 +97,23 @@ def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarr
     """
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)
-    value = number(state.rod[state.second])
+    value = float_or_text(state.rod[state.second])
     if not (0 < value < np.inf):
         raise InputError(f"{state.second} = {value:g} has no diagram; a diagram needs a finite value above 0")
-    return np.geomspace(value / SPAN_RATIO, value * SPAN_RATIO, rows)
+    return np.geomspace(value / PARAMETER_SPAN_RATIO, value * PARAMETER_SPAN_RATIO, rows)
 
 
-def _fixed(state: PageState) -> dict[str, Any]:
+def _fixed_parameters(state: PageState) -> dict[str, Any]:
     return {n: v for n, v in state.parameters().items() if n not in ("F", "gamma1", state.second)}
 
 
-def _of_phases(
+def _diagram_of_rods(
     state: PageState, row_count: int = ROW_COUNT, cycles: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
     """Diagram of uniform rods, with the variables of `diagram`, from the task `phase_diagram`. cycles:
     further keywords of the sweep, which request folds and torus points of cycles."""
     rows = tuple(second_parameter_values(state, row_count).tolist())
-    keywords = {**_fixed(state), **(cycles or {})}
+    keywords = {**_fixed_parameters(state), **(cycles or {})}
     return _solved_phases(state.second, rows, state.largest_force(), tuple(keywords.items()))
 
 
@@ -134,22 +135,25 @@ def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
     """
     counts = data["unstable_count"].transpose(second, "F").values
     if "class" in data:
-        is_crushed = words_of(data["class"].transpose(second, "F")) == "crushed"
-        counts = np.where(is_crushed, CRUSHED, counts)
-    found = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_no_curves()}
+        is_crushed = flag_words(data["class"].transpose(second, "F")) == "crushed"
+        counts = np.where(is_crushed, CRUSHED_COUNT, counts)
+    found = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_empty_curves()}
     for curve in ("curve", "cycle_curve"):
         if f"{curve}_F" in data and f"{curve}_{second}" in data:
             names = {"x": "F", "y": second, "number": "number"}
             found |= {f"{curve}_{key}": data[f"{curve}_{name}"].values for key, name in names.items()}
-            found[f"{curve}_kind"] = words_of(data[f"{curve}_kind"])
+            found[f"{curve}_kind"] = flag_words(data[f"{curve}_kind"])
     return found | {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
 
 
-def _of_thresholds(state: PageState) -> dict[str, Any]:
+def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
     """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram`, from
     the task `thresholds`.
     """
-    keywords: dict[str, Any] = {**_fixed(state), state.second: second_parameter_values(state, SLOW_ROW_COUNT)}
+    keywords: dict[str, Any] = {
+        **_fixed_parameters(state),
+        state.second: second_parameter_values(state, SLOW_ROW_COUNT),
+    }
     keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
@@ -158,7 +162,7 @@ def _of_thresholds(state: PageState) -> dict[str, Any]:
     )
 
 
-def _of_arm(state: PageState) -> dict[str, Any]:
+def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     """Diagram of arms, with the variables of `diagram`, from the task `thresholds` for values around the
     second quantity of `state`.
     """
@@ -198,7 +202,7 @@ def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, larges
     """
     at = data[name].values
     after = data["unstable_after"].values
-    kind = words_of(data["crossing_kind"])
+    kind = flag_words(data["crossing_kind"])
     x = np.linspace(0, largest, LOAD_COUNT)
     counts = np.zeros((len(values), LOAD_COUNT), dtype=int)
     ends = data[name.replace("crossing_", "") + "_end"].values
@@ -206,22 +210,22 @@ def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, larges
         for load, count in zip(at[row], after[row], strict=True):
             if np.isfinite(load):
                 counts[row, x > load] = count
-        counts[row, ~(x <= ends[row])] = NOT_KNOWN
+        counts[row, ~(x <= ends[row])] = UNKNOWN_COUNT
     known = np.isfinite(at) & (at <= largest)
     rows = np.broadcast_to(values[:, None], at.shape)
     return {
-        "x": x, "y": values, "unstable_count": counts, **_no_curves(),
+        "x": x, "y": values, "unstable_count": counts, **_empty_curves(),
         "crossing_x": at[known], "crossing_y": rows[known], "crossing_kind": list(kind[known]),
     }  # fmt: skip
 
 
-def _no_curves() -> dict[str, Any]:
+def _empty_curves() -> dict[str, Any]:
     empty = np.zeros(0)
     none = {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
     return none | {f"cycle_{name}": values for name, values in none.items()}
 
 
-def words_of(array: Dataset) -> Any:
+def flag_words(array: Dataset) -> Any:
     """Array of the words for an array of integer flags, with the same shape. Flags and words are listed in
     the attributes of the array; an unlisted flag has the word "none".
     """

@@ -12,7 +12,7 @@ from .diagrams import second_parameter_values
 from .questions import Question
 from .tip_release import Tip
 
-Needs = tuple[PageState, Tip | None]
+AnswerInputs = tuple[PageState, Tip | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""
 INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of questions that are sent after every change of the controls."""
@@ -28,7 +28,7 @@ TIP_KINDS = ("bent", "motion")
 """Kinds of questions about a dragged tip. An answer for an earlier position of the tip is not shown."""
 
 
-def needs(question: Question) -> Needs:
+def answer_inputs(question: Question) -> AnswerInputs:
     """Returns (state, tip). state: copy of the question's state in which all values without effect on the
     answer are blank. tip: position of the tip if the answer depends on the tip, else None.
     """
@@ -51,7 +51,7 @@ def state_to_solve(kind: str, state: PageState, drawn: PageState | None) -> Page
     """
     if kind != "cycles" or drawn is None or state.tab != "rod":
         return state
-    if needs(Question("diagram", state)) != needs(Question("diagram", drawn)):
+    if answer_inputs(Question("diagram", state)) != answer_inputs(Question("diagram", drawn)):
         return state
     low, high = second_parameter_values(drawn, 2)
     return drawn if low <= float(state.values[state.second]) <= high else state

@@ -15,13 +15,13 @@ from ...api.answers.picture import plot
 from ...api.arm import Arm
 from ...api.dataset import view_of_dataset
 from ...api.sweeping import sweep
-from ...config.axes import DEFAULTS
+from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches
-from .diagrams import Dataset, cycle_diagram, diagram, words_of
-from .tip_release import Tip, dragged_equilibrium, motion, motion_film_answer
+from .diagrams import Dataset, cycle_diagram, diagram, flag_words
+from .tip_release import Tip, dragged_equilibrium, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""
@@ -39,7 +39,7 @@ MAX_CRUSHING_FRACTION = 0.98
 class Question:
     """Request of a page to a solver process.
 
-    kind: a key of `ANSWERS`, or of `ANSWERS_TO_TIP` if `tip` is given. state: state of the page at the
+    kind: a key of `STATE_SOLVERS`, or of `TIP_SOLVERS` if `tip` is given. state: state of the page at the
     request. tip: position of the dragged tip, in L. stored: cycle from a result file, of which a film is made
     without a solve.
     """
@@ -64,7 +64,7 @@ class Reply(NamedTuple):
     seconds: float
 
 
-def variables(answer: Answer) -> AnswerVariables:
+def answer_variables(answer: Answer) -> AnswerVariables:
     """All variables of `answer` by name, and its `status`, `sentence` (meaning of the status), `message` and
     `units` (by variable).
     """
@@ -77,14 +77,14 @@ def variables(answer: Answer) -> AnswerVariables:
 
 def spectrum(state: PageState) -> AnswerVariables:
     """Leading eigenvalues and modes of the straight rod, and the number of unstable modes."""
-    return variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
+    return answer_variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
 
 
 def thresholds(state: PageState) -> AnswerVariables:
     """Thresholds of the straight rod along F, as variables by name. kinds: kind of each threshold, in
     words."""
     answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
-    return variables(answer) | {"kinds": words_of(answer.data["crossing_kind"]).tolist()}
+    return answer_variables(answer) | {"kinds": flag_words(answer.data["crossing_kind"]).tolist()}
 
 
 def growth(state: PageState) -> AnswerVariables:
@@ -108,7 +108,7 @@ def growth(state: PageState) -> AnswerVariables:
 
 def cycle(state: PageState) -> AnswerVariables:
     """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm."""
-    return variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
+    return answer_variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
         state, None
     )
 
@@ -144,10 +144,10 @@ def crushing_force(rod: Mapping[str, float]) -> float:
     """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
     rod: parameters by name.
     """
-    return rod["k1"] * min(1.0, rod.get("taper", DEFAULTS.get("taper", 1.0))) ** 2
+    return rod["k1"] * min(1.0, rod.get("taper", DEFAULT_VALUES_OF_PARAMETERS.get("taper", 1.0))) ** 2
 
 
-ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {
+STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "spectrum": spectrum,
     "thresholds": thresholds,
     "growth": growth,
@@ -158,9 +158,9 @@ ANSWERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "film": film,
 }
 """For each kind of question about the state of the page, the function that answers the question."""
-ANSWERS_TO_TIP: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
+TIP_SOLVERS: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
     "bent": dragged_equilibrium,
-    "motion": motion,
+    "motion": released_motion_answer,
     "film": motion_film_answer,
 }
 """For each kind of question about a dragged tip, the function that answers the question."""
@@ -173,5 +173,5 @@ def answer_to(question: Question) -> AnswerVariables:
     if question.stored is not None:
         return film_of_cycle(question.stored)
     if question.tip is not None:
-        return ANSWERS_TO_TIP[question.kind](question.state, question.tip)
-    return ANSWERS[question.kind](question.state)
+        return TIP_SOLVERS[question.kind](question.state, question.tip)
+    return STATE_SOLVERS[question.kind](question.state)

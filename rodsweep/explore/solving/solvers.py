@@ -129,7 +129,7 @@ class SolverProcess:
         self._connection, theirs = FORK_SERVER.Pipe()
         watched, self._life = FORK_SERVER.Pipe(duplex=False)
         self._process = FORK_SERVER.Process(
-            target=worker.run, args=(theirs, watched, self.niceness), daemon=True
+            target=worker.answer_questions, args=(theirs, watched, self.niceness), daemon=True
         )
         self._process.start()
         self.starts += 1

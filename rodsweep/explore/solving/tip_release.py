@@ -23,11 +23,11 @@ def dragged_equilibrium(state: PageState, tip: Tip | None) -> dict[str, Any]:
     """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
     None for the straight arm.
     """
-    x, y = bent_shape(_job(state), tip)
+    x, y = bent_shape(_motion_job(state), tip)
     return {"x": x, "y": y}
 
 
-def motion(state: PageState, tip: Tip) -> dict[str, Any]:
+def released_motion_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     """Motion of the arm after its tip is released at `tip`: fields of `ReleasedMotion`, and the variables
     below.
 
@@ -35,22 +35,22 @@ def motion(state: PageState, tip: Tip) -> dict[str, Any]:
     reaches; NaN if the arm reaches no cycle. shape_x, shape_y: shapes over this period, (shapes, nodes), with
     shapes = 0 if there is no cycle. Raises InputError if the motion cannot be integrated.
     """
-    found = released_motion(_job(state, shapes=48), tip)
+    found = released_motion(_motion_job(state, shapes=48), tip)
     if found is None:
         raise InputError("the motion after the release could not be integrated")
     own = {"tip": tip, "frames": FRAMES_PER_RETURN, "period": float(found.cycle["period"])}
-    return vars(found) | _shapes(found) | own
+    return vars(found) | _film_shapes(found) | own
 
 
 def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     """Film of the motion after the release of the tip at `tip`: the content of a GIF file, under the name
     `gif`.
     """
-    return {"gif": motion_film(motion_in_page_units(state, motion(state, tip)))}
+    return {"gif": motion_film(motion_in_page_units(state, released_motion_answer(state, tip)))}
 
 
 def motion_in_page_units(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
-    """The motion after a release, in the units of the page. found: result of `motion`."""
+    """The motion after a release, in the units of the page. found: result of `released_motion_answer`."""
     subject = state.subject()
     length = length_axis(state)
     tau2, time = (subject.tau2, "s") if isinstance(subject, Arm) else (1.0, "tau2")
@@ -63,14 +63,14 @@ def motion_in_page_units(state: PageState, found: Mapping[str, Any]) -> FilmedMo
     )
 
 
-def _shapes(found: ReleasedMotion) -> dict[str, Any]:
+def _film_shapes(found: ReleasedMotion) -> dict[str, Any]:
     x, y = (np.asarray(found.cycle[name]) for name in ("shape_x", "shape_y"))
     known = x.ndim == 2 and np.isfinite(x).all()
     nothing = np.zeros((0, found.x.shape[1]))
     return {"shape_x": x if known else nothing, "shape_y": y if known else nothing}
 
 
-def _job(state: PageState, **options: int) -> Job:
+def _motion_job(state: PageState, **options: int) -> Job:
     rod = dict(rod_of(state.subject()))
     request = PortraitRequest(rod=DescribedRod(parameters=rod, material=LAWS[state.law]))
     return request.job("limit_cycle", options, rod["F"])

@@ -108,7 +108,9 @@ def end_with_page(life: "Connection[Any, Any]") -> None:
     os._exit(0)
 
 
-def run(connection: "Connection[Reply, Question]", life: "Connection[Any, Any]", niceness: int) -> None:
+def answer_questions(
+    connection: "Connection[Reply, Question]", life: "Connection[Any, Any]", niceness: int
+) -> None:
     """Answers the questions from the pipe `connection` until the pipe closes. life: pipe that closes when the
     page's process ends. niceness: Unix niceness.
     """

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from ...errors import EnvironmentIncomplete, InputError
 from ...results.file.view import View
-from .arm.map import can_draw, draw_arm_map
+from .arm.map import can_draw_arm_map, draw_arm_map
 from .branch import draw_branch
 from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
@@ -75,7 +75,7 @@ def _drawn(request: FigureRequest) -> str:
     """Writes the figure and returns a description of the figure. If quantities of an arm vary and no other
     kind of figure is requested, the figure shows results over these quantities.
     """
-    if can_draw(request):
+    if can_draw_arm_map(request):
         return draw_arm_map(request)
     return FIGURES[request.views[0].task](replace(request, views=[view.listed for view in request.views]))
 

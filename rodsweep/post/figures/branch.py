@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...model.parameters import CRUSHING
-from ...results.layouts.variables import MISSING
+from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, has_or_have, some_of
 from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter, runs_of
 from . import style
@@ -89,7 +89,7 @@ def draw_branch(request: FigureRequest) -> str:
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
     figure.suptitle(style.heading(view, shared))
     shown = f"{counted(len(curves), 'branch')} of cycles over {along}"
-    return request.write(figure, shown + _left_out(rods, len(beating), len(drawn)))
+    return request.write(figure, shown + _omissions_clause(rods, len(beating), len(drawn)))
 
 
 def draw_curves(
@@ -102,8 +102,8 @@ def draw_curves(
     for number, curve in enumerate(curves):
         at, y, period, stable = smooth_curve_of_branch(curve)
         for axes, values in ((upper, y), (lower, period)):
-            _pieces(axes, at, values, stable, colours[number % len(colours)])
-        _mark(upper, lower, curve, marked)
+            _draw_pieces(axes, at, values, stable, colours[number % len(colours)])
+        _mark_special_points(upper, lower, curve, marked)
     return marked
 
 
@@ -123,7 +123,7 @@ def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
     ]
 
 
-def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
+def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
     """Clause on branches and rods that the figure leaves out. beating: number of rods with cycles. drawn:
     number of drawn rods.
     """
@@ -131,7 +131,7 @@ def _left_out(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     if drawn < beating:
         more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
-    computed = int((rods[0].view.variables["status"] != MISSING).sum())
+    computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())
     without = computed - beating
     return more + (
         f"; {some_of(without, computed, 'rod')} {has_or_have(without)} no branch" if without > 0 else ""
@@ -153,7 +153,7 @@ def _drawn_parameter_range(rod: RodBranches) -> Range:
     return (max(low, columns[force]) if along == stiffness else low), high
 
 
-def _pieces(
+def _draw_pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
@@ -163,7 +163,7 @@ def _pieces(
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 
-def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
+def _mark_special_points(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
     """Marks the special points of a branch in two panels, as in `draw_curves`; adds legend entries to
     `marked`.
     """
@@ -187,7 +187,7 @@ def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequenc
     farthest = []
     for number, curve in enumerate(curves):
         for at, y, stable in curve.near_hopf_points():
-            _pieces(axes, at, y, stable, colours[number % len(colours)], marker=".")
+            _draw_pieces(axes, at, y, stable, colours[number % len(colours)], marker=".")
             nearest.append(float(at[0]))
             farthest.append(float(at[-1]))
     ends = np.array([min(nearest), max(farthest)])

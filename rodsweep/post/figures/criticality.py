@@ -62,15 +62,17 @@ def draw_criticality(request: FigureRequest) -> str:
     )
     varied = varied_parameters(view)
     if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
-        return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
+        return request.write(
+            _curves_figure(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}"
+        )
     if not is_map(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
     shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
-    return request.write(_map(view, points, request.look.narrow), shown, MAP_ASPECT)
+    return request.write(_maps_figure(view, points, request.look.narrow), shown, MAP_ASPECT)
 
 
-def _along(view: View, name: str) -> Figure:
+def _curves_figure(view: View, name: str) -> Figure:
     """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
     `name`. Markers show the criticality. Raises InputError if nothing can be drawn.
     """
@@ -83,7 +85,7 @@ def _along(view: View, name: str) -> Figure:
     small = float(np.nanquantile(np.abs(c), LINEAR_FRACTION))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(small)))
     for axes, values in ((upper, a), (lower, c)):
-        handles = _mark(axes, x[keep], values, side)
+        handles = _draw_hopf_markers(axes, x[keep], values, side)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
         style.scale(axes, "x", np.sort(x[keep]))
     upper.set_ylabel("amplitude coefficient $a/L$")
@@ -93,7 +95,7 @@ def _along(view: View, name: str) -> Figure:
     return figure
 
 
-def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
+def _draw_hopf_markers(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
     """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
     crossings). side: signs of Re c, (rods, crossings).
     """
@@ -107,7 +109,7 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
     return handles
 
 
-def _map(view: View, points: PointMap, narrow: bool) -> Figure:
+def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. narrow:
     whether the maps are stacked. Raises InputError if nothing can be drawn.
     """
@@ -116,7 +118,7 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
     figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
-    classes = _classes(side)
+    classes = _class_indices(side)
     norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
     colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
     panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
@@ -133,7 +135,7 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     return figure
 
 
-def _classes(side: Array) -> Array:
+def _class_indices(side: Array) -> Array:
     """Index in CRITICALITY_CLASSES for each rod, (ny, nx).
 
     side: signs of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for a missing Hopf point.

@@ -13,13 +13,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.axes import DEFAULTS
+from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.rods import has_covering
-from ...results.layouts.variables import number_of
+from ...results.layouts.variables import flag_number
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
@@ -131,7 +131,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         handles += draw_cycle_curves(axes, view, line, row)
     if "cycle_special_kind" in view.variables:
         handles += mark_cycles_on_rows(axes, view, line, row)
-    handles += edge if (table == number_of("crushed", palette.words)).any() else []
+    handles += edge if (table == flag_number("crushed", palette.words)).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading(view, _fixed(view, line, row)))
     missing = (
@@ -148,7 +148,7 @@ def _fixed(view: View, line: str, row: str) -> str:
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
-        fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULTS["gamma1"]))
+        fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULT_VALUES_OF_PARAMETERS["gamma1"]))
     return parameter_text(fixed)
 
 
@@ -206,7 +206,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
-    known = (table != number_of("crushed", palette.words)) | (not _crushed_at_k1(view, line, row))
+    known = (table != flag_number("crushed", palette.words)) | (not _crushed_at_k1(view, line, row))
     computed = ClassifiedPoints(plane.unit(columns[known], rows[known]), table[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:

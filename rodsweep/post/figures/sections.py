@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...config.arm.axes import STORED_ALONG
+from ...config.arm.axes import PARAMETER_STORED_ALONG
 from ...config.document.refusals import similar_keys
 from ...config.values import short_repr
 from ...errors import InputError
@@ -83,7 +83,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     names = view.arm_axes or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
-    along = {name, *(quantity for quantity, moved in STORED_ALONG.items() if moved == name)}
+    along = {name, *(quantity for quantity, moved in PARAMETER_STORED_ALONG.items() if moved == name)}
     variables = {}
     for key, data in view.variables.items():
         if key in along and np.ndim(data):

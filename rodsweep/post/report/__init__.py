@@ -15,7 +15,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from ... import __version__
-from ...results.file.provenance import now
+from ...results.file.provenance import utc_time
 from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import Shapes
@@ -81,7 +81,7 @@ def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> 
         colours=[(colour, dark_page_colour(colour)) for colour in colours],
         max_rows=MAX_ROWS,
         version=__version__,
-        written=now(),
+        written=utc_time(),
         **contents,
     )
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ...config.document.reading import yaml_of
+from ...config.document.reading import tree_yaml
 from ...config.values import printable
 from ...results.file.view import View
 from ..summary import summary_of
@@ -70,7 +70,7 @@ def report_contents(view: View, pictures: Pictures) -> ReportContents:
         pictures=pictures,
         tables=list(page_tables(view)),
         config=str(a.get("config", "")).strip("\n"),
-        complete=yaml_of(view.config).strip("\n"),
+        complete=tree_yaml(view.config).strip("\n"),
         versions=[(word, str(a[key])) for key, word in VERSION_WORDS.items() if str(a.get(key, ""))],
     )
 

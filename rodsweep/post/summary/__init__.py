@@ -17,7 +17,7 @@ from ...model.units import written_in
 from ...results.file.provenance import FAILURE_REASONS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
-from ...results.layouts.variables import DIMENSIONS, MISSING
+from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
 from ...wording import counted, is_or_are, plural
 from ..cost_and_provenance import origin_lines, rank_lines, time_lines
 from ..tables.alignment import blocks, column_cells, point_aligned, rewrap_line
@@ -55,7 +55,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     """
     view = view.listed
     status = view.variables["status"]
-    done = status != MISSING
+    done = status != MISSING_STATUS
     noun = POINT_NOUNS.get(view.task, "point")
     rods = done & (status < NOT_SLENDER)
     nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])

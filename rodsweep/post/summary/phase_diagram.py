@@ -8,7 +8,7 @@ from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...results.layouts.variables import number_of
+from ...results.layouts.variables import flag_number
 from ...wording import counted, some_of
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
@@ -89,7 +89,7 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     lines = [f"stable states, of the grid: {parts}"]
     found_on = {}
     for words, state in LISTED_STATES.items():
-        there = (states == number_of(state, STABLE_STATES)) & done[..., np.newaxis]
+        there = (states == flag_number(state, STABLE_STATES)) & done[..., np.newaxis]
         found_on[words] = there.any(axis=-1), np.broadcast_to(v[line], there.shape)[there]
     for kind, words in CYCLE_CHANGE_WORDS.items():
         of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
@@ -145,7 +145,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
                 least = "at least " * bool(unknown.any())
                 text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
             lines.append(text)
-    flutter, unknown_class = (number_of(word, CLASSES) for word in ("flutter", "undecided"))
+    flutter, unknown_class = (flag_number(word, CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & done[..., np.newaxis]
     if undecided.any():
         rows = undecided.any(axis=-1)

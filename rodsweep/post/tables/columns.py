@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
+from ...results.layouts.variables import NOT_KNOWN_SUFFIX, SECONDS, Variable
 
 UNUSED_WORDS = ("none", "missing")
 """Words of a flag variable that mark unused items of a list."""
@@ -85,7 +85,7 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
     if given.
     """
     known = dict(variable.flags) if words is None else words
-    meaning = variable.long_name.removesuffix(NOT_KNOWN)
+    meaning = variable.long_name.removesuffix(NOT_KNOWN_SUFFIX)
     absent = absent_in(variable, values)
     boolean = variable.is_boolean
     return Column(variable.name, variable.units, meaning, values, absent, known, is_boolean=boolean)

@@ -6,7 +6,7 @@ of a phase diagram; the points of the file are then the rows of the diagram.
 
 from dataclasses import dataclass
 
-from ...config.document.refusals import hint_of
+from ...config.document.refusals import unknown_key_hint
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
@@ -116,7 +116,7 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
     if table is not None:
         if table not in contents.tables:
             raise InputError(
-                f"{view.path} has no table {table!r}; {hint_of(table, contents.tables, THERE_ARE)}"
+                f"{view.path} has no table {table!r}; {unknown_key_hint(table, contents.tables, THERE_ARE)}"
             )
         return table
     holding = {v.name: name for name, variables in contents.lists.items() for v in variables}
@@ -143,6 +143,6 @@ def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...
     for index, name in enumerate(columns):
         if name not in known:
             what = f"the table {table} has" if table else "its tables have"
-            raise InputError(f"{path}: {what} no column {name!r}; {hint_of(name, known, THERE_ARE)}")
+            raise InputError(f"{path}: {what} no column {name!r}; {unknown_key_hint(name, known, THERE_ARE)}")
         if name in columns[:index]:
             raise InputError(f"{path}: the column {name} is named twice")

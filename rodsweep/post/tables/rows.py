@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm.axes import STORED_ALONG
+from ...config.arm.axes import PARAMETER_STORED_ALONG
 from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
-from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
+from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, marks_missing_items
 
 Rows = tuple[NDArray[np.int64], ...]
@@ -44,7 +44,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
         yield quantity_column(name, values[points])
-    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
+    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
     for variable in own:
         values = view.variables[variable.name].reshape(-1)[points]
         if variable.name == STATUS.name:
@@ -108,7 +108,7 @@ def line_columns(view: View, rows: Rows) -> Iterator[Column]:
     F varies. rows: indices of the grid points.
     """
     for name, values in view.quantities.items():
-        if values.size > 1 and view.is_grid and STORED_ALONG.get(name, "") not in view.parameters:
+        if values.size > 1 and view.is_grid and PARAMETER_STORED_ALONG.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
 
 
@@ -137,7 +137,7 @@ def quantities_at_points(view: View) -> dict[str, NDArray]:
     count = view.variables["status"].size
     found = {}
     for name, values in view.quantities.items():
-        along = STORED_ALONG.get(name, "")
+        along = PARAMETER_STORED_ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:
             found[name] = np.broadcast_to(values, count)
         elif along in view.parameters:

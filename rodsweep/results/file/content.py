@@ -22,7 +22,7 @@ USER_PREFIX = "user_"
 """Prefix of the names of variables and attributes that the user adds to a result file."""
 DIGITS = 16
 """Number of hexadecimal digits of a digest: one change in 2^64 is not detected."""
-BOOKKEEPING = frozenset(
+UNDIGESTED_ATTRIBUTES = frozenset(
     {
         "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "DIMENSION_LABELS", "_Netcdf4Dimid",
         "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL_ATTRIBUTE,
@@ -30,7 +30,7 @@ BOOKKEEPING = frozenset(
 )  # fmt: skip
 """Names of attributes without digests: the seal, and attributes by which HDF5 and netCDF link dimensions to
 variables. The digest of a variable covers its dimensions."""
-NUMBERS = "iuf"
+NUMBER_KINDS = "iuf"
 """NumPy type kinds allowed for variables of a result file: integers and floating-point numbers."""
 BYTES_A_READ = 1 << 18
 """Number of bytes per read of a variable, which bounds the memory."""
@@ -74,10 +74,12 @@ def digests_of(file: h5py.File) -> Digests:
     """
     variables = {}
     for name, data in _variables(file):
-        if data.dtype.kind not in NUMBERS or data.shape is None:
+        if data.dtype.kind not in NUMBER_KINDS or data.shape is None:
             raise ValueError(f"its variable {printable_name(name, 40)} has no numbers")
         dimensions = _dimensions(name, data)
-        variables[name] = variable_digest(data.dtype, data.shape, dimensions, data.attrs, _blocks(data))
+        variables[name] = variable_digest(
+            data.dtype, data.shape, dimensions, data.attrs, _number_buffers(data)
+        )
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
 
 
@@ -140,7 +142,11 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     if "CLASS" in attributes:
         number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
         stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]
-        if [_plain(value) for value in stored] != [["DIMENSION_SCALE"], [name], _plain(number)]:
+        if [_attribute_as_list(value) for value in stored] != [
+            ["DIMENSION_SCALE"],
+            [name],
+            _attribute_as_list(number),
+        ]:
             raise changed
         return [name]
     if "DIMENSION_LIST" not in attributes:
@@ -160,7 +166,7 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     return dimensions
 
 
-def _blocks(data: h5py.Dataset) -> Iterator[Any]:
+def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
     """Yields the numbers of a variable as buffers; contiguous numbers are read from the file without HDF5."""
     start = data.id.get_offset()
     size = data.id.get_storage_size()
@@ -174,12 +180,12 @@ def _blocks(data: h5py.Dataset) -> Iterator[Any]:
 
 def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes as lists of numbers or texts by name, without attributes of HDF5, netCDF and the user."""
-    names = (name for name in attributes if name not in BOOKKEEPING and not is_user_added(name))
-    plain = {name: _plain(attributes[name]) for name in names}
+    names = (name for name in attributes if name not in UNDIGESTED_ATTRIBUTES and not is_user_added(name))
+    plain = {name: _attribute_as_list(attributes[name]) for name in names}
     return {name: value for name, value in plain.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
 
 
-def _plain(value: Any) -> Any:
+def _attribute_as_list(value: Any) -> Any:
     """Value of an attribute as a list for JSON; a single number becomes a list, as netCDF stores it."""
     if isinstance(value, h5py.Empty):
         return [""]

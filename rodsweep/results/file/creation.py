@@ -15,7 +15,14 @@ from ...arrays import Array
 from ...sweep.points.chains import Chains
 from ...sweep.points.points import Points
 from ...sweep.points.stretches import Stretches
-from ..layouts.variables import MISSING, Filled, Layout, Variable, dimension_attributes, flag_attributes
+from ..layouts.variables import (
+    MISSING_STATUS,
+    FilledVariable,
+    Layout,
+    Variable,
+    dimension_attributes,
+    flag_attributes,
+)
 from .combination.identity import fingerprint_of
 from .validation import FORMAT, PROGRAM
 
@@ -31,7 +38,7 @@ class Plan:
     coordinates: dict[str, Array]
     """Coordinates, (n,) each, of extra dimensions such as u, by name of the dimension. All other extra
     dimensions have the coordinates 1, 2, ..."""
-    constants: Callable[[], tuple[Filled, ...]]
+    constants: Callable[[], tuple[FilledVariable, ...]]
     """Returns the variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
     """The resolved config."""
@@ -39,14 +46,14 @@ class Plan:
     """Attributes of the file, in addition to the attributes that every result file has."""
     flags: tuple[tuple[int, str], ...]
     """(value, name) of every status except MISSING."""
-    quantities: tuple[Filled, ...] = ()
+    quantities: tuple[FilledVariable, ...] = ()
     """Quantities of an arm, with values: axes of a grid over these quantities, or additional coordinates of
     the points."""
     chains: Chains | None = None
     """Chains of points; None if no point starts from the state of another point."""
     stretches: Stretches | None = None
     """Stretches of points that are solved together; None if no points are solved together."""
-    afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
+    afterwards: Callable[[Mapping[str, Any]], tuple[FilledVariable, ...]] = lambda values: ()
     """Returns variables computed from the variables of all points; called when no point is missing."""
 
     @property
@@ -67,11 +74,11 @@ def create_file(path: Path, plan: Plan) -> None:
         for name, extent in plan.layout.extents.items():
             _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
         for variable in plan.layout.variables:
-            data = _contiguous(file, variable, plan.points.shape + plan.layout.point_shape(variable))
-            _describe(file, data, variable, (*plan.dimensions, *variable.extra))
+            data = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
+            _write_attributes(file, data, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants())
         add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])
-        file["status"].attrs.update(flag_attributes(((MISSING, "missing"), *plan.flags)))
+        file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
         file.attrs["program"] = PROGRAM
         file.attrs["format"] = FORMAT
         file.attrs["fingerprint"] = plan.fingerprint
@@ -79,7 +86,7 @@ def create_file(path: Path, plan: Plan) -> None:
         file.attrs.update(plan.attributes)
 
 
-def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
+def add_variables(file: h5py.File, filled: Sequence[FilledVariable]) -> None:
     """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions. filled:
     (variable, values) pairs.
     """
@@ -88,7 +95,7 @@ def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
             if name not in file:
                 _write_scale(file, name, np.arange(1, extent + 1))
         data = file.create_dataset(variable.name, data=values.astype(variable.dtype))
-        _describe(file, data, variable, variable.extra)
+        _write_attributes(file, data, variable, variable.extra)
 
 
 def _write_parameters(file: h5py.File, plan: Plan) -> None:
@@ -129,7 +136,7 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
     data.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)
 
 
-def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
+def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
     """New contiguous dataset, allocated and filled when it is created, so that its offset in the file is
     final.
     """
@@ -142,7 +149,9 @@ def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> 
     return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), kind, space, creation))
 
 
-def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]) -> None:
+def _write_attributes(
+    file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]
+) -> None:
     """Adds unit, long name, flags and dimensions of `variable` to its dataset `data`."""
     data.attrs.update(variable.attributes)
     for axis, name in enumerate(dimensions):

@@ -13,22 +13,22 @@ import numpy as np
 
 from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import index_count
-from ..layouts.variables import MISSING
+from ..layouts.variables import MISSING_STATUS
 from ..run.journal import journal_directory, read_journals, read_reasons
-from .exchange import FileReplacement, disk_refusals, identity
+from .exchange import FileReplacement, disk_refusals, file_identity
 from .points import missing_ranges, write_points
-from .provenance import now, reasons_added
+from .provenance import utc_time, with_failure_reasons
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file, read_header
 
 MAX_REREADS = 20
 """Maximum number of attempts to read a file that is replaced meanwhile. A run replaces its file every few
 seconds at most; more replacements indicate a fault."""
-SNAPSHOT = "snapshot"
+SNAPSHOT_ATTRIBUTE = "snapshot"
 """Name of the attribute with the time of a snapshot; the attribute marks a file as a snapshot."""
-Found = TypeVar("Found")
+ReadResult = TypeVar("ReadResult")
 
 
-def read_file_and_journals(path: Path, read: Callable[[], Found]) -> Found:
+def read_file_and_journals(path: Path, read: Callable[[], ReadResult]) -> ReadResult:
     """Result of the function `read`, which reads a file and its journals, and is called again if the file was
     replaced meanwhile.
 
@@ -38,9 +38,9 @@ def read_file_and_journals(path: Path, read: Callable[[], Found]) -> Found:
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
-        before = identity(path)
+        before = file_identity(path)
         found = read()
-        if not has_journals or identity(path) == before:
+        if not has_journals or file_identity(path) == before:
             return found
     raise EnvironmentIncomplete(f"{path} cannot be read, because a run keeps replacing it; try again")
 
@@ -54,7 +54,7 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
     directory = journal_directory(header.path)
     if not directory.is_dir():
         return found
-    missing = status == MISSING
+    missing = status == MISSING_STATUS
     blocks = read_journals(directory, header.layout, header.fingerprint, len(status))
     found = np.concatenate([found, *(block[missing[block["index"]]] for block in blocks)])
     _, last = np.unique(found["index"][::-1], return_index=True)  # the last record of a point wins
@@ -67,7 +67,7 @@ def journalled_reasons(header: ResultHeader) -> dict[str, str]:
     """
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
-    return reasons_added(lines, header.attributes)
+    return with_failure_reasons(lines, header.attributes)
 
 
 def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
@@ -92,12 +92,12 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
     with disk_refusals(output):
         exchange = FileReplacement(output)
     try:
-        return read_file_and_journals(path, lambda: _copied(path, exchange))
+        return read_file_and_journals(path, lambda: _write_new_snapshot(path, exchange))
     finally:
         exchange.close()
 
 
-def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
+def _write_new_snapshot(path: Path, exchange: FileReplacement) -> tuple[int, int]:
     """Replaces the snapshot by a copy of the file at `path` with the points of its journals.
 
     Returns (number of computed points, number of all points).
@@ -107,7 +107,7 @@ def _copied(path: Path, exchange: FileReplacement) -> tuple[int, int]:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
         write_points(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
-            file.attrs.update(journalled_reasons(header) | {SNAPSHOT: now()})
+            file.attrs.update(journalled_reasons(header) | {SNAPSHOT_ATTRIBUTE: utc_time()})
         missing = index_count(missing_ranges(copy))
     return header.points - missing, header.points
 
@@ -119,4 +119,4 @@ def _is_snapshot(path: Path) -> bool:
     if not is_rodsweep_file(path):
         return False
     with damage_refusals(path), h5py.File(path, "r") as file:
-        return bool(file.attrs.get(SNAPSHOT))
+        return bool(file.attrs.get(SNAPSHOT_ATTRIBUTE))

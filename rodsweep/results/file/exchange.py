@@ -15,15 +15,15 @@ from ...errors import EnvironmentIncomplete, InputError
 from ..run.journal import journal_directory
 from .seal import seal
 
-LOCK_PATIENCE = 5.0
+LOCK_TIMEOUT = 5.0
 """Seconds to wait for the lock before InputError is raised, because ranks of a killed launcher end a moment
 later."""
-Identity = tuple[int, ...]
+FileIdentity = tuple[int, ...]
 """(device, inode, size, time of change): changes when a file is replaced or written; empty if there is no
 file."""
 
 
-def identity(path: Path) -> Identity:
+def file_identity(path: Path) -> FileIdentity:
     """Identity of the file at `path`, read from the disk. Empty if there is no file."""
     try:
         status = path.stat()
@@ -56,7 +56,7 @@ class FileReplacement:
         self.copy = self.journals / "next.h5"
         path.parent.mkdir(parents=True, exist_ok=True)
         self.lock = Lock(self.journals, path)
-        self.left: Identity = ()
+        self.left: FileIdentity = ()
         """Identity of the file at the last check or exchange."""
 
     @contextmanager
@@ -75,7 +75,7 @@ class FileReplacement:
         with self.copy.open("rb+") as file:
             os.fsync(file.fileno())
         os.replace(self.copy, self.path)
-        self.left = identity(self.path)
+        self.left = file_identity(self.path)
         # Without syncing the directory a power failure could undo the rename.
         directory = os.open(self.path.parent, os.O_RDONLY)
         os.fsync(directory)
@@ -94,7 +94,7 @@ class Lock:
     def __init__(self, directory: Path, path: Path):
         """Takes the lock on the file `path`; raises InputError if another run has the lock."""
         self.directory = directory
-        patience = time.monotonic() + LOCK_PATIENCE
+        patience = time.monotonic() + LOCK_TIMEOUT
         while True:
             try:
                 directory.mkdir(exist_ok=True)

@@ -16,11 +16,11 @@ import numpy as np
 
 from ...sweep.points.points import Points
 from ...sweep.points.ranges import IndexRange, merged_ranges
-from ..layouts.variables import MISSING, Layout
+from ..layouts.variables import MISSING_STATUS, Layout
 
-POINTS_AT_ONCE = 1 << 16
+MAX_BLOCK_POINTS = 1 << 16
 """Maximum number of points in a block that is read at once."""
-BYTES_AT_ONCE = 1 << 26
+MAX_BLOCK_BYTES = 1 << 26
 """Maximum size of a block that is read at once, in bytes; a block has fewer points if their records are
 large."""
 
@@ -29,14 +29,14 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
     """Yields (flat index of the first point, statuses of n consecutive points, (n,)) until all points are
     read.
 
-    at_once: number of points per step; POINTS_AT_ONCE by default.
+    at_once: number of points per step; MAX_BLOCK_POINTS by default.
     """
     with h5py.File(path, "r") as file:
         data = file["status"]
         offset = data.id.get_offset()
         kind = data.dtype
         count = data.size
-    at_once = at_once or POINTS_AT_ONCE
+    at_once = at_once or MAX_BLOCK_POINTS
     with path.open("rb") as stream:
         for first in range(0, count, at_once):
             stream.seek(offset + first * kind.itemsize)
@@ -47,36 +47,43 @@ def missing_ranges(path: Path) -> list[IndexRange]:
     """Ranges of the flat indices of missing points of a result file, in order."""
     ranges: list[IndexRange] = []
     for start, status in statuses(path):
-        edges = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
+        edges = start + np.flatnonzero(np.diff(status == MISSING_STATUS, prepend=False, append=False))
         ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
     return merged_ranges(ranges)
 
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of points that the file `other` has and the file `path` lacks."""
-    at_once = _at_once(layout)
+    at_once = _block_points(layout)
     pairs = zip(statuses(path, at_once), statuses(other, at_once), strict=True)
-    yield from _read(
+    yield from _selected_records(
         other,
         layout,
-        ((first, (ours == MISSING) & (theirs != MISSING)) for (first, ours), (_, theirs) in pairs),
+        (
+            (first, (ours == MISSING_STATUS) & (theirs != MISSING_STATUS))
+            for (first, ours), (_, theirs) in pairs
+        ),
     )
 
 
 def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of all computed points of a file with the given layout."""
-    blocks = statuses(path, _at_once(layout))
-    yield from _read(path, layout, ((first, status != MISSING) for first, status in blocks))
+    blocks = statuses(path, _block_points(layout))
+    yield from _selected_records(
+        path, layout, ((first, status != MISSING_STATUS) for first, status in blocks)
+    )
 
 
-def _at_once(layout: Layout) -> int:
+def _block_points(layout: Layout) -> int:
     """Number of points in a block that is read at once, for the record size of a layout."""
-    return min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
+    return min(MAX_BLOCK_POINTS, MAX_BLOCK_BYTES // layout.record.itemsize + 1)
 
 
-def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) -> Iterator[np.ndarray]:
+def _selected_records(
+    path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]
+) -> Iterator[np.ndarray]:
     """Yields records, (n,), of selected points; blocks: (flat index of the first point, mask of points)."""
-    offsets = _offsets(path, layout)
+    offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for first, selected in blocks:
             if selected.any():
@@ -94,7 +101,7 @@ def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
     """Records, (n,), of a file with the given layout at flat indices, (n,)."""
     records = np.empty(len(index), layout.record)
     records["index"] = index
-    offsets = _offsets(path, layout)
+    offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for name, offset in offsets.items():
             kind = layout.record[name]
@@ -116,11 +123,13 @@ def points_in(file: h5py.File, layout: Layout) -> Points:
     over = {name: file[name][...] for name in layout.arm_axes}
     if not over:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
-    columns = tuple(np.broadcast_to(table, file["status"].shape).ravel() for table in on_grid(file, layout))
+    columns = tuple(
+        np.broadcast_to(table, file["status"].shape).ravel() for table in grid_parameter_values(file, layout)
+    )
     return Points(names, columns, is_grid=False, arm_axes=over)
 
 
-def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
+def grid_parameter_values(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
     """Yields the values of each parameter on a grid over an arm's quantities, shaped to broadcast over the
     grid.
 
@@ -139,7 +148,7 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bo
 
     Values of a variable at consecutive points are written by a single call.
     """
-    offsets = _offsets(path, layout)
+    offsets = _variable_offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:
         for records in filter(len, blocks):
@@ -158,7 +167,7 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bo
     return any_written
 
 
-def _offsets(path: Path, layout: Layout) -> dict[str, int]:
+def _variable_offsets(path: Path, layout: Layout) -> dict[str, int]:
     """Offset in the file, in bytes, of the first number of each variable of the layout, by name."""
     with h5py.File(path, "r") as file:
         return {variable.name: file[variable.name].id.get_offset() for variable in layout.variables}

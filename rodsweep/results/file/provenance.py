@@ -36,7 +36,7 @@ KERNEL_NOT_RECORDED = "unknown"
 """Name of the BLAS kernel of points from an earlier version, which did not record kernels."""
 
 
-def now() -> str:
+def utc_time() -> str:
     """Current time in ISO 8601, UTC."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
@@ -58,7 +58,7 @@ def provenance() -> dict[str, str]:
     }
 
 
-def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
+def blas_kernels_in(attributes: Mapping[str, Any]) -> list[str]:
     """Names of the BLAS kernels in the attributes of a result file."""
     return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
@@ -68,12 +68,12 @@ def merged_blas_kernels(*several: Iterable[str]) -> str:
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
-def reason_of(line: str) -> str:
+def failure_kind(line: str) -> str:
     """Status and reason in a line "parameters: status reason", with every number replaced by #."""
     return NUMBER.sub("#", line.partition(": ")[2])
 
 
-def united_reasons(*several: str) -> dict[str, str]:
+def joined_failure_reasons(*several: str) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS, joined from several values of this attribute; empty if there
     are no reasons.
 
@@ -81,18 +81,18 @@ def united_reasons(*several: str) -> dict[str, str]:
     """
     lines: dict[str, str] = {}
     for line in "\n".join(several).splitlines():
-        lines.setdefault(reason_of(line), line)
+        lines.setdefault(failure_kind(line), line)
     kept = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:LONGEST_ATTRIBUTE]
     return {FAILURE_REASONS: kept} if kept else {}
 
 
-def reasons_added(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
+def with_failure_reasons(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS after new failures.
 
     lines: lines of the new failures. before: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
-    return united_reasons(*lines, str(before.get(FAILURE_REASONS, "")))
+    return joined_failure_reasons(*lines, str(before.get(FAILURE_REASONS, "")))
 
 
 def kernels_sentence(attribute: str) -> str:
@@ -114,9 +114,9 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """
     history: dict[str, Any] = {
         "shard": "",
-        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
+        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, several))[:LONGEST_ATTRIBUTE],
     }
-    history |= united_reasons(*(str(each.get(FAILURE_REASONS, "")) for each in several))
+    history |= joined_failure_reasons(*(str(each.get(FAILURE_REASONS, "")) for each in several))
     runs = [attributes for attributes in several if "ranks" in attributes]
     if not runs:
         return history

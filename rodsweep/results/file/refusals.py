@@ -4,9 +4,9 @@ import shutil
 from pathlib import Path
 
 from ...errors import EnvironmentIncomplete, InputError
-from ..run.journal import journals_of
+from ..run.journal import journals_with_fingerprint
 from .combination.extension import extension_of
-from .combination.identity import change_between
+from .combination.identity import config_change_text
 from .creation import Plan
 from .points import parameters_of
 from .validation import IncompleteFile, ResultHeader, read_header
@@ -45,7 +45,7 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
     """Raises InputError for an existing file, described by `header`, whose config differs from the config of
     the plan. journals: journal directory of the file.
     """
-    change = change_between(header.config, plan.config)
+    change = config_change_text(header.config, plan.config)
     ways = _remedies_clause(plan, journals)
     try:
         extension_of(header, parameters_of(header.path, header.layout), plan)
@@ -59,6 +59,6 @@ def _remedies_clause(plan: Plan, journals: Path) -> str:
     """Clause that tells the user what to do with a file that is in the way of the result file. journals:
     journal directory of the file.
     """
-    if journals_of(journals, plan.fingerprint):
+    if journals_with_fingerprint(journals, plan.fingerprint):
         return f"move it away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

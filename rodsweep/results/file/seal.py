@@ -29,9 +29,9 @@ LONGEST_FRAME = 100_000
 """Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
 BYTES_A_READ = 1 << 20
 """Number of bytes per read of a file, which bounds the memory."""
-LARGEST_INCLUDED = 1 << 16
+MAX_INCLUDED_BYTES = 1 << 16
 """Size of a variable, in bytes, up to which the checksum of HDF5's structures includes its numbers."""
-Piece = tuple[int, int]
+ByteRange = tuple[int, int]
 """Byte range of a file: (offset, size), in bytes."""
 
 
@@ -48,9 +48,9 @@ def seal(path: Path) -> None:
     with h5py.File(path, "r") as file:
         pieces = _large_pieces(file)
     with path.open("r+b") as stream:
-        end = _end(stream)
+        end = _hdf5_end(stream)
         stream.truncate(end)
-        frame = {"end": end, "pieces": pieces, "frame": _checksum(stream, _between(pieces, end))}
+        frame = {"end": end, "pieces": pieces, "frame": _checksum(stream, _left_out_pieces(pieces, end))}
         stream.seek(end)
         stream.write(FRAME_HEAD + json.dumps(frame).encode() + b"\n")
 
@@ -62,7 +62,7 @@ def check_frame(path: Path) -> bool:
     OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
-        end = _end(stream)
+        end = _hdf5_end(stream)
         size = os.fstat(stream.fileno()).st_size
         if size < end:
             raise BrokenSeal(f"it ends after {size} of {end} bytes")
@@ -75,7 +75,7 @@ def check_frame(path: Path) -> bool:
         try:
             given = json.loads(data[len(FRAME_HEAD) :])
             pieces = [(int(start), int(length)) for start, length in given["pieces"]]
-            whole = given["end"] == end and given["frame"] == _checksum(stream, _between(pieces, end))
+            whole = given["end"] == end and given["frame"] == _checksum(stream, _left_out_pieces(pieces, end))
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
             raise BrokenSeal("its checksum cannot be read") from None
     if not whole:
@@ -83,7 +83,7 @@ def check_frame(path: Path) -> bool:
     return True
 
 
-def _end(stream: BinaryIO) -> int:
+def _hdf5_end(stream: BinaryIO) -> int:
     """Offset of HDF5's own end of the file, in bytes, from the superblock."""
     stream.seek(0)
     head = stream.read(64)
@@ -93,14 +93,14 @@ def _end(stream: BinaryIO) -> int:
     return int.from_bytes(head[at : at + 8], "little")
 
 
-def _large_pieces(file: h5py.File) -> list[Piece]:
-    """Byte ranges of the numbers of contiguous variables larger than LARGEST_INCLUDED, in order."""
+def _large_pieces(file: h5py.File) -> list[ByteRange]:
+    """Byte ranges of the numbers of contiguous variables larger than MAX_INCLUDED_BYTES, in order."""
     variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
     places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
-    return sorted((start, size) for start, size in places if start is not None and size > LARGEST_INCLUDED)
+    return sorted((start, size) for start, size in places if start is not None and size > MAX_INCLUDED_BYTES)
 
 
-def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
+def _left_out_pieces(pieces: list[ByteRange], end: int) -> Iterator[ByteRange]:
     """Yields the byte ranges from 0 to `end` that the sorted byte ranges `pieces` leave out."""
     at = 0
     for start, size in [*pieces, (end, 0)]:
@@ -110,7 +110,7 @@ def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
         at = start + size
 
 
-def _checksum(stream: BinaryIO, pieces: Iterator[Piece]) -> int:
+def _checksum(stream: BinaryIO, pieces: Iterator[ByteRange]) -> int:
     """CRC-32 of consecutive byte ranges of a file."""
     checksum = 0
     for start, size in pieces:

@@ -18,25 +18,25 @@ import numpy as np
 
 from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import IndexRange, index_count
-from ..layouts.variables import MISSING, Filled, Layout
+from ..layouts.variables import MISSING_STATUS, FilledVariable, Layout
 from ..run.checkpoints import CHECKPOINTS
 from ..run.journal import (
     JOURNALS,
-    drop_files,
+    delete_matching_files,
     journal_directory,
-    journals_of,
-    kept_sentence,
-    other_journals,
+    journalled_points_clause,
+    journals_with_fingerprint,
+    journals_without_fingerprint,
+    move_journals_aside,
     read_journals,
     read_reasons,
-    set_aside,
 )
 from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
-from .current_state import SNAPSHOT
-from .exchange import FileReplacement, disk_refusals, identity
+from .current_state import SNAPSHOT_ATTRIBUTE
+from .exchange import FileReplacement, disk_refusals, file_identity
 from .points import missing_ranges, parameters_of, statuses, write_points
-from .provenance import merged_history, reasons_added
+from .provenance import merged_history, with_failure_reasons
 from .refusals import header_of_existing_file, require_room, require_same_config
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file
 
@@ -73,24 +73,24 @@ class Store:
         else:
             header = self._header()
             if header.fingerprint == self.plan.fingerprint:
-                snapshot = {SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}
+                snapshot = {SNAPSHOT_ATTRIBUTE: ""} if self.attributes().get(SNAPSHOT_ATTRIBUTE) else {}
                 self.add_journals(self._new_title() | snapshot)
             elif extend:
                 self._extend(header)
             else:
                 require_same_config(header, self.plan, self.journals)
-        other = other_journals(self.journals, self.plan.fingerprint)
+        other = journals_without_fingerprint(self.journals, self.plan.fingerprint)
         self._set_aside(other, "journals that do not match the config and its points")
-        drop_files(self.journals, JOURNALS)  # the remaining journals have no points
+        delete_matching_files(self.journals, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
         """Creates the file of the plan, with the points of its journals unless `fresh`."""
         if self.path.exists() and not is_rodsweep_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_room(self.path, self.plan)
-        own = journals_of(self.journals, self.plan.fingerprint)
+        own = journals_with_fingerprint(self.journals, self.plan.fingerprint)
         if fresh:
-            drop_files(self.journals, CHECKPOINTS)
+            delete_matching_files(self.journals, CHECKPOINTS)
             self._set_aside(own, "journals that --fresh does not use")
         self._set_aside(sorted(self.journals.glob(BACKUPS)), "points from before an extension")
         with self.exchange.replacing(None) as copy:
@@ -119,7 +119,7 @@ class Store:
                 self.notes.append(
                     f"{anew} of {done} stored points are computed anew; until all are done, {before} has them"
                 )
-        drop_files(self.journals, CHECKPOINTS)
+        delete_matching_files(self.journals, CHECKPOINTS)
         self.add_journals({})
 
     def _backup_path(self) -> Path:
@@ -133,7 +133,7 @@ class Store:
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
         """Moves `paths` out of the journal directory, and notes the new place. what: noun for the files."""
         if paths:
-            self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
+            self.notes.append(f"{what} are kept in {move_journals_aside(self.journals, paths)}")
 
     def _new_title(self) -> dict[str, Any]:
         """Attributes to change if config and file differ in title; empty otherwise."""
@@ -152,14 +152,14 @@ class Store:
         with damage_refusals(self.path):
             return missing_ranges(self.path)
 
-    def finish(self, attributes: dict[str, Any], variables: Sequence[Filled] = ()) -> None:
-        """Adds journalled points, attributes, `variables`, and variables computed from all points to the
-        file.
-        """
+    def finish(self, attributes: dict[str, Any], variables: Sequence[FilledVariable] = ()) -> None:
+        """Stores journalled points, attributes, `variables`, and variables computed from all points."""
         self.add_journals(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
 
     def add_journals(
-        self, attributes: dict[str, Any], additions: Callable[[h5py.File], Sequence[Filled]] | None = None
+        self,
+        attributes: dict[str, Any],
+        additions: Callable[[h5py.File], Sequence[FilledVariable]] | None = None,
     ) -> None:
         """Adds journalled points, attributes and variables by one replacement; deletes the journals.
 
@@ -171,7 +171,7 @@ class Store:
         self._add_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINTS, BACKUPS):
-                drop_files(self.journals, pattern)
+                delete_matching_files(self.journals, pattern)
 
     def restore(self) -> None:
         """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
@@ -179,7 +179,7 @@ class Store:
             self._restore_missing_file()
 
     def _restore_missing_file(self) -> None:
-        if identity(self.path) == self.exchange.left:
+        if file_identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
             with self.exchange.replacing(None) as copy:
@@ -201,7 +201,7 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Callable[[h5py.File], Sequence[Filled]] | None = None,
+        additions: Callable[[h5py.File], Sequence[FilledVariable]] | None = None,
     ) -> None:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
         the journals.
@@ -209,7 +209,7 @@ class Store:
         layout: layout of the records. attributes, additions: as in `add_journals`.
         """
         with disk_refusals(self.path, self._kept):
-            journals = journals_of(self.journals, fingerprint)
+            journals = journals_with_fingerprint(self.journals, fingerprint)
             first = next(blocks, None)
             reasons = read_reasons(self.journals, layout, fingerprint)
             if first is not None or attributes:
@@ -219,17 +219,17 @@ class Store:
                     if attributes or reasons:
                         with h5py.File(copy, "r+") as file:
                             add_variables(file, additions(file) if additions else ())
-                            file.attrs.update(attributes | reasons_added(reasons, file.attrs))
+                            file.attrs.update(attributes | with_failure_reasons(reasons, file.attrs))
             for journal in journals:
                 journal.unlink(missing_ok=True)
 
     def _kept(self) -> str:
         """Clause for messages with the directory of journalled points; empty if no points are in journals."""
-        return kept_sentence(journal_directory(self.path), self.plan.fingerprint)
+        return journalled_points_clause(journal_directory(self.path), self.plan.fingerprint)
 
     def status_counts(self) -> dict[str, int]:
         """Number of points with each status, by the name of the status."""
-        names = {MISSING: "missing", **dict(self.plan.flags)}
+        names = {MISSING_STATUS: "missing", **dict(self.plan.flags)}
         counts: dict[str, int] = {}
         with damage_refusals(self.path):
             for _, status in statuses(self.path):
@@ -244,7 +244,7 @@ class Store:
 
     def _header(self) -> ResultHeader:
         """Header of the existing file; raises InputError if the file is not a complete result."""
-        left = identity(self.path)
+        left = file_identity(self.path)
         header = header_of_existing_file(self.path, self.plan, self.journals)
         self.exchange.left = left
         return header

@@ -27,12 +27,12 @@ FORMAT = 8
 meaning; files whose format number differs are refused. Format 5 was the first with sealed content; 6
 introduced frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an
 arm's quantities."""
-CONFIGS = (".yaml", ".yml")
+CONFIG_SUFFIXES = (".yaml", ".yml")
 """Suffixes of the names of config files."""
 LONGEST_REASON = 150
 """Maximum number of characters of a library's error message that a message of rodsweep quotes; longer
 messages are cut."""
-DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
+DAMAGE_EXCEPTIONS = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
 """Exceptions that h5py, or the use of the data it reads, raises for a damaged file."""
 
 
@@ -45,11 +45,13 @@ def damage_refusals(path: Path) -> Iterator[None]:
     """Context that turns the exceptions DAMAGES, for a damaged or foreign file, into IncompleteFile."""
     try:
         yield
-    except DAMAGES as error:
-        raise IncompleteFile(f"{path} is not a whole rodsweep result file ({reason_of(error)})") from None
+    except DAMAGE_EXCEPTIONS as error:
+        raise IncompleteFile(
+            f"{path} is not a whole rodsweep result file ({one_line_message(error)})"
+        ) from None
 
 
-def reason_of(error: Exception) -> str:
+def one_line_message(error: Exception) -> str:
     """Message of a library's exception about a file, on a single line, cut to LONGEST_REASON characters."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
     text = "".join(c if c.isprintable() else " " for c in text)
@@ -71,7 +73,7 @@ class ResultHeader:
     points: int
 
 
-def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader]:
+def open_checked(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader]:
     """Returns (open file, header); every reader opens a result file by this function.
 
     values: whether the numbers of large variables are also compared with the seal, which takes a second per
@@ -79,7 +81,7 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader
     the file. Raises InputError unless the file is a complete result with the content written by rodsweep.
     """
     refuse_absent(path)
-    if path.suffix in CONFIGS:
+    if path.suffix in CONFIG_SUFFIXES:
         raise IncompleteFile(
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
@@ -95,7 +97,7 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, ResultHeader
 
 def read_header(path: Path) -> ResultHeader:
     """Header of a result file; raises InputError unless file and numbers are complete and unchanged."""
-    file, header = open_whole(path)
+    file, header = open_checked(path)
     file.close()
     return header
 
@@ -178,5 +180,5 @@ def is_rodsweep_file(path: Path) -> bool:
         check_frame(path)
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("program") == PROGRAM)
-    except DAMAGES:
+    except DAMAGE_EXCEPTIONS:
         return True

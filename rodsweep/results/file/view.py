@@ -15,9 +15,9 @@ from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
 from .content import is_user_added
 from .current_state import insert_records, journalled_points, journalled_reasons, read_file_and_journals
-from .validation import damage_refusals, escape_control_characters, open_whole, refuse_absent
+from .validation import damage_refusals, escape_control_characters, open_checked, refuse_absent
 
-LARGEST_CHECKED = 10**9
+MAX_CHECKED_BYTES = 10**9
 """Size of a file, in bytes, up to which its numbers are compared with the seal before use. In a larger file
 only HDF5's structures are checked, because the comparison of the numbers takes a second for each GB."""
 
@@ -182,7 +182,7 @@ def _view(path: Path) -> View:
     """View from reading the file and its journals once; see `read_view`."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
-    file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)
+    file, header = open_checked(path, values=path.stat().st_size <= MAX_CHECKED_BYTES)
     with damage_refusals(path):
         status = file["status"]
         words = str(escape_control_characters(status.attrs["flag_meanings"])).split()

@@ -10,7 +10,7 @@ from .arm import with_si
 from .rods import optional_in
 from .variables import ExtensionRule, Layout, Variable
 
-MODULES = {
+LAYOUT_MODULES = {
     "spectrum": spectrum,
     "thresholds": thresholds,
     "phase_diagram": phase_diagram,
@@ -19,14 +19,16 @@ MODULES = {
     "criticality": criticality,
     "branch": branch,
 }
-LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
-    task: module.layout for task, module in MODULES.items()
+LAYOUT_MAKERS: dict[str, Callable[[dict[str, Any]], Layout]] = {
+    task: module.layout for task, module in LAYOUT_MODULES.items()
 }
 """Function from a resolved config to the layout of the file, by task."""
-INCREASES: dict[str, dict[str, ExtensionRule]] = {task: module.INCREASES for task, module in MODULES.items()}
+EXTENSION_RULES: dict[str, dict[str, ExtensionRule]] = {
+    task: module.INCREASES for task, module in LAYOUT_MODULES.items()
+}
 """Rules for the options of which a larger value requests more data of a point, by task and option. A file
 cannot be extended if any other option changes."""
-BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
+JOINT_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
     "phase_diagram": phase_diagram.beside_points,
@@ -39,9 +41,9 @@ together, by task."""
 def layout_of(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config of any task."""
     task = config["task"]
-    if task not in LAYOUTS:
+    if task not in LAYOUT_MAKERS:
         raise KeyError(f"unknown task {task}")
-    layout = LAYOUTS[task](config)
+    layout = LAYOUT_MAKERS[task](config)
     return with_si(replace(layout, parameters=(*layout.parameters, *optional_in(config))), config)
 
 
@@ -50,7 +52,7 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
 
     is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
     """
-    found = BESIDE_POINTS.get(config["task"])
+    found = JOINT_VARIABLE_MAKERS.get(config["task"])
     return found(config, is_grid) if found else ()
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import STORED_ALONG, names_over
+from ...config.arm.axes import PARAMETER_STORED_ALONG, grid_axis_names
 from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmSection
 from ...config.axes import Axes
@@ -25,7 +25,7 @@ from ...model.arm.neglected import Validity
 from ...model.arm.quantities import ALL_QUANTITIES, LOADS, RELATIVE, SCALE_OF, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
-from .variables import ANGULAR_UNIT, DIMENSIONS, Filled, Layout, Variable, real, word
+from .variables import ANGULAR_UNIT, DIMENSIONS, FilledVariable, Layout, Variable, real, word
 
 SI_SUFFIX = "_si"
 """Suffix of the name of a variable in SI units."""
@@ -75,7 +75,7 @@ BRANCH_FORCES = ("special_at", "special_error")
 """Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Extra dimensions of variables that are stored in SI units too; longer tables are stored once."""
-EFFECTS = (
+NEGLECTED_EFFECTS = (
     "inertia_of_the_arm",
     "inertia_of_the_fluid",
     "compression",
@@ -84,18 +84,18 @@ EFFECTS = (
     "flattening_of_the_wall",
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
-NOT_KNOWN = -1
+VALIDITY_NOT_KNOWN = -1
 """Value of the variable model_applies where the solver may have missed a motion."""
 VALIDITY = (
     word(
         "model_applies",
         "whether the model applies to the arm, judged by the effects that it neglects",
-        ((NOT_KNOWN, "not_known"), *((int(each), each.name) for each in Validity)),
+        ((VALIDITY_NOT_KNOWN, "not_known"), *((int(each), each.name) for each in Validity)),
     ),
     word(
         "neglected_effect",
         "largest effect that the model neglects, relative to the limit of each effect",
-        ((-1, "none"), *enumerate(EFFECTS)),
+        ((-1, "none"), *enumerate(NEGLECTED_EFFECTS)),
     ),
     real(
         "neglected_excess",
@@ -120,7 +120,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """
     as_force = any(RELATIVE.get(name, name) == "force" for name in config["parameters"]["arm"])
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
-    return {v.name: real(si_name_of(v.name, si), si, _meaning(v, si), *v.extra) for v, si in units if si}
+    return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
 
 
 def si_name_of(name: str, unit: str) -> str:
@@ -133,7 +133,7 @@ def si_name_of(name: str, unit: str) -> str:
     return name + (HERTZ_SUFFIX if unit == HERTZ else SI_SUFFIX)
 
 
-def _meaning(variable: Variable, unit: str) -> str:
+def _si_meaning(variable: Variable, unit: str) -> str:
     """Long name of the SI variable, in the unit `unit`, of a dimensionless variable."""
     if unit != HERTZ:
         return f"{variable.long_name}; in SI units"
@@ -164,7 +164,7 @@ def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Arra
     quantities: the quantities of the arm by name, () or (n,) each.
     """
     si = si_unit_of(variable, "force" in quantities)
-    si_variable = real(si_name_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
+    si_variable = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
     return si_variable, values * si.scale(quantities)
 
 
@@ -174,10 +174,10 @@ def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
     ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
     sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
-    return names_over(sizes, makes_diagram(config["task"]))
+    return grid_axis_names(sizes, makes_diagram(config["task"]))
 
 
-def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
+def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...]:
     """(variable, values) of each quantity and unit of a config's arm; empty if the config has no arm.
 
     For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
@@ -187,20 +187,20 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[Filled, ...]:
         return ()
     if not points.arm_axes:
         return tuple(
-            _filled(arm, name, values, (STORED_ALONG[name],) if np.ndim(values) else ())
+            _data_of(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
     own = points.units | {name: column for name, column in points.by_name.items() if name not in axes}
     return (
-        *(_filled(arm, name, values, (name,)) for name, values in axes.items()),
-        *(_filled(arm, name, value, ()) for name, value in numbers.items()),
-        *(_filled(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
+        *(_data_of(arm, name, values, (name,)) for name, values in axes.items()),
+        *(_data_of(arm, name, value, ()) for name, value in numbers.items()),
+        *(_data_of(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
     )
 
 
-def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> Filled:
+def _data_of(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)
@@ -211,7 +211,7 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
     return variable, np.asarray(values, variable.dtype)
 
 
-def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
+def at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str, NDArray[Any]]:
     """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
     if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}

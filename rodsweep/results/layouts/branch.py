@@ -18,9 +18,9 @@ from .variables import (
     word,
 )
 
-ALONG = "branch_point"
+CYCLE_DIMENSION = "branch_point"
 """Dimension of the cycles of all branches."""
-SPECIAL = "special"
+SPECIAL_DIMENSION = "special"
 """Dimension of the special points of all branches."""
 SPECIAL_MEANINGS = {
     "none": "unused entry: the list is longer than the number of special points",
@@ -38,7 +38,7 @@ SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
 """Names of the reasons why a branch ends at a special point of the kind `end`, in the order of their stored
 numbers."""
-ERRORS = (
+ERROR_VARIABLES = (
     ("period_error", "the relative error of period"),
     ("amplitude_error", "the relative error of tip_y_max"),
     ("extrema_error", "the error of the tip's other extrema, in units of tip_y_max"),
@@ -54,7 +54,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
     """
     unit = PARAMETERS[parameter].unit
     return along_dimension(
-        ALONG,
+        CYCLE_DIMENSION,
         integer("branch", "number of the branch, from 1"),
         real(f"branch_{parameter}", unit, f"{parameter} of the cycle"),
         real(
@@ -75,7 +75,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
             "number of nontrivial Floquet multipliers outside the unit circle; 0: stable; -1: undecided "
             "within error",
         ),
-        *(real(name, "1", f"estimate of {error}, at branch_{parameter}") for name, error in ERRORS),
+        *(real(name, "1", f"estimate of {error}, at branch_{parameter}") for name, error in ERROR_VARIABLES),
     )
 
 
@@ -83,7 +83,7 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
     """Variables of the special points on all branches; parameter: the continuation parameter's name."""
     unit = PARAMETERS[parameter].unit
     return along_dimension(
-        SPECIAL,
+        SPECIAL_DIMENSION,
         word("special_kind", "kind of the special point", SPECIAL_KINDS),
         real("special_at", unit, f"{parameter} at the special point"),
         real("special_error", unit, "estimate of the absolute error of special_at"),
@@ -116,7 +116,7 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
     )
 
 
-def _has(name: str) -> ExtensionRule:
+def _list_length_rule(name: str) -> ExtensionRule:
     """Rule for the maximum length of a list; the variable `name` is the number of its items.
 
     A stored list that is not full already has all items.
@@ -124,7 +124,11 @@ def _has(name: str) -> ExtensionRule:
     return ExtensionRule(lambda records, before: records[name] < before)
 
 
-INCREASES = {"cycles": _has("point_count"), "special": _has("special_count"), "certify": NEEDS_NEW_SOLVE}
+INCREASES = {
+    "cycles": _list_length_rule("point_count"),
+    "special": _list_length_rule("special_count"),
+    "certify": NEEDS_NEW_SOLVE,
+}
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -148,4 +152,6 @@ def layout(config: dict[str, Any]) -> Layout:
     )
     parameters = all_but(parameter, NONLINEAR_PARAMETERS)
     variables = with_certified_meaning(variables, config, "Hopf points")
-    return Layout(variables, {ALONG: options["cycles"], SPECIAL: options["special"]}, parameters)
+    return Layout(
+        variables, {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}, parameters
+    )

@@ -14,7 +14,7 @@ from .variables import (
     ANGULAR_UNIT,
     MESH,
     NEEDS_NEW_SOLVE,
-    NOT_KNOWN,
+    NOT_KNOWN_SUFFIX,
     SECONDS,
     STATUS,
     ExtensionRule,
@@ -98,7 +98,7 @@ TRANSIENT = (
         for name, units in TIP_UNITS.items()
     ),
 )
-HOPF = "hopf"
+HOPF_DIMENSION = "hopf"
 """Dimension of the Hopf points on the lines of points of a file."""
 HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 """Parameters along which Hopf points are searched; gamma1 has no influence on Hopf points."""
@@ -112,7 +112,7 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
     return (
         *along_dimension(
-            HOPF,
+            HOPF_DIMENSION,
             word(
                 "hopf_along",
                 "parameter along which the Hopf point was found, between points of a line",
@@ -125,7 +125,7 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
             real("hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"),
             integer(
                 "hopf_unstable_after",
-                f"number of modes with positive growth rate beyond the Hopf point{NOT_KNOWN}",
+                f"number of modes with positive growth rate beyond the Hopf point{NOT_KNOWN_SUFFIX}",
             ),
         ),
         integer(
@@ -136,12 +136,12 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
     )
 
 
-NO_CYCLE = ExtensionRule(lambda records, before: np.isnan(records["period"]))
+SOLVE_CYCLES_AGAIN = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
-INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NO_CYCLE) | {
+INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), SOLVE_CYCLES_AGAIN) | {
     "transient": NEEDS_NEW_SOLVE,
-    "time": ExtensionRule(NO_CYCLE.has, ("tau2", "tau1")),
+    "time": ExtensionRule(SOLVE_CYCLES_AGAIN.has, ("tau2", "tau1")),
 }
 
 

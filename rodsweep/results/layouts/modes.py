@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .spectrum import EACH_MODE, EACH_POINT, VECTORS, complex_pair
+from .spectrum import MODE_VARIABLES, POINT_VARIABLES, VECTORS, complex_pair
 from .variables import NEEDS_NEW_SOLVE, Layout, along_dimension, real
 
 MODE_FIELDS = (
@@ -38,5 +38,5 @@ def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config; transient growth only if the config asks for it."""
     options = config["modes"]
     growth = GROWTH if options["growth"] else ()
-    variables = EACH_MODE + MODE_FIELDS + MODE_NUMBERS + growth + EACH_POINT
+    variables = MODE_VARIABLES + MODE_FIELDS + MODE_NUMBERS + growth + POINT_VARIABLES
     return Layout(variables, {"mode": options["modes"], "u": options["nodes"]})

@@ -36,7 +36,7 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
 
 
 UNSTABLE_COUNT = integer("unstable_count", "number of modes with positive growth rate; -1: not known")
-EACH_MODE = (
+MODE_VARIABLES = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
     real(
         "frequency", ANGULAR_UNIT, "angular frequency of the mode, imaginary part of the eigenvalue", "mode"
@@ -54,7 +54,7 @@ ESTIMATED_MEANING = (
     "complete; for arms that vary along their length the proof is partly an estimate"
 )
 """Long name of the variable `certified` in a file of arms that vary along their length."""
-EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
+POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
 SHARED_TIME = "time spent on the point, or its share of the time of a stretch of points"
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
@@ -93,24 +93,27 @@ def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ..
     return of_the_arm if linear else ("F", *of_the_arm)
 
 
-CHANGE = "change"
+CHANGE_DIMENSION = "change"
 """Name of the dimension of the thresholds of the straight rod on lines of points along F."""
 FORCE_CHANGES = (
     word(
         "change_kind",
         "kind of the change as F grows",
         ((CROSSING_KINDS.index(kind), kind) for kind in ("none", "onset", "hopf", "restabilization")),
-        CHANGE,
+        CHANGE_DIMENSION,
     ),
-    *(real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", CHANGE) for p in LINEAR_PARAMETERS),
-    real("change_error", "1", "estimate of the relative error of change_F", CHANGE),
-    real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE),
-    real("change_frequency", ANGULAR_UNIT, "angular frequency of the modes that change", CHANGE),
+    *(
+        real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", CHANGE_DIMENSION)
+        for p in LINEAR_PARAMETERS
+    ),
+    real("change_error", "1", "estimate of the relative error of change_F", CHANGE_DIMENSION),
+    real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE_DIMENSION),
+    real("change_frequency", ANGULAR_UNIT, "angular frequency of the modes that change", CHANGE_DIMENSION),
 )
 """Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
 which are computed after the last point."""
-SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
-INCREASES = dict.fromkeys(SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS_NO_SOLVE}
+OPTIONS_SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
+INCREASES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS_NO_SOLVE}
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
@@ -134,5 +137,5 @@ def layout(config: dict[str, Any]) -> Layout:
     if estimates_counts(config):
         each_point = with_meaning(each_point, CERTIFIED.name, ESTIMATED_MEANING)
     if not options["vectors"]:
-        return Layout(EACH_MODE + each_point, extents)
-    return Layout(EACH_MODE + VECTORS + each_point, extents | {"u": options["nodes"]})
+        return Layout(MODE_VARIABLES + each_point, extents)
+    return Layout(MODE_VARIABLES + VECTORS + each_point, extents | {"u": options["nodes"]})

@@ -18,7 +18,7 @@ NO_NAMES: Mapping[str, str] = {}
 """Empty mapping for the argument `names` of `outcome_values`: every field has the name of its variable."""
 TYPED_UNIT = "typed_unit"
 """Name of the attribute of a variable with the unit in which the user typed the values."""
-MISSING = -1
+MISSING_STATUS = -1
 """Value of the variable `status` at a point that has not been computed."""
 ANGULAR_UNIT = "rad/tau2"
 """Unit of every dimensionless frequency. Frequencies are angular: the imaginary part of an eigenvalue, or 2
@@ -98,7 +98,7 @@ def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
     return Variable(name, "<f8", np.nan, units, long_name, extra)
 
 
-NOT_KNOWN = "; -1: not known"
+NOT_KNOWN_SUFFIX = "; -1: not known"
 """End of the long name of a count that may be unknown; tables show an unknown count as an empty cell."""
 
 
@@ -117,7 +117,7 @@ def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *ext
     return Variable(name, "|i1", fill, "1", long_name, extra, flags)
 
 
-def number_of(word: str, words: Iterable[tuple[int, str]]) -> int:
+def flag_number(word: str, words: Iterable[tuple[int, str]]) -> int:
     """Stored number of `word`, from the (stored number, word) pairs `words`."""
     return next(number for number, known in words if known == word)
 
@@ -133,7 +133,7 @@ def along_dimension(dimension: str, *variables: Variable) -> tuple[Variable, ...
 
 
 SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
-STATUS = Variable("status", "|i1", MISSING, "1", "outcome of the point")
+STATUS = Variable("status", "|i1", MISSING_STATUS, "1", "outcome of the point")
 MESH = (
     Variable("elements", "<i2", 0, "1", "number of spectral elements"),
     Variable("order", "<i2", 0, "1", "polynomial order of the elements"),
@@ -199,7 +199,7 @@ NEEDS_NEW_SOLVE = ExtensionRule(lambda records, before: np.zeros(len(records), b
 NEEDS_NO_SOLVE = ExtensionRule(lambda records, before: np.ones(len(records), bool))
 """Rule for an option whose increase needs no new solve, because the additional data belong to all points
 together."""
-Filled = tuple[Variable, NDArray[Any]]
+FilledVariable = tuple[Variable, NDArray[Any]]
 """(variable, values, (...,)), where `extra` of the variable names all dimensions of the values."""
 
 

@@ -14,7 +14,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from .journal import drop_files
+from .journal import delete_matching_files
 
 CHECKPOINTS = "chain-*"
 """Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
@@ -39,7 +39,7 @@ class HasArrays(Protocol):
         """The complete solver state as arrays of any shape, (...,), by name."""
 
 
-class KeptArrays:
+class ArrayStore:
     """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
     identified by a number. pattern: pattern of the names of the files.
     """
@@ -79,13 +79,13 @@ class KeptArrays:
         return self.directory / self.pattern.replace("*", f"{number:09d}")
 
 
-class Checkpoints(KeptArrays):
+class Checkpoints(ArrayStore):
     """Store with the last solved point of each unfinished chain, and the solver state after this point."""
 
     pattern = CHECKPOINTS
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
-        """directory, fingerprint: as in `KeptArrays`. state_of: makes a solver state from its arrays (the
+        """directory, fingerprint: as in `ArrayStore`. state_of: makes a solver state from its arrays (the
         result of the state's method `arrays`).
         """
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
@@ -110,7 +110,7 @@ class Checkpoints(KeptArrays):
         self._path(chain).unlink(missing_ok=True)
 
 
-class ItemResults(KeptArrays):
+class ItemResults(ArrayStore):
     """Store of the results of finished work items, until the variables that depend on all points are
     computed.
     """
@@ -118,7 +118,7 @@ class ItemResults(KeptArrays):
     pattern = ITEM_RESULTS
 
     def __init__(self, directory: Path, fingerprint: str):
-        """directory, fingerprint: as in `KeptArrays`."""
+        """directory, fingerprint: as in `ArrayStore`."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:
@@ -133,7 +133,7 @@ class ItemResults(KeptArrays):
 
     def drop(self) -> None:
         """Deletes the results of all items."""
-        drop_files(self.directory, ITEM_RESULTS)
+        delete_matching_files(self.directory, ITEM_RESULTS)
 
 
 def _checksum(content: bytes) -> bytes:

@@ -126,27 +126,27 @@ class Journal:
             data = data[os.write(self.handle, data) :]
 
 
-def drop_files(directory: Path, pattern: str) -> None:
+def delete_matching_files(directory: Path, pattern: str) -> None:
     """Deletes the files in a directory whose names match `pattern`."""
     for path in directory.glob(pattern):
         if not path.is_dir():
             path.unlink()
 
 
-def journals_of(directory: Path, fingerprint: str) -> list[Path]:
+def journals_with_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
     return [
         path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) == _journal_header(fingerprint)
     ]
 
 
-def other_journals(directory: Path, fingerprint: str) -> list[Path]:
+def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
     known = (b"", _journal_header(fingerprint))
     return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) not in known]
 
 
-def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
+def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
     """Moves the files `paths` from the journal directory into a new directory next to the journal directory;
     returns the new directory.
     """
@@ -159,11 +159,13 @@ def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
     return kept
 
 
-def kept_sentence(directory: Path, fingerprint: str) -> str:
+def journalled_points_clause(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
     points. fingerprint: of config and points.
     """
-    return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
+    return (
+        f"; what is done is kept in {directory}" if journals_with_fingerprint(directory, fingerprint) else ""
+    )
 
 
 def _journal_header(fingerprint: str) -> bytes:
@@ -192,9 +194,9 @@ def read_journals(
 
     points: number of points of the sweep; records with a larger index are left out.
     """
-    for path in journals_of(directory, fingerprint):
-        for rows in _rows(path, layout, fingerprint):
-            whole = rows[_is_whole(rows), :-CHECKSUM_BYTES]
+    for path in journals_with_fingerprint(directory, fingerprint):
+        for rows in _record_rows(path, layout, fingerprint):
+            whole = rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES]
             records = np.ascontiguousarray(whole).view(layout.record).ravel()
             yield records[(records["index"] >= 0) & (records["index"] < points)]
 
@@ -203,8 +205,8 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
     """Lines with the reasons why points failed, from all journals with this fingerprint in a directory."""
     return [
         line
-        for path in journals_of(directory, fingerprint)
-        for line in _text_in(_rows(path, layout, fingerprint)).decode().splitlines()
+        for path in journals_with_fingerprint(directory, fingerprint)
+        for line in _text_in(_record_rows(path, layout, fingerprint)).decode().splitlines()
     ]
 
 
@@ -218,7 +220,7 @@ def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
     for rows in blocks:
         index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
         some = (index == TEXT_GOES_ON) | (index == TEXT_ENDS)
-        for row, at, whole in zip(rows[some], index[some], _is_whole(rows[some]), strict=True):
+        for row, at, whole in zip(rows[some], index[some], _has_valid_checksum(rows[some]), strict=True):
             line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if whole else b""
             if at == TEXT_ENDS:
                 lines.append(line)
@@ -226,7 +228,7 @@ def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
     return b"\n".join(lines)
 
 
-def _rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
+def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
     """Yields the records of a journal with their checksums, each a row of bytes, (records, bytes)."""
     size = layout.record.itemsize + CHECKSUM_BYTES
     with path.open("rb") as file:
@@ -236,7 +238,7 @@ def _rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
             yield raw[: len(raw) // size * size].reshape(-1, size)
 
 
-def _is_whole(rows: np.ndarray) -> np.ndarray:
+def _has_valid_checksum(rows: np.ndarray) -> np.ndarray:
     """Whether the checksum at the end of each record is correct, (records,). rows: records as bytes,
     (records, bytes).
     """

@@ -24,7 +24,7 @@ FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
 Forces = NDArray[np.object_]
 """Array of `FlutterForce` objects, (arms, 1, combinations). Combinations are the combinations of values of
 the parameters that replace the arm's parameters."""
-UNCOVERED = FlutterForce(np.nan)
+NO_FLUTTER_FORCE = FlutterForce(np.nan)
 """Force (nan) of an arm without load, or to which the rod model does not apply."""
 
 
@@ -47,41 +47,41 @@ def grid_of_arms(
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
     own = (*all_but("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
-    table = {name: _of_each(arms, methodcaller("parameter", name)) for name in own}
-    units = {name: _of_each(arms, attrgetter(name)) for name in ARM_UNITS}
-    forces = _forces(section, arms, crossed.get("taper"), flutter)
+    table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own}
+    units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_UNITS}
+    forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
-    coverage = np.broadcast_to(_along(0, statuses), shape).copy()
+    coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
     if section.load_axis in RELATIVE:
         coverage = _with_flutter(coverage, scale)
     if section.load:
-        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
+        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
         if section.load_axis in RELATIVE:
             units[section.load] = table["F"] * units[SCALE_OF[section.load]]
-    table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
+    table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
         shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
-            shares = _of_each(arms, lambda arm: arm.crushing_force / arm.k1)
+            shares = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
         coverage[(coverage == SLENDER) & crushed] = CRUSHED
     if (coverage != SLENDER).all():
-        _refuse_all(section, beside, bool((coverage == NO_FLUTTER).any()), forces)
+        _refuse_grid_without_rods(section, beside, bool((coverage == NO_FLUTTER).any()), forces)
     axes = {name: section.quantity_axes[name].array() for name in section.varying_quantities}
     over = axes | {name: column for name, column in beside.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes = coverage.astype(np.int8).ravel()
-    failures = _failures(coverage, forces)
+    failures = _search_failures(coverage, forces)
     return Points(names, columns, False, over, at_points, builds=builds, coverage=codes, failures=failures)
 
 
-def _of_each(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
+def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
     """Values of `quantity` for all arms, (arms, 1, 1); nan for None, which stands for an arm outside the rod
     model.
     """
-    return _along(0, [quantity(arm) if arm else np.nan for arm in arms])
+    return _along_dimension(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
@@ -94,22 +94,22 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
         return None, error.status
 
 
-def _forces(
+def _unit_load_forces(
     section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
 ) -> Forces:
-    """Dimensionless force F of a unit load (see `_force_of`) on each arm.
+    """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm.
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
     beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
-        found = {taper: _force_of(section, arm, taper, flutter) for taper in set(beside)}
+        found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
         forces[i, 0] = [found[taper] for taper in beside]
     return forces
 
 
-def _force_of(
+def _unit_load_force(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
 ) -> FlutterForce:
     """Dimensionless force F of a unit load on an arm; UNCOVERED if `arm` is None or has no load.
@@ -118,7 +118,7 @@ def _force_of(
     the arm's taper unless None.
     """
     if arm is None or not section.load:
-        return UNCOVERED
+        return NO_FLUTTER_FORCE
     if section.load_axis in RELATIVE:
         return flutter(arm, taper)
     return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load]))
@@ -135,7 +135,7 @@ def _with_flutter(coverage: Array, flutter: Array) -> Array:
     return codes
 
 
-def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
+def _search_failures(coverage: Array, forces: Forces) -> dict[int, str]:
     """Reasons why the search for flutter failed, by flat index of the point.
 
     coverage: status codes, (arms, loads, combinations of replaced parameters).
@@ -144,9 +144,11 @@ def _failures(coverage: Array, forces: Forces) -> dict[int, str]:
     return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
 
 
-def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces) -> None:
+def _refuse_grid_without_rods(
+    section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces
+) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. beside: as in `grid_of_arms`.
-    no_flutter: whether some arm does not flutter. forces: result of `_forces`.
+    no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`.
     """
     section.arm_of(section.first_values, loaded=True)
     for force in forces.ravel():
@@ -163,7 +165,7 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
     )
 
 
-def _along(dimension: int, values: Any) -> Array:
+def _along_dimension(dimension: int, values: Any) -> Array:
     """`values`, (n,), as an array with three dimensions, along dimension 0 (arms), 1 (loads) or 2 (replaced
     parameters).
     """

@@ -33,14 +33,14 @@ class FlutterForce:
 
 FlutterForces: TypeAlias = Mapping[Rod, FlutterForce]
 """Force of first flutter by rod; the rods are without load and move in one plane."""
-Tapers: TypeAlias = Sequence[float | None]
+ReplacedTapers: TypeAlias = Sequence[float | None]
 """Tapers (tip radius over base radius) that replace an arm's taper; None keeps the arm's own taper."""
-OWN_TAPER: Tapers = (None,)
+OWN_TAPER: ReplacedTapers = (None,)
 """No replacement: the arm keeps its own taper."""
 
 
 def rods_of_flutter(
-    section: ArmSection | None, build: Build | None = None, tapers: Tapers = OWN_TAPER
+    section: ArmSection | None, build: Build | None = None, tapers: ReplacedTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
     flutter.
@@ -52,11 +52,11 @@ def rods_of_flutter(
         return []
     from ...verdict.relative import plane_rods
 
-    shapes = ((arm, taper) for arm in _arms(section) for taper in tapers)
+    shapes = ((arm, taper) for arm in _unloaded_arms(section) for taper in tapers)
     return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper)))
 
 
-def _arms(section: ArmSection) -> Iterable[SlenderArm]:
+def _unloaded_arms(section: ArmSection) -> Iterable[SlenderArm]:
     """Yields the arms of a config section to which the rod model applies, without load. Raises InputError for
     an invalid arm.
     """

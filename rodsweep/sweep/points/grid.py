@@ -34,32 +34,32 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
     """Points of the sweep that a config describes; raises InputError for a parameter value outside the model.
 
-    directory: folder of relative file names. flutter: flutter forces of all rods of `flutter_rods`; if None,
-    the forces are computed here.
+    directory: folder of relative file names. flutter: flutter forces of all rods of
+    `rods_for_flutter_forces`; if None, the forces are computed here.
     """
     parameters = config.parameters
     for name, value in parameters.constant_parameters.items():
-        refuse_outside(PARAMETERS[name].allowed, name, (value,))
+        require_in_range(PARAMETERS[name].allowed, name, (value,))
     if parameters.points is not None:
         columns = read_points(directory / parameters.points, config.names, config.build)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     if parameters.arm is not None and parameters.arm_axes:
         for name, column in axes.items():
-            refuse_outside(PARAMETERS[name].allowed, name, column)
+            require_in_range(PARAMETERS[name].allowed, name, column)
         try:
-            known = flutter or {rod: flutter_of_rod(rod) for rod in flutter_rods(config)}
+            known = flutter or {rod: flutter_of_rod(rod) for rod in rods_for_flutter_forces(config)}
             of_arm = partial(flutter_of_arm, known=known, build=config.stated_build)
             return grid_of_arms(parameters.arm, axes, config.names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.names}
-    coverage = None if parameters.arm is None else _partly_crushed(named, config.build)
+    coverage = None if parameters.arm is None else _crushing_codes(named, config.build)
     refuse_axes(axes, config.allows_crushed_rods or coverage is not None, config.build)
     return Points(config.names, tuple(named.values()), is_grid=True, coverage=coverage)
 
 
-def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
+def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
     """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which the load crushes some
     rods.
 
@@ -78,16 +78,16 @@ def _partly_crushed(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
-def flutter_rods(config: Config) -> list[Rod]:
+def rods_for_flutter_forces(config: Config) -> list[Rod]:
     """The distinct rods whose flutter forces the points of a config need; InputError for an invalid arm."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
         return rods_of_flutter(config.parameters.arm, config.stated_build)
-    refuse_outside(PARAMETERS["taper"].allowed, "taper", given.array())
+    require_in_range(PARAMETERS["taper"].allowed, "taper", given.array())
     return rods_of_flutter(config.parameters.arm, config.stated_build, given.array().tolist())
 
 
-def refuse_outside(
+def require_in_range(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
     """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`.
@@ -108,7 +108,7 @@ def refuse_axes(axes: dict[str, Array], allows_crushed_rods: bool = False, build
     the grid may be crushed.
     """
     for name, column in axes.items():
-        refuse_outside(PARAMETERS[name].allowed, name, column)
+        require_in_range(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING) <= axes.keys():
         return
     shares = build.relative_crushing_forces(axes.get("taper", np.ones(1)))

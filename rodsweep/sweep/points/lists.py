@@ -9,13 +9,13 @@ from typing import Any, TextIO
 import numpy as np
 
 from ...arrays import Array
-from ...config.axes import words
+from ...config.axes import joined_names
 from ...config.values import cell_number, short_repr
 from ...errors import InputError
 from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from .points import NEUTRAL
+from .points import NEUTRAL_VALUES
 
 LONGEST_LINE = 10_000
 """A CSV file with a line of this number of characters or more is refused; a long line could fill the
@@ -35,10 +35,12 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> 
             rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
-                raise InputError(f"{path}: {_header_fault(header)}; it must name {words(names, 'and')}")
+                raise InputError(
+                    f"{path}: {_header_fault(header)}; it must name {joined_names(names, 'and')}"
+                )
             columns = [array("d") for _ in header]  # a Python list would take eight times the memory
             for row in filter(None, rows):
-                numbers = _row(row, header, f"{path}, line {rows.line_num}", build)
+                numbers = _row_numbers(row, header, f"{path}, line {rows.line_num}", build)
                 for column, number in zip(columns, numbers, strict=True):
                     column.append(number)
     except MemoryError:
@@ -70,7 +72,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
         yield line
 
 
-def _row(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
+def _row_numbers(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
     """Numbers in a row of the file; InputError for a cell that is not a number, or for values outside the
     model. header: names of the columns. where: file and line, for the message.
     """
@@ -82,7 +84,7 @@ def _row(row: list[str], header: list[str], where: str, build: Build) -> list[fl
             numbers.append(cell_number(cell))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
-    parameters: dict[str, Any] = {**NEUTRAL, **dict(zip(header, numbers, strict=True))}
+    parameters: dict[str, Any] = {**NEUTRAL_VALUES, **dict(zip(header, numbers, strict=True))}
     try:
         Rod(**parameters, build=build)
     except ValueError as error:

@@ -17,7 +17,7 @@ from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
-NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
+NEUTRAL_VALUES = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
 """Neutral value of each parameter by name, for parameters without a column. Parameter values that are invalid
 in combination with neutral values are invalid in every combination."""
 
@@ -120,7 +120,7 @@ class Points:
 
         Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL.
         """
-        parameters: dict[str, Any] = {**NEUTRAL, **self.values(index), **beside}
+        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 
     @property

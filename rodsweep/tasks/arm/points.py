@@ -23,9 +23,9 @@ from ..protocol import Solver
 
 MODEL_APPLIES_NAME = VALIDITY[0].name
 """Name of the variable that states whether the model applies."""
-OUTCOME_MEMORY = 1e8
+CACHE_BYTES = 1e8
 """Approximate memory, in bytes, of the outcomes that a rank caches for equal rods."""
-SMALLEST_OUTCOME = 10_000
+MIN_OUTCOME_BYTES = 10_000
 """Minimum assumed memory of an outcome, in bytes: an outcome has more fields than the stored variables."""
 
 
@@ -109,7 +109,7 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
     rods = None if solver.stretched else rod_numbers(points)
     if rods is None:
         return solver
-    memory = _Outcomes(max(1, int(OUTCOME_MEMORY // max(layout.bytes_per_point, SMALLEST_OUTCOME))))
+    memory = _OutcomeCache(max(1, int(CACHE_BYTES // max(layout.bytes_per_point, MIN_OUTCOME_BYTES))))
 
     def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         (outcome, state), again = memory.of((int(rods[index]), start), solve)
@@ -124,7 +124,7 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
 
 
 @dataclass(slots=True)
-class _Outcomes:
+class _OutcomeCache:
     """Cache of the outcomes of a rank's latest solves. most: maximum number of outcomes."""
 
     most: int

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import ALL_BUT_LOAD, SLENDER
+from ...config.arm.axes import NON_LOAD_KEYS, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import HALF_LENGTH, Validity, effects_of, least_drag, worst_validity
 from ...model.material.laws import LINEAR
-from ...results.layouts.arm import EFFECTS, NOT_KNOWN
+from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import CLASSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import STATUS
@@ -63,7 +63,7 @@ class ArmMotion:
     """Whether each point may have a motion that the solver did not find, (n,)."""
 
 
-def _of_modes(record: Record) -> ArmMotion:
+def _motion_of_modes(record: Record) -> ArmMotion:
     """Motion of the oscillating mode with the largest growth rate. The frequency is NaN if no mode
     oscillates.
     """
@@ -73,7 +73,7 @@ def _of_modes(record: Record) -> ArmMotion:
     return ArmMotion(np.where(leading > 0, leading, np.nan))
 
 
-def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
+def _motion_at_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
     point. at: name of the variable with the force at crossings.
     """
@@ -89,15 +89,15 @@ def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     return found
 
 
-def _of_row(record: Record) -> ArmMotion:
+def _motion_of_row(record: Record) -> ArmMotion:
     """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
     flutter.
     """
     beats = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
-    return replace(_of_hopf_point("crossing_at")(record), may_be_missed=beats)
+    return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=beats)
 
 
-def _of_flutter(record: Record) -> ArmMotion:
+def _motion_at_flutter(record: Record) -> ArmMotion:
     """Motion at the first Hopf point, read from F_hopf, because a full list of crossings may lack this
     point.
     """
@@ -105,26 +105,26 @@ def _of_flutter(record: Record) -> ArmMotion:
     return ArmMotion(np.abs(frequency), F)
 
 
-def _of_cycle(record: Record) -> ArmMotion:
+def _motion_of_cycle(record: Record) -> ArmMotion:
     """Motion on the limit cycle. If there is no cycle, the amplitude is 0 and the frequency NaN."""
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
-def _of_branches(record: Record) -> ArmMotion:
+def _motion_of_branches(record: Record) -> ArmMotion:
     """Motions on the cycles of all branches."""
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
     return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
 
 
 MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
-    "spectrum": _of_modes,
-    "modes": _of_modes,
-    "thresholds": _of_flutter,
-    "criticality": _of_hopf_point("crossing_F"),
-    "phase_diagram": _of_row,
-    "limit_cycle": _of_cycle,
-    "branch": _of_branches,
+    "spectrum": _motion_of_modes,
+    "modes": _motion_of_modes,
+    "thresholds": _motion_at_flutter,
+    "criticality": _motion_at_hopf_point("crossing_F"),
+    "phase_diagram": _motion_of_row,
+    "limit_cycle": _motion_of_cycle,
+    "branch": _motion_of_branches,
 }
 """Function from the variables of a point to the motions of the arm, by task."""
 
@@ -141,7 +141,7 @@ class ArmValidity:
         at_rest = AT_REST_STATUSES.get(self.task, ())
         self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
-        sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in ALL_BUT_LOAD]
+        sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.each = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
         self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
@@ -182,14 +182,16 @@ class ArmValidity:
         points = excess.reshape(len(counted), *np.shape(index), -1)  # the last axis: all motions of a point
         largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)
         worst = np.argmax(largest, axis=0)
-        number = np.array([EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted])[worst]
+        number = np.array([NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted])[
+            worst
+        ]
         at_worst = np.max(largest, axis=0)
         applies = validity.reshape(*np.shape(index), -1).max(axis=-1)
         moves = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
         # Compression or weight beyond its limit ends the model whatever the motion.
         known = moves | ~np.asarray(motion.may_be_missed) | (applies == Validity.does_not_apply)
         return {
-            "model_applies": np.where(known, applies, NOT_KNOWN),
+            "model_applies": np.where(known, applies, VALIDITY_NOT_KNOWN),
             "neglected_effect": np.where(known & (at_worst > 0), number, -1),
             "neglected_excess": np.where(known & (at_worst >= 0), at_worst, np.nan),
         }
@@ -235,7 +237,7 @@ def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
     Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated
     once, because their evaluation takes longer than a point.
     """
-    axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in ALL_BUT_LOAD}
+    axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in NON_LOAD_KEYS}
 
     def arm(number: int) -> SlenderArm:
         places = np.unravel_index(number, [len(column) for column in axes.values()])

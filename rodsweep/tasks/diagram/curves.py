@@ -11,14 +11,14 @@ from ...model.parameters import CRUSHING
 from ...model.rod import Rod
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
-from ...results.layouts.variables import Filled
+from ...results.layouts.variables import FilledVariable
 from .records import (
     bautin_curve_record,
     criticality_record,
     curve_record,
     cycle_curve_record,
-    row_specials,
-    unstored_specials,
+    special_points_of_rows,
+    unstored_special_count,
     with_hopf_ends,
 )
 
@@ -86,7 +86,7 @@ class DiagramCurves:
         if plane is None:
             return None
         row = self.task.config.plane[1]
-        special = row_specials(view, plane.axes[0].name, self.task.points.by_name[row])
+        special = special_points_of_rows(view, plane.axes[0].name, self.task.points.by_name[row])
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, items: "SpecialBoundaries", item: int) -> dict[str, np.ndarray]:
@@ -101,7 +101,7 @@ class DiagramCurves:
 
     def variables(
         self, view: View, items: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
-    ) -> list[Filled]:
+    ) -> list[FilledVariable]:
         """All curves as variables of the file. view: the file with all rows. results: results of all half
         curves by number, with shapes as in `TracedHalfCurve`.
         """
@@ -127,7 +127,7 @@ class DiagramCurves:
             variables += self._bautin_curves(plane, criticalities, *options.bautin_parameter)
         if items is not None:
             curves = with_hopf_ends(
-                items.curves(results), plane, criticalities, unstored_specials(view, self._finite)
+                items.curves(results), plane, criticalities, unstored_special_count(view, self._finite)
             )
             variables += cycle_curve_record(curves, names)
         return variables
@@ -203,7 +203,7 @@ class DiagramCurves:
 
     def _bautin_curves(
         self, plane: "Plane", criticalities: Sequence["CurveCriticality"], name: str, axis: Axis
-    ) -> list[Filled]:
+    ) -> list[FilledVariable]:
         """Curves of generalised Hopf points along the third parameter `name`, as variables of the file. axis:
         values of the third parameter. criticalities: as from `_criticality`.
         """

@@ -21,7 +21,7 @@ from ...results.layouts.phase_diagram import (
     cycle_curve_variables,
     cycle_variables,
 )
-from ...results.layouts.variables import Filled, Variable, outcome_values, value_lists
+from ...results.layouts.variables import FilledVariable, Variable, outcome_values, value_lists
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
@@ -34,7 +34,9 @@ if TYPE_CHECKING:
     from ...solve.hopf.generalised import CurveCriticality
 
 
-def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
+def curve_record(
+    found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any
+) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
     differs between rows). more: values of the variables on the partial beam limit, by name.
     """
@@ -42,19 +44,24 @@ def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **m
     folds = []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
-        for *numbers, reasons in zip(*each, _reasons(curve.ends, len(curve.values)), strict=True):
+        for *numbers, reasons in zip(*each, _end_reasons(curve.ends, len(curve.values)), strict=True):
             named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
             points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
-        folds += [_located(fold, plane, curve=number, kind=curve.hopf, of=fold.axis) for fold in curve.folds]
+        folds += [
+            _object_and_point(fold, plane, curve=number, kind=curve.hopf, of=fold.axis)
+            for fold in curve.folds
+        ]
     declared = curve_variables(*plane)
-    values = _columns(declared, "curve_point", "curve_", points) | _columns(declared, "fold", "fold_", folds)
+    values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
+        declared, "fold", "fold_", folds
+    )
     values |= {"curve_agreement": found.agreement, "curves_untraced": found.untraced}
-    return _filled(declared, values | more)
+    return _filled_variables(declared, values | more)
 
 
 def criticality_record(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
-) -> list[Filled]:
+) -> list[FilledVariable]:
     """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
     criticalities: in the order of the boundary curves. plane: (parameter along a row, parameter that differs
     between rows). gamma1: axial drag of all rods.
@@ -63,31 +70,35 @@ def criticality_record(
     start = 0
     for number, curve in enumerate(criticalities, 1):
         for point in curve.points:
-            rows.append(_located(point, plane, curve=number, curve_point=start + point.after + 1))
+            rows.append(_object_and_point(point, plane, curve=number, curve_point=start + point.after + 1))
         start += len(curve.criticality)
     declared = criticality_variables(*plane)
-    values = _columns(declared, "bautin", "bautin_", rows) | {
+    values = _values_along_dimension(declared, "bautin", "bautin_", rows) | {
         "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in criticalities)]),
         "bautin_unlocated": sum(curve.unlocated for curve in criticalities),
         "curve_gamma1": gamma1,
     }
-    return _filled(declared, values)
+    return _filled_variables(declared, values)
 
 
-def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
+def bautin_curve_record(
+    curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str
+) -> list[FilledVariable]:
     """Variables of the curves of generalised Hopf points along the third parameter `third`. plane: (parameter
     along a row, parameter that differs between rows).
     """
     rows = [
-        _located(point, (*plane, third), curve=number, **reasons)
+        _object_and_point(point, (*plane, third), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
-        for point, reasons in zip(curve.points, _reasons(curve.ends, len(curve.points)), strict=True)
+        for point, reasons in zip(curve.points, _end_reasons(curve.ends, len(curve.points)), strict=True)
     ]
     declared = bautin_curve_variables(*plane, third)
-    return _filled(declared, _columns(declared, "bautin_step", "bautin_along_", rows))
+    return _filled_variables(
+        declared, _values_along_dimension(declared, "bautin_step", "bautin_along_", rows)
+    )
 
 
-def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
+def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
     (parameter along a row, parameter that differs between rows).
     """
@@ -95,16 +106,16 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
-        for (beside, point), reasons in zip(own, _reasons(curve.ends, len(own)), strict=True):
+        for (beside, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
             named = dict(zip(plane, (point.at, point.row), strict=True)) | beside | reasons
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **named), point))
     declared = cycle_curve_variables(*plane)
-    values = _columns(declared, "cycle_curve_point", "cycle_curve_", rows)
+    values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
     values |= {"cycle_curve_agreement": found.agreement, "cycle_curves_untraced": found.untraced}
-    return _filled(declared, values)
+    return _filled_variables(declared, values)
 
 
-def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
+def _object_and_point(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
     """Returns (object, point). The attributes of the object are the point's parameter values and errors,
     under `names`, and the values in `beside`.
     """
@@ -112,7 +123,7 @@ def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]
     return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
 
 
-def _columns(
+def _values_along_dimension(
     declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
 ) -> dict[str, Any]:
     """Values of the variables in `declared` that have the dimension `dimension` and whose names begin with
@@ -124,11 +135,11 @@ def _columns(
     return value_lists(along, [outcome_values(along, *row, prefix=prefix) for row in rows])
 
 
-def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list[Filled]:
+def _filled_variables(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list[FilledVariable]:
     return [(declared[name], np.asarray(value)) for name, value in values.items()]
 
 
-def _reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
+def _end_reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
     """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 if the
     curve goes on.
 
@@ -152,7 +163,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
+def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
@@ -175,7 +186,7 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoi
     ]
 
 
-def unstored_specials(view: View, finite: np.ndarray) -> int:
+def unstored_special_count(view: View, finite: np.ndarray) -> int:
     """Number of special points that are not stored because the list of their row is full; no curve can start
     at these points.
 

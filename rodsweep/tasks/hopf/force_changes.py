@@ -17,7 +17,7 @@ from ...arrays import Array, Complex
 from ...model.rod import Rod
 from ...results.layouts.spectrum import FORCE_CHANGES
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...results.layouts.variables import Filled
+from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points, lines_over
 
 MAX_POINTS_IN_MEMORY = 1 << 13
@@ -40,7 +40,7 @@ class ForceLines:
     unstable: NDArray[np.int64]
 
 
-def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
     """Thresholds on all lines of points along F, as variables of the file; empty if F does not vary.
 
     values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
@@ -48,14 +48,14 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
     F = points.by_name["F"]
     if len(np.unique(F[np.isfinite(F)])) < 2:
         return ()
-    lines = _of_grid(points, values) if points.is_grid else _of_list(points, values)
+    lines = _force_lines_of_grid(points, values) if points.is_grid else _force_lines_of_list(points, values)
     kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGES])
-    rows = (tuple(row[v.name] for v in FORCE_CHANGES) for some in lines for row in _changes_on(some))
+    rows = (tuple(row[v.name] for v in FORCE_CHANGES) for some in lines for row in _thresholds_on_lines(some))
     table = np.fromiter(rows, kind)
     return tuple((v, table[v.name]) for v in FORCE_CHANGES)
 
 
-def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
+def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
     as in `force_changes`.
     """
@@ -78,7 +78,7 @@ def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
         yield ForceLines(names, fixed, points.columns[along], w, unstable.reshape(shape))
 
 
-def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
+def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a list of points, one line at a time. values: as in
     `force_changes`.
     """
@@ -93,15 +93,15 @@ def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
             yield ForceLines(names, fixed, line.x[order], w[None, at], unstable[None, at])
 
 
-def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
+def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     """Yields the thresholds on some lines of points, one line after another, as values of variables by
     name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
 
     F = lines.F.tolist()
     w = lines.eigenvalues
-    onsets = _by_line(_new_pairs(w))
-    changes = _by_line(_sign_changes(w))
+    onsets = _pairs_by_line(_pairs_at_onset(w))
+    changes = _pairs_by_line(_sign_changes(w))
     for number in sorted(onsets.keys() | changes.keys()):
         fixed = dict(zip(lines.names, lines.fixed[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
@@ -132,12 +132,12 @@ def _sign_changes(w: Complex) -> NeighbourPairs:
     w: eigenvalues, (lines, n, modes).
     """
     growing = w[..., 0].real > 0
-    line, before, behind = _neighbours(np.isfinite(w[..., 0].real))
+    line, before, behind = _neighbouring_points(np.isfinite(w[..., 0].real))
     differ = growing[line, before] != growing[line, behind]
     return np.stack([line, before, behind], axis=-1)[differ]
 
 
-def _new_pairs(w: Complex) -> NeighbourPairs:
+def _pairs_at_onset(w: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which two leading real eigenvalues become a complex pair.
 
     w: eigenvalues, (lines, n, modes).
@@ -145,12 +145,12 @@ def _new_pairs(w: Complex) -> NeighbourPairs:
     if w.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     real = (w[..., :2].imag == 0).all(axis=-1)
-    line, before, behind = _neighbours(np.isfinite(w[..., :2].real).all(axis=-1))
+    line, before, behind = _neighbouring_points(np.isfinite(w[..., :2].real).all(axis=-1))
     begins = real[line, before] & (w[line, behind, 0].imag > 0)
     return np.stack([line, before, behind], axis=-1)[begins]
 
 
-def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
+def _neighbouring_points(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
     """Returns three index arrays, (pairs,), for pairs of neighbouring points with eigenvalues: line, first
     point, second point.
 
@@ -161,7 +161,7 @@ def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
     return line[1:][together], point[:-1][together], point[1:][together]
 
 
-def _by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
+def _pairs_by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
     """Pairs (index of the first point, index of the second point), by index of the line."""
     found: dict[int, list[tuple[int, int]]] = {}
     for line, before, behind in steps.tolist():

@@ -15,7 +15,7 @@ import numpy as np
 from ...model.material.build import STANDARD, Build
 from ...model.rod import Rod
 from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_points_of
-from ...results.layouts.variables import Filled
+from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[Hop
     others = [n for n in names if n != name]
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
-        ends = [_ends(columns[name])] * len(rods)
+        ends = [_finite_range(columns[name])] * len(rods)
         builds = [points.build] * len(rods)
     else:
         different, numbers = points.builds_of_rods
@@ -93,7 +93,7 @@ def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[Hop
         lines, line = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(line.ravel(), kind="stable")
         cuts = np.cumsum(np.bincount(line.ravel()))[:-1]
-        ends = [_ends(values) for values in np.split(columns[name][order], cuts)]
+        ends = [_finite_range(values) for values in np.split(columns[name][order], cuts)]
         rods = lines[:, 1:]
         builds = [different[int(number)] for number in lines[:, 0]]
     shared = Counter(map(tuple, rods.tolist()))
@@ -103,7 +103,7 @@ def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[Hop
             yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop, build)
 
 
-def _ends(values: np.ndarray) -> tuple[float, float]:
+def _finite_range(values: np.ndarray) -> tuple[float, float]:
     """(smallest, largest) of the finite values in `values`, (n,); (0, 0) if no value is finite."""
     finite = values[np.isfinite(values)]
     return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
@@ -111,13 +111,13 @@ def _ends(values: np.ndarray) -> tuple[float, float]:
 
 def hopf_variables(
     names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
-) -> tuple[Filled, ...]:
+) -> tuple[FilledVariable, ...]:
     """Hopf points of all lines, one line after another, as variables of a file.
 
     names: parameters of the file. found: result of the search on each line.
     """
     known = [(line, each) for line, each in zip(lines, found, strict=True) if each is not None]
-    rows = [_row(line, crossing) for line, each in known for crossing in each.crossings]
+    rows = [_hopf_point_values(line, crossing) for line, each in known for crossing in each.crossings]
     proved = sum(each.proved_to_the_end for _, each in known)
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
@@ -126,7 +126,7 @@ def hopf_variables(
     )
 
 
-def _row(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
+def _hopf_point_values(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
     rod = line.fixed | {line.name: crossing.at}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...results.file.provenance import MAX_FAILURE_REASONS, reason_of
+from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind
 from ...sweep.loop import Indices
 from ...sweep.points.stretches import StretchResult
 
@@ -38,7 +38,7 @@ class FailureReasons:
             return []
         where = self.where(int(index))
         line = " ".join(f"{where}: {result.status.name} {result.message}".split())
-        if reason_of(line) in self.examples:
+        if failure_kind(line) in self.examples:
             return []
-        self.examples[reason_of(line)] = line
+        self.examples[failure_kind(line)] = line
         return [line]

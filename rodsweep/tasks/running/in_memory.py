@@ -11,9 +11,9 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from ...results.file.creation import Plan
-from ...results.file.provenance import now
+from ...results.file.provenance import utc_time
 from ...results.file.view import View
-from ...results.layouts.variables import MISSING, Filled, dimension_attributes, flag_attributes
+from ...results.layouts.variables import MISSING_STATUS, FilledVariable, dimension_attributes, flag_attributes
 from ...solve.backend.availability import require_solvers
 from ...solve.exclusive import exclusive_solve
 from ...sweep.points.ranges import Shard
@@ -31,7 +31,7 @@ def solved_view(job: Job) -> View:
     PETSc or SLEPc is missing.
     """
     require_solvers()
-    started = now()
+    started = utc_time()
     solver = job.solver()
     plan = plan_of(job, solver, Shard(), blas_kernels())
     solver.warm_up()
@@ -46,12 +46,12 @@ def solved_view(job: Job) -> View:
     values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in flat.items()}
     view = view_in_memory(job, plan, values)
     return replace(
-        view, attributes=view.attributes | plan.attributes | {"started": started, "finished": now()}
+        view, attributes=view.attributes | plan.attributes | {"started": started, "finished": utc_time()}
     )
 
 
 def view_in_memory(
-    job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled] = ()
+    job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[FilledVariable] = ()
 ) -> View:
     """Results as a `View`, with only the attributes `task` and `config_resolved`.
 
@@ -64,7 +64,7 @@ def view_in_memory(
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
         {name: array for name, (_, array, _) in (coordinates | variables).items()},
         plan.layout.parameters,
-        {MISSING: "missing", **dict(plan.flags)},
+        {MISSING_STATUS: "missing", **dict(plan.flags)},
         journalled=0,
         arm_axes=plan.layout.arm_axes,
         typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
@@ -72,7 +72,7 @@ def view_in_memory(
 
 
 def stored_variables(
-    plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[Filled]
+    plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[FilledVariable]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
     """Returns (coordinates, variables) of the file of a plan, by name. values, filled: as in
     `view_in_memory`.
@@ -87,7 +87,7 @@ def stored_variables(
         variables[variable.name] = (variable.extra, data, variable.attributes)
         for name, extent in zip(variable.extra, data.shape, strict=True):
             coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), dimension_attributes(name)))
-    variables["status"][2].update(flag_attributes(((MISSING, "missing"), *plan.flags)))
+    variables["status"][2].update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
     return coordinates, variables
 
 

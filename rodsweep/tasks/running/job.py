@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config import Config, load_config
-from ...config.document.reading import canonical, yaml_of
+from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
-from ...results.layouts import LAYOUTS, layout_of
+from ...results.layouts import LAYOUT_MAKERS, layout_of
 from ...results.layouts.arm import arm_variables, at_points, si_record
-from ...results.layouts.variables import Filled, Layout
+from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
 from ...sweep.points.grid import grid_size, points_of
@@ -55,7 +55,7 @@ class Job:
     @property
     def text(self) -> str:
         """YAML text of the config as the user wrote it."""
-        return self.source if isinstance(self.source, str) else yaml_of(self.source)
+        return self.source if isinstance(self.source, str) else tree_yaml(self.source)
 
     @property
     def name(self) -> str:
@@ -63,7 +63,7 @@ class Job:
         return self.config.title or self.path.stem
 
     @property
-    def quantities(self) -> tuple[Filled, ...]:
+    def quantities(self) -> tuple[FilledVariable, ...]:
         """Quantities of the config's arm as coordinates of the points; empty if the config has no arm."""
         return arm_variables(self.config.parameters, self.points)
 
@@ -84,7 +84,7 @@ class Job:
         """The solver, with values in SI units and the validity of the model added to the results of a
         point.
         """
-        layout = LAYOUTS[self.config.task](self.resolved)
+        layout = LAYOUT_MAKERS[self.config.task](self.resolved)
         quantities = at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
@@ -134,7 +134,7 @@ def job_of(
             "machine; use fewer values"
         )
     count = grid_size(config)
-    resolved = canonical(config)
+    resolved = resolved_config(config)
     layout = layout_of(resolved)
     each = layout.bytes_per_point
     if count * each > MAX_FILE_BYTES:
@@ -155,7 +155,7 @@ def job_of(
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
     """Plan of the result file of a config on given points, without attributes and status flags."""
-    resolved = canonical(config)
+    resolved = resolved_config(config)
     task = TASKS[config.task](config, replace(points, build=config.build))
     return _plan(task, resolved, layout_of(resolved))
 

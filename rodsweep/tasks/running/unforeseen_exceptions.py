@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ... import __version__
 from ...errors import Refusal
-from ...results.file.provenance import now
+from ...results.file.provenance import utc_time
 from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve.status import PointStatus
@@ -32,10 +32,10 @@ MAX_LOGGED_EXCEPTIONS = 1000
 """Maximum number of exceptions that a rank writes into the log; more exceptions would repeat the same bug."""
 FAILED_STATUS = "failed"
 """Status, in every task, of a point with an unforeseen exception in the solver."""
-PointNote = Callable[[Sequence[int], Exception], None]
+PointExceptionNote = Callable[[Sequence[int], Exception], None]
 """Function called with the flat indices of the points that were solved together, and the exception of the
 solver."""
-UnitNote = Callable[[str, Exception], None]
+ItemExceptionNote = Callable[[str, Exception], None]
 """Function called with the name of a work item for variables that depend on all points, and the exception of
 the solver."""
 
@@ -49,7 +49,7 @@ class RecordedOutcome:
     values: dict[str, Any]
 
 
-def guarded_solver(solver: Solver, layout: Layout, note: PointNote) -> Solver:
+def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
     After an exception in a stretch, each of its points is solved alone. Only points that fail again get fill
@@ -66,7 +66,7 @@ class _Guard:
 
     inner: Solver
     layout: Layout
-    note_exception: PointNote
+    note_exception: PointExceptionNote
 
     def solver(self) -> Solver:
         """The guarded solver."""
@@ -168,7 +168,7 @@ class TracebackLog:
             raise error
 
     def _write(self, place: str, error: Exception) -> None:
-        head = f"{now()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
+        head = f"{utc_time()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
         lines = traceback.format_exception(error)
         text = "".join(lines)
         body = f"{lines[-1]}as above\n" if text in self._known else text

@@ -36,10 +36,10 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
         for which in ("x", "y"):
             label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
             if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SCALES_WITH_SECOND_AXIS:
-                _add(_outermost(axes, which), which, unit, load)
+                _add_second_scale(_outermost_panel(axes, which), which, unit, load)
 
 
-def _outermost(axes: Axes, which: str) -> Axes:
+def _outermost_panel(axes: Axes, which: str) -> Axes:
     """Of the panels in the same column (for "x") or row (for "y") that share an axis with `axes`, the panel
     at the top or at the right. which: "x" or "y".
     """
@@ -55,7 +55,7 @@ def _outermost(axes: Axes, which: str) -> Axes:
     return max(row, key=lambda other: other.get_subplotspec().colspan.start)
 
 
-def _add(axes: Axes, which: str, unit: float, load: str) -> None:
+def _add_second_scale(axes: Axes, which: str, unit: float, load: str) -> None:
     """Adds a second scale to a panel, opposite to the axis `which` ("x" or "y"). unit: load at F = 1, in SI
     units. load: kind of load.
     """

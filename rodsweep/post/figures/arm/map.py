@@ -42,7 +42,7 @@ COVERED_CELL_LOOKS: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
 )
 """(variable, value, legend entry, look) of covered cells of a map. Later entries are drawn over earlier
 entries."""
-DRAG = "drag"
+DRAG_AXIS = "drag"
 """Name of the axis of drags. In a figure against another quantity, the range of a result over all drags is
 drawn as a band."""
 BAND_OPACITY = 0.25
@@ -60,34 +60,37 @@ def draw_arm_map(request: FigureRequest) -> str:
     """
     view = replace(request, what=None).only_view()
     long = [name for name in view.arm_axes if len(view.variables[name]) > 1]
-    if DRAG in long and long[1:]:  # drawn as a band, or for the likeliest drag
-        long.remove(DRAG)
+    if DRAG_AXIS in long and long[1:]:  # drawn as a band, or for the likeliest drag
+        long.remove(DRAG_AXIS)
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
     x = next(name for name in view.arm_axes if name in axes)
     y = next((name for name in view.arm_axes if name in axes and name != x), "")
     first = {name: 0 for name in view.arm_axes if name not in axes}
-    if DRAG in first:  # the likeliest drag has the smallest number
-        first[DRAG] = int(np.argmin(view.variables[DRAG]))
+    if DRAG_AXIS in first:  # the likeliest drag has the smallest number
+        first[DRAG_AXIS] = int(np.argmin(view.variables[DRAG_AXIS]))
     index = tuple(first.get(name, slice(None)) for name in view.arm_axes)
     panels = PANELS[view.task](view)
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
-    figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
+    figure, drawn = _new_panels(len(panels), request.look.narrow, bool(y))
     handles: list[Artist] = []
     for subplot, panel in zip(drawn, panels, strict=True):
         if y:
-            handles = [*handles, *_map(subplot, panel, view, (x, y), index)]
+            handles = [*handles, *_draw_map(subplot, panel, view, (x, y), index)]
         else:
-            handles = [*handles, *_lines(subplot, panel, view, x, index)]
-    covers = [_cover(plot, view, panel, (x, y), index) for plot, panel in zip(drawn, panels, strict=True)]
+            handles = [*handles, *_draw_curves(subplot, panel, view, x, index)]
+    covers = [
+        _cover_invalid_cells(plot, view, panel, (x, y), index)
+        for plot, panel in zip(drawn, panels, strict=True)
+    ]
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
-    banded = [DRAG] if not y and DRAG in first else []
-    figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
+    banded = [DRAG_AXIS] if not y and DRAG_AXIS in first else []
+    figure.suptitle(style.heading(view, _constant_quantities_text(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
     return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}")
 
 
-def can_draw(request: FigureRequest) -> bool:
+def can_draw_arm_map(request: FigureRequest) -> bool:
     """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary, and the user has not
     chosen another kind of figure.
     """
@@ -97,7 +100,7 @@ def can_draw(request: FigureRequest) -> bool:
     return several and view.task in PANELS and not chosen
 
 
-def _axis(view: View, name: str) -> tuple[Array, str]:
+def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:
     """Returns (values along the axis `name`, label of the axis), in the unit typed by the user."""
     values = view.variables[name]
     if name in style.LABELS:
@@ -106,7 +109,7 @@ def _axis(view: View, name: str) -> tuple[Array, str]:
     return values, quantity_words(name) + (f" ({unit})" if unit else "")
 
 
-def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
+def _new_panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
     """Returns (figure, panels) with `count` panels: side by side if `maps` and not `narrow`, else stacked."""
     across = maps and not narrow
     size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
@@ -116,11 +119,11 @@ def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
 
 
-def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], index: Any) -> list[Artist]:
+def _draw_map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], index: Any) -> list[Artist]:
     """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
     index: index of the drawn points in the grid.
     """
-    (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
+    (x, x_label), (y, y_label) = (_axis_values_and_label(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[index].T)
     style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
     handles: list[Artist] = []
@@ -133,52 +136,56 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], index: An
     return handles
 
 
-def _lines(axes: Axes, panel: Panel, view: View, name: str, index: Any) -> list[Artist]:
+def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) -> list[Artist]:
     """Draws a panel as curves against the quantity `name`; returns legend entries. index: index of the drawn
     points in the grid.
     """
-    x, label = _axis(view, name)
+    x, label = _axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
     for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
-        style_of_line = "o" if name == DRAG else "-o"
+        style_of_line = "o" if name == DRAG_AXIS else "-o"
         axes.plot(x, values[index], style_of_line, ms=2.5, lw=1.2, color=colour)
-        handles += _band(axes, view, name, values, index, colour)
+        handles += _draw_drag_band(axes, view, name, values, index, colour)
         if line and np.isfinite(values[index]).any():
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale(axes, "x", x)
-    if name == DRAG:
+    if name == DRAG_AXIS:
         axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
     several = sum(isinstance(each, Line2D) for each in handles) > 1
     style.label_outer(axes, label, panel.lines_label if several else panel.label)
     return handles
 
 
-def _band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
+def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
     as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: as in
-    `_lines`. The list is empty if the drag does not vary, or is the quantity on the horizontal axis.
+    `_draw_curves`. The list is empty if the drag does not vary, or is the quantity on the horizontal axis.
     """
-    if DRAG not in view.arm_axes or x == DRAG or len(view.variables[DRAG]) < 2:
+    if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
-    drag = view.arm_axes.index(DRAG)
+    drag = view.arm_axes.index(DRAG_AXIS)
     whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(index) if i != drag)]
     low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
-    axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
-    line = DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
+    axes.fill_between(
+        _axis_values_and_label(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1
+    )
+    line = DRAGS[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line})")]
 
 
-def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: Any) -> list[Artist]:
+def _cover_invalid_cells(
+    axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: Any
+) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells without a rod or a value; returns
-    legend entries. names: quantities on x and y. index: as in `_map`.
+    legend entries. names: quantities on x and y. index: as in `_draw_map`.
     """
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER
     empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []
-    across = cell_edges(_axis(view, x)[0])
+    across = cell_edges(_axis_values_and_label(view, x)[0])
     limits = axes.get_ylim()
-    up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
+    up = cell_edges(_axis_values_and_label(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
     for variable, value, label, look in COVERED_CELL_LOOKS:
         chosen = view.variables[variable][index] == value
@@ -194,7 +201,7 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: 
     return handles
 
 
-def _fixed(view: View, drawn: list[str]) -> str:
+def _constant_quantities_text(view: View, drawn: list[str]) -> str:
     """Constant quantities of the arm with their values, as text. drawn: names of the quantities on axes."""
     texts = []
     for name, values in view.quantities.items():

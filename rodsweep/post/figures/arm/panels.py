@@ -32,7 +32,7 @@ class Panel:
     """Legend entry for arms without a value."""
 
 
-def _of_thresholds(view: View) -> list[Panel]:
+def _threshold_panels(view: View) -> list[Panel]:
     """Panels of the task `thresholds`: load at flutter (as lines, also at onset of oscillation and
     restabilization), and frequency at flutter.
     """
@@ -50,7 +50,7 @@ def _of_thresholds(view: View) -> list[Panel]:
     ]
 
 
-def _of_modes(view: View) -> list[Panel]:
+def _mode_panels(view: View) -> list[Panel]:
     """Panels of the tasks `spectrum` and `modes`: growth rate and frequency of the leading mode."""
     return [
         Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"),
@@ -58,7 +58,7 @@ def _of_modes(view: View) -> list[Panel]:
     ]
 
 
-def _of_cycles(view: View) -> list[Panel]:
+def _cycle_panels(view: View) -> list[Panel]:
     """Panels of the task `limit_cycle`: frequency and amplitude of the cycle."""
     amplitude, unit = in_typed_unit(view, "length", view.variables["tip_y_max_si"])
     return [
@@ -68,10 +68,10 @@ def _of_cycles(view: View) -> list[Panel]:
 
 
 PANELS: dict[str, Callable[[View], list[Panel]]] = {
-    "thresholds": _of_thresholds,
-    "spectrum": _of_modes,
-    "modes": _of_modes,
-    "limit_cycle": _of_cycles,
+    "thresholds": _threshold_panels,
+    "spectrum": _mode_panels,
+    "modes": _mode_panels,
+    "limit_cycle": _cycle_panels,
 }
 """For each task, the function that returns the panels. A task that is not listed has no figure over the
 quantities of an arm."""

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from ....arrays import Array
-from ....config.arm.axes import STORED_ALONG
-from ....config.arm.shape import OF_MATERIAL
+from ....config.arm.axes import PARAMETER_STORED_ALONG
+from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAGS
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
@@ -54,7 +54,9 @@ def at_point(view: View, name: str, number: int) -> float:
         return float(values.ravel()[0])
     if view.is_grid:  # the quantity is stored along the parameter that depends on it
         shape = view.variables["status"].shape
-        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(STORED_ALONG[name])]])
+        return float(
+            values[np.unravel_index(number - 1, shape)[view.parameters.index(PARAMETER_STORED_ALONG[name])]]
+        )
     return float(values.ravel()[number - 1])
 
 
@@ -66,7 +68,7 @@ def replaced_parameters(view: View, number: int) -> dict[str, float]:
     if "drag" in given:
         given["drag"] = DRAGS[int(given["drag"])]
     arm = view.config.get("parameters", {}).get("arm") or {}
-    own = SlenderArm(**given, **{name: arm[name] for name in OF_MATERIAL if arm.get(name) is not None})
+    own = SlenderArm(**given, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None})
     at = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
     if own.load:
         at.pop("F", None)

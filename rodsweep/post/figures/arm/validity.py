@@ -30,13 +30,13 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
         return
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
     along = [name for name in views[0].parameters if len(views[0].axes[name]) > 1] if is_alone else []
-    hatched = bool(along) and _hatch(figure, views[0], along, outside[0])
+    hatched = bool(along) and _hatch_points(figure, views[0], along, outside[0])
     where = "" if number == count else f" at {number} of {count} points"
     note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
     figure.suptitle(f"{figure.get_suptitle()}\n{note}".strip())
 
 
-def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
+def _hatch_points(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
     parameters `along`; returns whether any panel has these axes.
     """
@@ -44,25 +44,25 @@ def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) ->
     edges = [cell_edges(view.axes[name]) for name in along]
     done = False
     for axes in list(figure.axes):
-        labels = [_label(axes, which) for which in "xy"]
+        labels = [_axis_label(axes, which) for which in "xy"]
         for which, label in zip("xy", labels, strict=True):
             if len(along) == 1 and label == LABELS[along[0]]:
-                _spans(axes, which, edges[0], cells)
+                _hatch_intervals(axes, which, edges[0], cells)
                 done = True
         if len(along) == 2 and labels == [LABELS[name] for name in along]:
-            _cells(axes, edges, cells)
+            _hatch_map_cells(axes, edges, cells)
             done = True
     return done
 
 
-def _label(axes: Axes, which: str) -> str:
+def _axis_label(axes: Axes, which: str) -> str:
     """Label of an axis, from the panel itself or from a panel that shares the axis. which: "x" or "y"."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
     return next(filter(None, labels), "")
 
 
-def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
+def _hatch_intervals(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
     """Hatches intervals of the axis `which` over the whole panel. edges: edges of the intervals. there: mask
     of the hatched intervals.
     """
@@ -75,7 +75,7 @@ def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
     axes.set(**{f"{which}lim": limits})
 
 
-def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
+def _hatch_map_cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
     """Hatches cells of a map. edges: edges of the cells along x and along y. there: mask of the hatched
     cells, (nx, ny).
     """

@@ -33,7 +33,7 @@ def draw_eigenvalues(view: View) -> Figure:
     require_content(view, np.isfinite(growth).any(), "computed point")
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
-    handles = _mark(axes, growth, frequency, growth > 0)
+    handles = _draw_markers(axes, growth, frequency, growth > 0)
     scale_if_spread(axes, growth, frequency)
     for mode in range(min(modes, MAX_NUMBERED)):
         if np.isfinite(growth[mode]):
@@ -56,7 +56,7 @@ def draw_list_of_spectra(view: View) -> Figure:
     panels = figure.subplots(2, 1, sharex=True)
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
     for axes, values, part in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
-        handles = _mark(axes, number, values, growth > 0)
+        handles = _draw_markers(axes, number, values, growth > 0)
         scale_if_spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
@@ -66,7 +66,7 @@ def draw_list_of_spectra(view: View) -> Figure:
     return figure
 
 
-def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
+def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
     """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. grows: mask of
     growing modes, of the same shape.
     """

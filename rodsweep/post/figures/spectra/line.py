@@ -59,7 +59,7 @@ def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.nd
     return w[:, :2]
 
 
-def with_gaps(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Returns (x, w) with NaN inserted between points at which the followed roots are different roots. x:
     parameter, (n,). w: followed roots, (n, 2).
     """
@@ -84,13 +84,13 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
         return asked
 
     def breaks(roots: str) -> int:
-        lines = (_followed(view, roots) for view in views)
-        return sum(len(with_gaps(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
+        lines = (_followed_roots(view, roots) for view in views)
+        return sum(len(with_gaps_between_roots(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
     return min(("smallest", "rightmost"), key=breaks)
 
 
-def _followed(view: View, roots: str) -> Complex:
+def _followed_roots(view: View, roots: str) -> Complex:
     """Roots at the points of a line, as from `select_roots`. roots: choice of the roots."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
@@ -115,7 +115,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     if roots != "all":
         for i, colour in enumerate((BLUE, VERMILION)):
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
-            _point_along(bottom, w[:, i], colour)
+            _draw_direction_arrow(bottom, w[:, i], colour)
     else:
         _scatter_all(bottom, view.axes[name], w, LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
@@ -130,9 +130,9 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     2), or all roots, (n, modes). roots: choice of the roots.
     """
     x = view.axes[name]
-    w = _followed(view, roots)
+    w = _followed_roots(view, roots)
     if roots != "all":
-        x_broken, w = with_gaps(x, w)
+        x_broken, w = with_gaps_between_roots(x, w)
         # A thin line over a thick line: both are visible where the lines coincide.
         for i, (colour, width) in enumerate(((BLUE, 3.0), (VERMILION, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
@@ -157,7 +157,7 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     return w
 
 
-def _point_along(axes: Axes, w: Complex, colour: str) -> None:
+def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     """Draws an arrow at the middle of the path w, (n,), of a root, in the direction of the path. If w has
     gaps, the part with the most points is used.
     """

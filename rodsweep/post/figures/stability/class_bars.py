@@ -17,7 +17,7 @@ from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ....results.layouts.rods import has_covering
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....results.layouts.variables import number_of
+from ....results.layouts.variables import flag_number
 from ....wording import plural
 from ..lists import number_points, shared_parameters
 from ..style import (
@@ -221,7 +221,7 @@ def class_along_row(
     pixels = (edges[1:] + edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
-    found = np.full(len(pixels), number_of("undecided", CLASS_WORDS[variable]), dtype=np.intp)
+    found = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
     for piece in np.unique(piece_of_pixels):
         own_pixels = piece_of_pixels == piece
         own_points = decided & (piece_of_points == piece)

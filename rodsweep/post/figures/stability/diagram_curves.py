@@ -38,9 +38,9 @@ CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points 
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
 """Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
-NAME_SIZE = 8
+FONT_SIZE = 8
 """Font size of a curve's symbol, in points."""
-BESIDE_SIDES = "double eigenvalue", 1.0, ":"
+DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
@@ -48,8 +48,8 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
     """Draws boundary curves and folds, or only Hopf curves if `states`; returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
-    handles = _sides(axes, view, line, row) if sides else []
-    looks = {0: BESIDE_SIDES} if sides else CURVE_LOOKS
+    handles = _draw_criticality(axes, view, line, row) if sides else []
+    looks = {0: DOUBLE_LOOK} if sides else CURVE_LOOKS
     for number, (word, width, style) in looks.items():
         of_kind = v["curve_kind"] == number
         if states and number == 0:
@@ -63,11 +63,11 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
             named = boundaries_to_name(view, number, line, row)
             paths = [np.column_stack([v[f"curve_{n}"][one] for n in (line, row)]) for one in named]
             if paths and "F" in (line, row):
-                paths = _first_over_force(paths, 0 if line == "F" else 1)
+                paths = _lowest_parts(paths, 0 if line == "F" else 1)
             name, share = CURVE_NAMES[number]
             if paths:
                 _name_longest(axes, paths, name + force_of_plane(view, line, row), share)
-    return handles if states else handles + _points(axes, view, line, row)
+    return handles if states else handles + _mark_curve_folds(axes, view, line, row)
 
 
 def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
@@ -86,7 +86,7 @@ def force_of_plane(view: View, line: str, row: str) -> str:
     return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
 
 
-def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     """Marks the folds of Hopf curves, and the fold in the partial beam limit; returns legend entries."""
     v = view.variables
     handles = []
@@ -131,7 +131,7 @@ def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Lin
     kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
     for kind, (word, marker) in CYCLE_MARKS.items():
         rows, places = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
-        alone = ~_on_curves(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
+        alone = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
         x = at[rows, places][alone]
         y = values[rows][alone]
         if alone.any():
@@ -139,7 +139,7 @@ def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Lin
     return handles
 
 
-def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
+def _is_on_curve(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
     """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
     v = view.variables
     near = np.zeros(len(x), dtype=bool)
@@ -158,7 +158,7 @@ def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -
     return near
 
 
-def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
     entries.
     """
@@ -213,7 +213,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
     return [(int(pieces[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
 
 
-def _first_over_force(paths: list[Array], force: int) -> list[Array]:
+def _lowest_parts(paths: list[Array], force: int) -> list[Array]:
     """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
     column with F."""
     starts, ends = (
@@ -246,5 +246,5 @@ def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> No
     if lengths[longest][-1] > 0:
         at = int(np.searchsorted(lengths[longest], share * lengths[longest][-1]))
         axes.annotate(
-            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=NAME_SIZE, va="top"
+            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=FONT_SIZE, va="top"
         )

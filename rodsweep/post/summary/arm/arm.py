@@ -14,7 +14,7 @@ from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE, SCALE_
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import compact, written_in
 from ....results.file.view import View
-from ....results.layouts import LAYOUTS
+from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedChange
@@ -133,7 +133,7 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     list for a rod."""
     if not view.quantities:
         return []
-    si_variables = si_variables_of(LAYOUTS[view.task](view.config), view.config)
+    si_variables = si_variables_of(LAYOUT_MAKERS[view.task](view.config), view.config)
     shown = {
         own: v
         for own, v in si_variables.items()

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_FROM, Validity
-from ....results.layouts.arm import EFFECTS, NOT_KNOWN, VALIDITY
+from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY, VALIDITY_NOT_KNOWN
 from ....wording import some_of
 
 OTHER_PLANE = (
@@ -30,7 +30,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     largest neglected effect. validity: variables of VALIDITY, (n,) each. when: conditional clause to insert.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
-    unknown = applies == NOT_KNOWN
+    unknown = applies == VALIDITY_NOT_KNOWN
     if unknown.all():
         where = f" at all {len(applies)} points" if len(applies) > 1 else ""
         return f"whether the model applies is not known{where}{when}: a motion may have been missed"
@@ -45,7 +45,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
         return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     index = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
-    name = EFFECTS[int(effect[index])].replace("_", " ")
+    name = NEGLECTED_EFFECTS[int(effect[index])].replace("_", " ")
     size = f"{'up to ' * int(affected.sum() > 1)}{excess[index]:.2g}"
     doubt = f", more than {DOUBTFUL_FROM:g}" if worst == Validity.doubtful else ""
     return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.axes import words
+from ....config.axes import joined_names
 from ....config.document.reading import config_of
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
-from ...layouts import INCREASES
+from ...layouts import EXTENSION_RULES
 from ...layouts.variables import ExtensionRule, Layout
 from ..creation import Plan
 from ..points import stored_points
@@ -124,12 +124,12 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
     for name, value in theirs[task].items():
         if name not in ours[task] or ours[task][name] == value:
             continue
-        increase = INCREASES[task].get(name)
+        increase = EXTENSION_RULES[task].get(name)
         if increase is None or not increase.requests_more_data(value, ours[task][name]):
             _refuse(header, config_difference(value, ours[task][name], f"{task}.{name}"))
         else:
             grown.append((increase, value))
-    places = _places(header, points, plan)
+    places = _stored_point_map(header, points, plan)
     return Extension(header.path, header.layout, plan.layout, places, tuple(grown), line_grew)
 
 
@@ -142,12 +142,14 @@ def _refuse(header: ResultHeader, difference: str) -> None:
         )
 
 
-def _places(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
+def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
-            f"a grid of {words(tuple(p.axes), 'and')}" if p.axes else f"a list of {words(p.names, 'and')}"
+            f"a grid of {joined_names(tuple(p.axes), 'and')}"
+            if p.axes
+            else f"a list of {joined_names(p.names, 'and')}"
             for p in (old, new)
         ]
         _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))

@@ -37,7 +37,7 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     return digest.hexdigest()
 
 
-def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
+def config_change_text(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     """Text on the difference of two resolved configs with different fingerprints. theirs: config of the file.
     ours: config of the run.
     """
@@ -51,7 +51,7 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
         {name: value for name, value in config["parameters"].items() if name not in same and name != "points"}
         for config in (theirs, ours)
     ]
-    kinds = [_kind(config.parameters) for config in configs]
+    kinds = [_point_set_kind(config.parameters) for config in configs]
     return (
         config_difference(kinds[0], kinds[1], "parameters")
         or config_difference(written[0], written[1], "parameters")
@@ -60,7 +60,7 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     )
 
 
-def _kind(parameters: Axes) -> str:
+def _point_set_kind(parameters: Axes) -> str:
     """Text stating whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
     if parameters.arm_axes:
         return f"a grid over {' and '.join(parameters.arm_axes)}"

@@ -14,16 +14,16 @@ import h5py
 import numpy as np
 
 from ....arrays import Array
-from ....config.document.reading import canonical, config_of, text_of
+from ....config.document.reading import config_of, config_yaml, resolved_config
 from ....config.schema import Config
 from ....config.values import Axis
 from ....errors import InputError
 from ....sweep.points.points import Points
-from ...layouts.variables import MISSING, SECONDS
+from ...layouts.variables import MISSING_STATUS, SECONDS
 from ..content import SEAL_ATTRIBUTE
 from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
-from ..provenance import LONGEST_ATTRIBUTE, kernels_of
+from ..provenance import LONGEST_ATTRIBUTE, blas_kernels_in
 from ..validation import ResultHeader
 from .extension import ROUNDING_TOLERANCE, StoredPointMap
 from .identity import config_difference
@@ -36,7 +36,7 @@ NOT_INHERITED_ATTRIBUTES = (
 ROUNDING_FACTOR = 1e3
 """Two results with a relative difference of at most this multiple of the requested accuracy are treated as
 equal up to rounding."""
-Planner = Callable[[Config, Points], Plan]
+PlanMaker = Callable[[Config, Points], Plan]
 """Function from a config and its points to the plan of the result file, without attributes and flags."""
 
 
@@ -82,7 +82,7 @@ class JoinedFile:
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
                 if not self._is_rounding(name, stored[i][name], records[i][name], pair):
-                    where = _place(self.plan.points, index)
+                    where = _point_text(self.plan.points, index)
                     both = " and ".join(str(source.path) for source in pair)
                     raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
 
@@ -95,7 +95,7 @@ class JoinedFile:
         Only results of different BLAS kernels, or of stretches solved with different points, may differ by
         rounding error.
         """
-        kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
+        kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False
         # Rounding changes the size of an error estimate, and the cost of a solve, by any factor.
@@ -106,12 +106,12 @@ class JoinedFile:
         return bool(np.allclose(first, second, rtol=tolerance, atol=tolerance * scale, equal_nan=True))
 
 
-def _place(points: Points, index: int) -> str:
+def _point_text(points: Points, index: int) -> str:
     """Text with the parameters of the point at a flat index."""
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
-def joined_file_of(sources: Sequence[ResultHeader], planner: Planner) -> JoinedFile:
+def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
     meant = config_of(first.config).settings_of_results
@@ -168,8 +168,8 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
-            f"points are in no file, the first at {_place(whole, int(np.argmin(covered)))}; compute these "
-            "points into a separate file, or merge fewer files"
+            f"points are in no file, the first at {_point_text(whole, int(np.argmin(covered)))}; compute "
+            "these points into a separate file, or merge fewer files"
         )
     return whole, places
 
@@ -199,12 +199,12 @@ def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -
     parameters = dict(first.config["parameters"])
     if points.is_grid:
         own = config_of(first.config).parameters.axes
-        axes = {name: _axis(own[name], column) for name, column in points.by_name.items()}
+        axes = {name: _axis_with(own[name], column) for name, column in points.by_name.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
     return config_of(first.config | {"parameters": parameters, task: meant[task]})
 
 
-def _axis(own: Axis, values: Array) -> Axis:
+def _axis_with(own: Axis, values: Array) -> Axis:
     """An axis with the given values, (n,): `own` or a range if its values are equal bit by bit, otherwise a
     list.
     """
@@ -236,8 +236,8 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
 
 def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
-    text = text_of(config)
-    resolved = canonical(config)
+    text = config_yaml(config)
+    resolved = resolved_config(config)
     if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:
         raise InputError(
             "the joined axes are too long to be listed in the file; compute the grid with `run` from ranges"
@@ -245,6 +245,6 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     with h5py.File(first.path, "r") as file:
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
-        flags = tuple((int(value), word) for value, word in pairs if value != MISSING)
+        flags = tuple((int(value), word) for value, word in pairs if value != MISSING_STATUS)
     kept = {name: value for name, value in first.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES}
     return replace(plan, attributes=kept | {"config": text}, flags=flags)

@@ -17,9 +17,9 @@ from ...run.journal import JOURNALS, journal_directory
 from ..creation import Plan, add_variables, create_file
 from ..exchange import FileReplacement, disk_refusals
 from ..points import missing_ranges, parameters_of, points_to_add, write_points
-from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, now
+from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, utc_time
 from ..validation import ResultHeader, read_header
-from .joining import JoinedFile, Planner, joined_file_of
+from .joining import JoinedFile, PlanMaker, joined_file_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class MergeResult:
     """Warning about the BLAS kernels that computed the points; empty for a single kernel."""
 
 
-def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
+def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResult:
     """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids or
     lists; returns the outcome of the merge.
 
@@ -54,12 +54,12 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
                 )
             if all(_is_continued(sources[0], source) for source in sources):
                 return _merge(exchange, sources, planner)
-            return _join(exchange, joined_file_of(sources, planner))
+            return _write_joined_file(exchange, joined_file_of(sources, planner))
     finally:
         exchange.close()
 
 
-def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: Planner) -> MergeResult:
+def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
     """Replaces the output by a copy of the first source with the points of all other sources added."""
     first = sources[0]
     plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
@@ -68,18 +68,18 @@ def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: 
         for source in sources[1:]:
             if write_points(copy, points_to_add(copy, source.path, first.layout), first.layout):
                 gave.append(source)
-        return _finished(copy, plan, gave)
+        return _finish_merge(copy, plan, gave)
 
 
-def _join(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
+def _write_joined_file(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
     """Replaces the output by the planned joined file and writes the points of all sources into it."""
     with exchange.replacing(None) as copy:
         create_file(copy, joint.plan)
         gave = joint.write(copy)
-        return _finished(copy, joint.plan, gave or joint.sources[:1])
+        return _finish_merge(copy, joint.plan, gave or joint.sources[:1])
 
 
-def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
+def _finish_merge(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
     returns the outcome of the merge. copy: path of the merged file. gave: sources of the stored points.
     """
@@ -89,7 +89,7 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResu
     with h5py.File(copy, "r+") as file:
         if finished and "finished" not in file.attrs:
             add_variables(file, plan.afterwards(file))
-            file.attrs["finished"] = now()
+            file.attrs["finished"] = utc_time()
         file.attrs.update(history)
         points = file["status"].size
     return MergeResult(

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .....config.arm.axes import CHANGED_PARAMETER
-from .....config.task.limit_cycle import LONGEST
+from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
@@ -123,7 +123,7 @@ def _file_words(views: Sequence[View], name: str) -> dict[int, tuple[str, bool |
         return {id(views[0]): ("", None)}
     options = [view.config.get("limit_cycle", {}) for view in views]
     followed = all(
-        chosen.get("start") == "neighbour" and chosen.get("along", LONGEST) in (name, LONGEST)
+        chosen.get("start") == "neighbour" and chosen.get("along", LONGEST_AXIS) in (name, LONGEST_AXIS)
         for chosen in options
     )
     directions = [chosen.get("direction", "up") for chosen in options]
