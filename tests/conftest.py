@@ -112,7 +112,7 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: places.get(item.path.stem, len(LONGEST)))
 
 
-NOT_FITTED = "from rodsweep.post.figures import request; request.fit = lambda *_: None"
+NOT_FITTED = "from rodsweep.post.figures import request; request.fit_layout = lambda *_: None"
 """Patch with which figures are drawn but not laid out, which takes most of the time."""
 
 
@@ -266,7 +266,7 @@ def command(tmp_path, request):
 def not_fitted(monkeypatch):
     """Figures are drawn but not laid out, for tests that ignore the layout; `make survey` lays them out."""
     if not RODS:
-        monkeypatch.setattr("rodsweep.post.figures.request.fit", lambda *_: None)
+        monkeypatch.setattr("rodsweep.post.figures.request.fit_layout", lambda *_: None)
 
 
 @pytest.fixture
@@ -276,7 +276,7 @@ def drawn(monkeypatch):
 
     figures: list[Figure] = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
-    monkeypatch.setattr("rodsweep.post.figures.request.fit", lambda *_: None)
+    monkeypatch.setattr("rodsweep.post.figures.request.fit_layout", lambda *_: None)
     return figures
 
 

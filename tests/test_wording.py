@@ -5,11 +5,11 @@ import pytest
 
 from rodsweep.post.summary.ranges import (
     error_text,
+    number_with_error,
     ranges_text,
     rounded,
     span_text,
     stated_error,
-    to_error,
 )
 from rodsweep.wording import counted, duration, is_or_are, some_of
 
@@ -70,7 +70,7 @@ def test_a_number_and_its_error_contain_the_true_number():
         value, error = float(random.normal() * 10 ** random.uniform(-9, 9)), 10 ** random.uniform(-12, 0)
         error *= abs(value)
         true = value + error * random.choice([-1, 1])
-        text, _, stated = to_error(value, error).partition(" (+- ")
+        text, _, stated = number_with_error(value, error).partition(" (+- ")
         assert abs(float(text) - true) <= float(stated.rstrip(")")) * (1 + 1e-12) + 1e-15 * abs(value)
         assert stated_error(value, error)[0] == text
         end = rounded(value, error)

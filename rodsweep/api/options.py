@@ -23,6 +23,7 @@ class SpectrumKeywords(TaskKeywords, total=False):
     certify: bool
     vectors: bool
     nodes: int
+    """Number of Lobatto nodes at which each mode is returned."""
     follow: bool
     longitudinal: bool
 
@@ -40,6 +41,7 @@ class ModesKeywords(TaskKeywords, total=False):
 
     modes: int
     nodes: int
+    """Number of Lobatto nodes at which each mode is returned."""
     growth: bool
     certify: bool
 

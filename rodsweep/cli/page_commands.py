@@ -74,13 +74,13 @@ def plot(
     """Draw the result FILE, or several: spectra in panels, thresholds or limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.request import FigureLook
-    from ..post.figures.sections import section
+    from ..post.figures.sections import section_at_values
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
     output = output or with_suffix_replaced(files[0], ".gif" if what == "animation" else ".png")
     values = _parsed_at_values(at)
-    views = [section(read_view(link_target(file)), values) for file in files]
+    views = [section_at_values(read_view(link_target(file)), values) for file in files]
     drawn = draw(
         views, output, look=FigureLook(**look), shapes=with_shapes, roots=roots, what=what, points=points
     )

@@ -108,7 +108,7 @@ class PageContents:
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
-        self.sharing.show(state)
+        self.sharing.update_hidden_texts(state)
 
     def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
         """Draws the answer `found` to a question of the kind `kind` in all pictures that show this answer,
@@ -135,7 +135,7 @@ class PageContents:
             scales = SCALES[state.tab]
             self.diagram.show(found, scales[state.load], scales[state.second])
             if kind == "cycles" and len(found["cycle_curve_x"]) == 0:
-                self.diagram.card.tell(NO_CYCLE_CURVES_SENTENCE)
+                self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_SENTENCE)
         self.numbers.show(kind, found)
 
     def show_message(self, kind: str, sentence: str) -> None:
@@ -146,15 +146,15 @@ class PageContents:
         if kind == "cycle":
             self.beating.stop()
         if kind == "cycles":
-            self.diagram.card.tell(sentence)
+            self.diagram.card.show_sentence_above(sentence)
             return
         if kind in ("bent", "motion", "film"):
             self.beating.remove_dragged_shape()
-            self.beating.card.tell(sentence)
+            self.beating.card.show_sentence_above(sentence)
             return
         by_kind = {
             "spectrum": (self.spectrum, self.mode), "cycle": (self.beating,), "thresholds": (self.growth,),
             "growth": (self.growth,), "branch": (self.branches,), "diagram": (self.diagram,),
         }  # fmt: skip
         for picture in by_kind[kind]:
-            picture.card.say(sentence)
+            picture.card.show_sentence_instead(sentence)

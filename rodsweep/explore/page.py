@@ -43,17 +43,17 @@ class Page:
         self.solving: set[str] = set()
         self.progress: dict[str, str] = {}
         """Progress of each running solve, as text, by kind of question."""
-        self.asked: dict[str, AnswerInputs] = {}
+        self.latest_inputs: dict[str, AnswerInputs] = {}
         """Part of the state, and dragged tip, on which the latest question of each kind depends, see
         `answer_inputs`."""
         self.drawn_around: PageState | None = None
         """State around which the drawn diagram was solved; None before the first answer of a solver."""
         self.contents = PageContents(self.change, self.load)
-        self.idle = IdleTimer(document, self._ask_slow_questions)
-        self.contents.connect(document, self._connections())
+        self.idle_timer = IdleTimer(document, self._ask_slow_questions)
+        self.contents.connect(document, self._callbacks())
         self.contents.beating.on_drag(self.drag)
         if stored is not None and stored.diagram is not None:
-            self.asked["diagram"] = answer_inputs(Question("diagram", state))
+            self.latest_inputs["diagram"] = answer_inputs(Question("diagram", state))
             self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
@@ -84,15 +84,15 @@ class Page:
 
     def solve(self, kind: str, tip: Tip | None = None) -> None:
         """Sends a question of the kind `kind` to its solver process, even if the answer is already shown."""
-        self._drop(kind)
-        self._ask(kind, tip, is_solved_again=True)
+        self._cancel_question(kind)
+        self._send_question(kind, tip, is_solved_again=True)
         self._show_solving()
 
     def stop(self) -> None:
         """Cancels long solves, with a sentence in their pictures. A dragged arm returns to its motion."""
         for kind in kinds.STOPPABLE_KINDS:
             if kind in self.solving:
-                self._drop(kind)
+                self._cancel_question(kind)
                 if kind in kinds.TIP_KINDS:
                     self.contents.beating.remove_dragged_shape()
                 elif kind not in kinds.MANUAL_KINDS:
@@ -103,23 +103,25 @@ class Page:
         """Requests the shape with the tip held at `tip`, in L ("bent"), or the motion after release."""
         for other in kinds.TIP_KINDS:
             if other != kind:
-                self._drop(other)
-        self._ask(kind, tip)
+                self._cancel_question(other)
+        self._send_question(kind, tip)
         self._show_solving()
 
-    def _drop(self, kind: str) -> None:
+    def _cancel_question(self, kind: str) -> None:
         """Cancels the question of the kind `kind`; an answer that arrives later is ignored."""
-        self.asked.pop(kind, None)
+        self.latest_inputs.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
             self.solvers.drop(self.session, kind)
 
-    def _connections(self) -> dict[str, Callable[..., None]]:
+    def _callbacks(self) -> dict[str, Callable[..., None]]:
         return {
             "branch": lambda: self.solve("branch"),
             "diagram": lambda: self.solve("diagram"),
             "diagram_point": self._move_in_diagram,
-            "film": lambda: self.solve("film", self.asked["motion"][1] if "motion" in self.asked else None),
+            "film": lambda: self.solve(
+                "film", self.latest_inputs["motion"][1] if "motion" in self.latest_inputs else None
+            ),
             "cycles": lambda: self.solve("cycles"),
             "load": self._move_load,
             "stop": self.stop,
@@ -138,42 +140,42 @@ class Page:
             self._show_error(str(error))
             return
         for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
-            self._drop(kind)
+            self._cancel_question(kind)
         for kind in kinds.INSTANT_KINDS:
-            self._ask(kind)
+            self._send_question(kind)
         self.contents.show_point(state, F)
         self._show_solving()
-        self.idle.restart()
+        self.idle_timer.restart()
 
     def _show_error(self, sentence: str) -> None:
         """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
         diagram.
         """
-        self.idle.cancel()
+        self.idle_timer.cancel()
         for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
-            self._drop(kind)
+            self._cancel_question(kind)
         for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
-                self._drop(kind)
+                self._cancel_question(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
                 self.contents.show_message(kind, sentence)
         self._show_solving()
 
     def _ask_slow_questions(self) -> None:
-        self.contents.sharing.write()
+        self.contents.sharing.show_texts()
         for kind in kinds.IDLE_KINDS:
-            if answer_inputs(Question(kind, self.state)) == self.asked.get(kind):
+            if answer_inputs(Question(kind, self.state)) == self.latest_inputs.get(kind):
                 continue
             if self.state.tab == "rod" and not has_uniform_rods(self.state):
-                self.asked.pop(kind, None)
+                self.latest_inputs.pop(kind, None)
                 self.contents.show_message(
                     kind, "The solve takes a minute for such a rod; press the button below to start."
                 )
                 continue
-            self._ask(kind)
+            self._send_question(kind)
         self._show_solving()
 
-    def _ask(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
+    def _send_question(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
         """Sends a new question of the kind `kind`. A stored answer replaces the solve, unless
         `is_solved_again`. tip: position of the dragged tip, in L.
         """
@@ -181,13 +183,13 @@ class Page:
         filmed = self.stored if (kind, tip) == ("film", None) else None
         question = Question(kind, state, tip, None if filmed is None else filmed.cycle_to_film(state))
         needed = answer_inputs(question)
-        if self.asked.get(kind) == needed:
+        if self.latest_inputs.get(kind) == needed:
             return
-        self.asked[kind] = needed
+        self.latest_inputs[kind] = needed
         stored = None if self.stored is None or is_solved_again else self.stored.answer(kind, self.state)
         if stored is not None:
-            self._drop(kind)
-            self.asked[kind] = needed
+            self._cancel_question(kind)
+            self.latest_inputs[kind] = needed
             self.contents.show(kind, stored, self.state)
             return
         self.solving.add(kind)
@@ -205,7 +207,7 @@ class Page:
 
     def _on_answer(self, question: Question, reply: Reply) -> None:
         kind = question.kind
-        if (newest := self.asked.get(kind)) is None:  # the user has entered invalid values meanwhile
+        if (newest := self.latest_inputs.get(kind)) is None:  # the user has entered invalid values meanwhile
             return
         is_newest = newest == answer_inputs(question)
         if reply.outcome == "progress":
@@ -219,7 +221,7 @@ class Page:
             return
         if reply.outcome == "answer":
             if kind == "cycles":
-                self.asked["diagram"] = answer_inputs(replace(question, kind="diagram"))
+                self.latest_inputs["diagram"] = answer_inputs(replace(question, kind="diagram"))
             if kind in ("cycles", "diagram"):
                 self.drawn_around = question.state
             self.contents.show(kind, reply.content, question.state)

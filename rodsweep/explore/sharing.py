@@ -77,7 +77,7 @@ class Sharing:
             CustomJS(args={"lines": self.lines}, code=template_text("download.js") + SAVE_SCRIPT)
         )
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
-        self.file.on_change("value", self._take)
+        self.file.on_change("value", self._load_chosen_file)
         copies = [
             Button(label=f"Copy the {what}", name=f"copy_{name}", stylesheets=[widgets])
             for what, name in (("config", "yaml"), ("Python lines", "python"))
@@ -94,12 +94,12 @@ class Sharing:
             *_picture_buttons(cards, arm), self.film, name="sharing", sizing_mode="stretch_width",
         )  # fmt: skip
 
-    def show(self, state: PageState) -> None:
-        """Updates the texts that the buttons copy and save. The visible texts are updated by `write`."""
+    def update_hidden_texts(self, state: PageState) -> None:
+        """Updates the texts that the buttons copy and save. The visible texts are updated by `show_texts`."""
         self._state = state
         self.lines.update(config=self._config(), python=state.python())
 
-    def write(self) -> None:
+    def show_texts(self) -> None:
         """Writes the visible texts of the latest state.
 
         The page calls this method only after a pause of the controls: each visible text causes a new layout,
@@ -118,15 +118,19 @@ class Sharing:
         self.film.document.add_next_tick_callback(lambda: self.film.update(tags=[""]))
 
     def _choose_task(self, attribute: str, old: str, new: str) -> None:
+        """Shows the config of the task that the user has chosen; the arguments, from Bokeh, are not used."""
         self.lines.config = self._config()
-        self.write()
+        self.show_texts()
 
     def _config(self) -> str:
         """Config for the task that the user has chosen."""
         text = self._state.yaml(self.task.value)
         return text + FILM_COMMANDS if self.task.value == CONFIG_TASKS[0] else text
 
-    def _take(self, attribute: str, old: str, new: str) -> None:
+    def _load_chosen_file(self, attribute: str, old: str, new: str) -> None:
+        """Passes the text of the chosen file to the page. new: content in base64; empty after a clearing.
+        The other arguments, from Bokeh, are not used.
+        """
         if new:
             self._loaded(b64decode(new).decode(errors="replace"))
             self.file.clear()  # otherwise a browser does not report the same file when it is chosen again

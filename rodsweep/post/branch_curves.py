@@ -25,7 +25,7 @@ STOP_REASONS = ("no_cycle_found", "list_full")
 """Reasons for which the continuation of a branch stopped before the end of the branch."""
 RANGE_GAP_TOLERANCE = 1e-9
 """Two ranges are joined if the relative gap between the ranges is at most this number."""
-Range = tuple[float, float]
+ParameterRange = tuple[float, float]
 """(smallest, largest) value of the followed parameter."""
 
 
@@ -63,7 +63,7 @@ class StoredBranch:
     special: tuple[StoredSpecialPoint, ...]
 
     @property
-    def stable_ranges(self) -> list[Range]:
+    def stable_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the branch has a stable cycle."""
         pieces = np.flatnonzero(self.stable == 1)
         return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
@@ -104,7 +104,7 @@ def followed_parameter(view: View) -> str:
     return next(name for name in PARAMETERS if f"branch_{name}" in view.variables)
 
 
-def ends_of(view: View) -> Range:
+def branch_ends(view: View) -> ParameterRange:
     """(start, stop) of the range in which the branches in a result file are followed."""
     options = view.config["branch"]
     return float(options["start"]), float(options["stop"])
@@ -135,20 +135,20 @@ class RodBranches:
         return {at: error for curve in self.curves for at, error in curve.errors.items()}
 
     @property
-    def stable_cycles(self) -> list[Range]:
+    def stable_cycles(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the rod has a stable cycle."""
         return union(piece for curve in self.curves for piece in curve.stable_ranges)
 
     @property
-    def two_cycles(self) -> list[Range]:
+    def two_cycles(self) -> list[ParameterRange]:
         """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
         return union(piece for one, other in pairs for piece in intersection(one, other))
 
     @property
-    def coexistence(self) -> list[Range]:
+    def coexistence(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        return intersection(self.stable_cycles, self.straight_ranges(ends_of(self.view))[0])
+        return intersection(self.stable_cycles, self.straight_ranges(branch_ends(self.view))[0])
 
     @property
     def coexistence_is_decided(self) -> bool:
@@ -157,7 +157,7 @@ class RodBranches:
         straight = int(self._v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
         return straight and all(curve.is_decided for curve in self.curves)
 
-    def straight_ranges(self, ends: Range) -> tuple[list[Range], list[Range]]:
+    def straight_ranges(self, ends: ParameterRange) -> tuple[list[ParameterRange], list[ParameterRange]]:
         """Returns (stable, unstable): ranges within `ends` in which the straight rod is stable, or unstable.
 
         Both lists are empty if special points of some branch are not stored.
@@ -166,7 +166,7 @@ class RodBranches:
         stable, unstable = (union((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0))
         return stable, unstable
 
-    def straight_pieces(self, ends: Range) -> list[tuple[float, float, int]]:
+    def straight_pieces(self, ends: ParameterRange) -> list[tuple[float, float, int]]:
         """(low, high, stability) between Hopf points within `ends`: 1 stable, 0 unstable, -1 unknown."""
         v = self._v
         hopf = v["special_kind"] == HOPF
@@ -180,7 +180,7 @@ class RodBranches:
         ]
 
 
-def runs_of(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
+def stability_runs(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
     """Yields (vertices, stability) of each run of equal values in `stable`, (n - 1,). vertices: a slice."""
     starts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
@@ -233,9 +233,9 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
     return np.array(stable, dtype=int)
 
 
-def union(ranges: Iterable[Range]) -> list[Range]:
+def union(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
     """Union of ranges, in increasing order. Ranges that overlap or touch are joined."""
-    found: list[Range] = []
+    found: list[ParameterRange] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
         if found and low <= found[-1][1] * (1 + RANGE_GAP_TOLERANCE):
             found[-1] = found[-1][0], max(high, found[-1][1])
@@ -244,7 +244,7 @@ def union(ranges: Iterable[Range]) -> list[Range]:
     return found
 
 
-def intersection(first: list[Range], second: list[Range]) -> list[Range]:
+def intersection(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
     """Intersection of two unions of ranges; ranges of zero length are left out."""
     common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
     return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]

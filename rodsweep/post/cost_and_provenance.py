@@ -29,13 +29,13 @@ def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
 def origin_lines(a: dict[str, Any]) -> list[str]:
     """Lines about dates, versions of the software, and BLAS kernels. a: attributes of the result file."""
     return [
-        f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
+        f"computed {_dates_clause(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
         f"BLAS: {'; '.join(blas_kernels_in(a))}",
     ]
 
 
-def _when(a: dict[str, Any]) -> str:
+def _dates_clause(a: dict[str, Any]) -> str:
     """Clause with the dates of start and end of the computation. The file of a shard has no end; the clause
     then says whether all points of the shard are computed.
     """

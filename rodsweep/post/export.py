@@ -45,11 +45,11 @@ def export(view: View, output: Path, request: ExportRequest) -> str:
         raise InputError(f"{output} exists already; --replace overwrites it, -o names another file")
     table = Tables(view).table(request.table, request.columns)
     with atomic_write(output) as stream:
-        _write(table, SEPARATORS[output.suffix], request.units, stream)
-    return _sentence(table, view)
+        _write_csv(table, SEPARATORS[output.suffix], request.units, stream)
+    return _written_table_sentence(table, view)
 
 
-def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
+def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> None:
     """Writes a table to `stream` as CSV. separator: character between columns. units: whether headings
     contain units.
     """
@@ -60,7 +60,7 @@ def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
         lines.writerows(zip(*texts, strict=True))
 
 
-def _sentence(table: Table, view: View) -> str:
+def _written_table_sentence(table: Table, view: View) -> str:
     """Sentence on the written table: numbers of rows and columns, number of points without a row, and names
     of the other tables.
     """

@@ -83,9 +83,9 @@ class StoredChanges:
         v = view.variables
         points = v["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
-        self.growth = v[growth].reshape(points, -1)[:, 0]
+        self.growth_rates = v[growth].reshape(points, -1)[:, 0]
         absent = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
-        self.others = [other for other in HOPF_ALONG if other not in {name, *absent}]
+        self.other_parameters = [other for other in HOPF_ALONG if other not in {name, *absent}]
         self.by_rod: dict[tuple[float, ...], list[LocatedChange]] = {}
         if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
             self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
@@ -97,7 +97,7 @@ class StoredChanges:
         names start with `prefix`. name: parameter along which the thresholds are located. v: variables of the
         file.
         """
-        rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
+        rods = np.stack([v[f"{prefix}_{other}"] for other in self.other_parameters], axis=-1)
         fields = (name, "error", "frequency", "kind")
         at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
@@ -116,15 +116,15 @@ class StoredChanges:
 
     def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
         """Thresholds from the start of the search to the largest parameter value of a line of points."""
-        return sorted({*self.on(line), *self._stored(line, -inf)}, key=sort_position)
+        return sorted({*self.thresholds_on(line), *self._stored(line, -inf)}, key=sort_position)
 
     def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
         """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
-        rod = tuple(line.parameters[other] for other in self.others)
+        rod = tuple(line.parameters[other] for other in self.other_parameters)
         high = line.x.max(initial=-inf)
-        return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
+        return [point for point in self.by_rod.get(rod, []) if _lies_between(point, low, high)]
 
-    def on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
+    def thresholds_on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
         """Thresholds on a line of points, in increasing order of the parameter.
 
         Two neighbouring points bracket a change of stability if their growth rates differ in sign and the
@@ -135,19 +135,19 @@ class StoredChanges:
         stored = self._stored(line, line.x.min())
         found: list[LocatedChange | BracketedChange] = [*stored]
         changes = [point for point in stored if point.is_hopf]
-        known = np.flatnonzero(np.isfinite(self.growth[line.at]))
+        known = np.flatnonzero(np.isfinite(self.growth_rates[line.at]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
         x = line.x[ordered]
-        grows = self.growth[line.at[ordered]] > 0
+        grows = self.growth_rates[line.at[ordered]] > 0
         for i in np.flatnonzero(grows[1:] != grows[:-1]):
             low = float(x[i])
             high = float(x[i + 1])
-            if sum(_within(point, low, high) for point in changes) % 2 == 0:
+            if sum(_lies_between(point, low, high) for point in changes) % 2 == 0:
                 found.append(BracketedChange(low, high, "hopf" if grows[i + 1] else "restabilization"))
         return sorted(found, key=sort_position)
 
 
-def _within(point: LocatedChange, low: float, high: float) -> bool:
+def _lies_between(point: LocatedChange, low: float, high: float) -> bool:
     """Whether a located threshold lies between `low` and `high`, within its error or rounding error."""
     margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

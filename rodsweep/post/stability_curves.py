@@ -10,7 +10,7 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from .hopf_points import STABILITY_CHANGES
 
 
-def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
+def curves_bounding_stability(view: View, line: str, row: str) -> dict[int, bool]:
     """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the
@@ -27,12 +27,12 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
         kind = CROSSING_KINDS[int(kinds[index, i])]
         if numbers and (kind, int(after[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):
             position = float(at[index, i]), float(rows[index])
-            distances = {n: _distance(x, y, *position) for n, (x, y) in paths.items()}
+            distances = {n: _distance_along_row(x, y, *position) for n, (x, y) in paths.items()}
             found[min(distances, key=distances.__getitem__)] = True
     return found
 
 
-def _distance(x: Array, y: Array, at: float, height: float) -> float:
+def _distance_along_row(x: Array, y: Array, at: float, height: float) -> float:
     """Distance, along the row y = `height`, between x = `at` and a curve; inf if the curve does not cross the
     row. x, y: vertices of the curve, (n,).
     """

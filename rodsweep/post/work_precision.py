@@ -39,7 +39,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
     cases, methods, groups, seconds, errors = (
         values[np.isfinite(columns["error"])] for values in columns.values()
     )
-    looks = _looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
+    looks = _curve_looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
     wide = np.nanmax(seconds) > WIDE_TIME_RATIO * np.nanmin(seconds)
     across = ceil(sqrt(len(titles)))
@@ -70,7 +70,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
             raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror}") from error
 
 
-def _looks(groups: dict[str, str]) -> dict[str, dict]:
+def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:
     """Keywords of matplotlib for the curve of each method: a colour for each group, a marker for each method
     of a group. groups: group of each method.
     """

@@ -130,7 +130,7 @@ class ChunkQueue:
             self.change.notify_all()
 
 
-class UnitChooser(Protocol):
+class ItemChooser(Protocol):
     """Chooses the items to solve next, the most urgent item first, from the results of solved items."""
 
     def items_to_solve(self, results: Mapping[int, Any]) -> list[int]: ...
@@ -143,7 +143,7 @@ class DependentItemQueue(ChunkQueue):
     first from an earlier run, later also from the reports. ranks: number of ranks.
     """
 
-    def __init__(self, work: UnitChooser, results: dict[int, Any], ranks: int):
+    def __init__(self, work: ItemChooser, results: dict[int, Any], ranks: int):
         super().__init__([], ranks)
         self.work = work
         self.results = results

@@ -21,8 +21,8 @@ Indices = int | NDArray[np.int64]
 """Flat index of one point, or flat indices, (n,), of points that are stored together."""
 
 
-class UnitSolver(Protocol):
-    """Function that solves an item, that is, a point, a chain or a stretch of points.
+class ItemSolver(Protocol):
+    """Function that solves a work item, that is, a point, a chain or a stretch of points.
 
     Yields (flat index, result) of a point, or (flat indices, results) of points of a stretch that were solved
     together.
@@ -55,14 +55,14 @@ class RankWork:
     points: int
     busy: float
     idle: float
-    ended: bool = False
+    was_interrupted: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Loop:
+class SweepCallbacks:
     """Functions that every rank calls during a sweep."""
 
-    solve: UnitSolver
+    solve: ItemSolver
     """Solves the points of an item."""
     store: Callable[[Indices, Any], None]
     """Stores the result of a point durably, on the rank that solved it, before the next point begins."""
@@ -75,7 +75,9 @@ class Loop:
     """Returns a description of an item for the progress display."""
 
 
-def sweep(team: Team, queue: ChunkQueue, loop: Loop, progress: ProgressSink, stop: StopRequest) -> RankWork:
+def sweep(
+    team: Team, queue: ChunkQueue, loop: SweepCallbacks, progress: ProgressSink, stop: StopRequest
+) -> RankWork:
     """Solves every item in `queue`, which is used on the first rank only; returns when all ranks have
     finished.
 
@@ -100,17 +102,17 @@ class _RankLoop:
         self,
         team: Team,
         requests: FirstRankRequests | OtherRankRequests,
-        loop: Loop,
+        loop: SweepCallbacks,
         progress: ProgressSink,
         stop: StopRequest,
     ):
         self.team = team
         self.requests = requests
-        self.loop = loop
+        self.callbacks = loop
         self.progress = progress
         self.stop = stop
         self.points = 0
-        self.ended = False
+        self.was_interrupted = False
 
     def solve_chunks(self) -> RankWork:
         """Solves chunk after chunk; returns the statistics of the rank once all ranks have finished."""
@@ -129,13 +131,13 @@ class _RankLoop:
                 returned=(at, chunk[1]),
                 points=self.points - before,
                 stop=self.stop.name,
-                results=self.loop.new_results(),
+                results=self.callbacks.new_results(),
             )
             chunk = self.requests.next_chunk(report)
         if isinstance(self.requests, FirstRankRequests):
             self.requests.close()
         self.team.wait_for_all()
-        return RankWork(self.points, busy, time.monotonic() - started - busy, self.ended)
+        return RankWork(self.points, busy, time.monotonic() - started - busy, self.was_interrupted)
 
     def _solve_chunk(self, chunk: IndexRange) -> int:
         """Solves the items of a chunk in order; returns the number of the first unsolved item.
@@ -147,10 +149,12 @@ class _RankLoop:
         before = self.points
         while at < chunk[1] and not self.stop:
             try:
-                with reporting_to(RankListener(self.requests, self.stop, partial(self.loop.item_label, at))):
+                with reporting_to(
+                    RankListener(self.requests, self.stop, partial(self.callbacks.item_label, at))
+                ):
                     self._solve(at, before)
             except SolveStopped:
-                self.ended = True
+                self.was_interrupted = True
             if self.stop:  # the item may be unfinished, so it does not count as solved
                 break
             at += 1
@@ -160,8 +164,8 @@ class _RankLoop:
 
     def _solve(self, item: int, before: int) -> None:
         """Solves an item and stores its points. before: number of points stored before the current chunk."""
-        for index, result in self.loop.solve(item):
-            self.loop.store(index, result)
+        for index, result in self.callbacks.solve(item):
+            self.callbacks.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
             self.requests.between_points()
             if isinstance(self.requests, FirstRankRequests):

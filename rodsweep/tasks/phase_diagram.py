@@ -118,7 +118,7 @@ class PhaseDiagramTask(CertifiedTask):
 
         def solve(index: int) -> CoexistenceRow:
             row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
-            return curves.keep(index, row)
+            return curves.cache_row(index, row)
 
         return replace(
             of_rows,

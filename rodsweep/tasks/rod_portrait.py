@@ -11,7 +11,7 @@ from ..config.document.reading import validated_config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
-from ..post.branch_curves import Range, RodBranches
+from ..post.branch_curves import ParameterRange, RodBranches
 from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS
@@ -128,7 +128,7 @@ def mode_forces(thresholds: View) -> dict[str, float]:
     return found
 
 
-def cycle_forces(ranges: Sequence[Range]) -> list[float]:
+def cycle_forces(ranges: Sequence[ParameterRange]) -> list[float]:
     """Forces of the three cycles, increasing: at CYCLE_FRACTIONS of the ranges of F with a stable cycle.
 
     A force is rounded to three digits if the rounded force is in the same range. Empty if `ranges` is empty.

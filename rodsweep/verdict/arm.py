@@ -74,14 +74,14 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     """
     planes = with_load(planes_of(arm))
     first = planes.first
-    assessment = Assessment(first.arm, first.found)
+    assessment = Assessment(first.arm, first.flutter_range)
     checks = checks_of(assessment)
     applies = assessment.of_verdict < Validity.does_not_apply
     above = tuple(check for check in checks if applies and check.doubts_the_verdict)
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
         load = str(getattr(arm, str(arm.load))).strip()
-        others.insert(0, f"{Load(first.arm).given} is {load} with the likeliest drag.")
+        others.insert(0, f"{Load(first.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(
         validity=assessment.of_verdict,
         warnings=above,

@@ -54,26 +54,29 @@ class Load:
             if given is not None
             else compact(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
-        self.given = "" if given is None else _shortened_load(given, float(getattr(arm.si, self.name)), si)
+        self.typed_text = (
+            "" if given is None else _shortened_load(given, float(getattr(arm.si, self.name)), si)
+        )
         """The load as the user typed it, rounded by `_shortened_load` if long; empty if the arm has no
         load."""
-        self.scale = written_in(arm.load_scale, self.unit, si)
+        self.load_at_unit_force = written_in(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
     def of(self, forces: Span) -> str:
         """A range of forces in k3/L^2, as text in the unit of the load."""
-        return f"{range_text(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
+        low, high = (F * self.load_at_unit_force for F in (forces.low, forces.high))
+        return f"{range_text(low, high)} {self.unit}"
 
     def at_most(self, F: float) -> str:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
-        value = F * self.scale
+        value = F * self.load_at_unit_force
         unit = 10.0 ** (floor(log10(value)) - 2)
         return f"{three_digits(floor(value / unit * (1 + ROUNDING_TOLERANCE)) * unit)} {self.unit}"
 
 
 def _shortened_load(given: object, value: float, si: str) -> str:
-    """The load `given` as the user typed it, rounded to four digits if its number is long. A load given as a
-    number is written in the SI unit `si`, in which it is `value`.
+    """The load `typed_text` as the user typed it, rounded to four digits if its number is long. A load given
+    as a number is written in the SI unit `si`, in which it is `value`.
     """
     if not isinstance(given, str):
         return f"{value:.4g} {si}"

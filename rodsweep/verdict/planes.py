@@ -22,14 +22,14 @@ class PlaneOfMotion:
     arm: SlenderArm
     """The arm, with its cross-section turned so that the height of the section lies in the plane of
     motion."""
-    found: FlutterRange
+    flutter_range: FlutterRange
     name: str = ""
     """Name of the plane, such as "the plane of its height"; empty if all planes of motion are equivalent."""
 
     @property
     def flutter_loads(self) -> list[float]:
         """Force of the first flutter, in N, for each drag; inf for a drag without flutter."""
-        forces = [each.force(ChangeKind.hopf) for each in self.found.forces]
+        forces = [each.force(ChangeKind.hopf) for each in self.flutter_range.forces]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
@@ -78,10 +78,10 @@ def with_load(planes: Planes) -> Planes:
     load = first.arm.load
     if share is None or load is None:
         return planes
-    force = first.found.forces[0].force(ChangeKind.hopf)
+    force = first.flutter_range.forces[0].force(ChangeKind.hopf)
     scale = first.arm.load_scale
     if force is None:
-        end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"
+        end = f"{float(f'{first.flutter_range.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
             f"not flutter up to {end}; give an absolute load"

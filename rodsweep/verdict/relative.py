@@ -134,9 +134,9 @@ def _first_up_to(path: Path, end: float) -> float:
 
 
 def _first_of_varied(path: Path, end: float) -> float:
-    """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Uses a search
-    along F for arms that are not uniform or not of linear material. Raises FlutterSearchFailed if the search
-    fails or a smaller F is not excluded.
+    """For arms that are not uniform or not of linear material (others: `_first_up_to`): smallest F up to
+    `end` at which a pair of modes becomes unstable; inf if no pair does. Raises FlutterSearchFailed if the
+    search along F fails or a smaller F is not excluded.
     """
     from ..solve.changes.along_path import pair_crossings
     from ..solve.point import FAILURES, cause_of

@@ -23,7 +23,7 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     """
     first, *others = _first_of_each_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
-    at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
+    at = f" at {Load(arm).typed_text}" if assessment.of_thresholds != Validity.does_not_apply else ""
     says = [
         f"The model does not apply{at}: {first.name} is {as_multiple(first)} what the model allows; {remedy}."
     ]

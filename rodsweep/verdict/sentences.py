@@ -20,8 +20,12 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     the reason.
     """
     plane = planes.first
-    if plane.found.failures:
-        return ["For some drags the thresholds could not be found: " + "; ".join(plane.found.failures) + "."]
+    if plane.flutter_range.failures:
+        return [
+            "For some drags the thresholds could not be found: "
+            + "; ".join(plane.flutter_range.failures)
+            + "."
+        ]
     beyond = assessment.effects_with(Validity.does_not_apply)
     if not beyond:
         return [*_verdict(plane), *_second_plane_sentences(planes, "is")]
@@ -32,24 +36,24 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
             *_flutter_without_effects(plane, effect_kinds_in_words(beyond)),
             *_second_plane_sentences(planes, "would be"),
         ]
-    flutter = plane.found.force(ChangeKind.hopf)
+    flutter = plane.flutter_range.force(ChangeKind.hopf)
     known = (
         "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
     )
-    return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]
+    return [*headline, f"{known} is within the model; {Load(plane.arm).typed_text} is not."]
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
     """Sentences on flutter and return to stability of an arm to which the model applies."""
     arm = plane.arm
-    found = plane.found
+    found = plane.flutter_range
     load = Load(plane.arm)
     flutter = found.force(ChangeKind.hopf)
     back = found.force(ChangeKind.restabilization)
     if flutter is None:
-        stays = f": it stays straight at {load.given}" if load.given else ""
+        stays = f": it stays straight at {load.typed_text}" if load.typed_text else ""
         if found.end < arm.F:
-            stays = f": whether the arm beats at {load.given} is not known"
+            stays = f": whether the arm beats at {load.typed_text} is not known"
         return [f"The arm does not flutter {_search_end_clause(plane, load)}{stays}."]
     rate = found.frequency(ChangeKind.hopf)
     beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
@@ -80,23 +84,23 @@ def _load_against_flutter(plane: PlaneOfMotion, flutter: Span, load: Load) -> st
     whether the arm beats.
     """
     F = plane.arm.F
-    found = plane.found
+    found = plane.flutter_range
     where = _flutter_load_text(plane, flutter)
     if F <= 0:
-        return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
+        return f"Flutter is at {where}; {load.typed_text} does not push, and the arm stays straight."
     if flutter.low > F:
         percent = percent_range_text(1 - F / flutter.low, 1 - F / flutter.high)
-        return f"{load.given} is {percent} % below flutter, at {where}: the arm stays straight."
+        return f"{load.typed_text} is {percent} % below flutter, at {where}: the arm stays straight."
     if found.end < F:
         end = load.of(Span(found.end, found.end))
-        unknown = f"whether the arm beats at {load.given} is not known"
+        unknown = f"whether the arm beats at {load.typed_text} is not known"
         return f"Flutter is at {where}; {unknown}: changes were sought up to {end}."
     unstable = found.unstable_at(F)
     if flutter.high < F and not any(unstable):
-        return f"{load.given} is beyond flutter, at {where}: the straight arm is stable again."
+        return f"{load.typed_text} is beyond flutter, at {where}: the straight arm is stable again."
     if not all(unstable):
-        return f"{load.given} lies in the range of flutter, {where}: drag decides whether the arm beats."
-    return f"{load.given} is {_excess_text(F, flutter)} flutter, at {where}: the arm beats."
+        return f"{load.typed_text} lies in the range of flutter, {where}: drag decides whether the arm beats."
+    return f"{load.typed_text} is {_excess_text(F, flutter)} flutter, at {where}: the arm beats."
 
 
 def _excess_text(F: float, flutter: Span) -> str:
@@ -110,7 +114,7 @@ def _excess_text(F: float, flutter: Span) -> str:
 def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
-    found = plane.found
+    found = plane.flutter_range
     load = Load(plane.arm)
     flutter = found.force(ChangeKind.hopf)
     rate = found.frequency(ChangeKind.hopf)
@@ -126,7 +130,7 @@ def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
         place = _excess_text(arm.F, flutter)
     else:
         place = "inside the range of"
-    return [*says, f"{load.given} would be {place} that threshold."]
+    return [*says, f"{load.typed_text} would be {place} that threshold."]
 
 
 def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
@@ -136,9 +140,9 @@ def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     second = planes.second
     if second is None:
         return []
-    if second.found.failures:
+    if second.flutter_range.failures:
         return [f"The threshold in {second.name} could not be found."]
-    flutter = second.found.force(ChangeKind.hopf)
+    flutter = second.flutter_range.force(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second.name} there {verb} no flutter {_search_end_clause(second, Load(second.arm))}."]
     decides = "" if planes.always_first else "; for part of the range of drag, flutter starts in this plane"
@@ -147,8 +151,8 @@ def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
 
 def _search_end_clause(plane: PlaneOfMotion, load: Load) -> str:
     """Clause that states the load at which the search ends, and whether this load crushes the arm."""
-    end = load.of(Span(plane.found.end, plane.found.end))
-    if plane.found.end > 0.999 * plane.arm.crushing_force:
+    end = load.of(Span(plane.flutter_range.end, plane.flutter_range.end))
+    if plane.flutter_range.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 

@@ -27,7 +27,7 @@ from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.request import KINDS, ROOTS
+from rodsweep.post.figures.request import FIGURE_KINDS, ROOT_CHOICES
 
 pytestmark = pytest.mark.usefixtures("not_fitted")
 
@@ -541,8 +541,8 @@ def test_sentences_of_the_command_are_in_the_words_of_python(command, python):
 def test_choices_of_a_figure_are_those_of_the_command():
     choices = {o.name: o.type.choices for o in commands.commands["plot"].params if hasattr(o.type, "choices")}
     assert {name: tuple(words) for name, words in choices.items()} == {
-        "roots": ROOTS,
-        "what": KINDS,
+        "roots": ROOT_CHOICES,
+        "what": FIGURE_KINDS,
     }
 
 

@@ -19,7 +19,13 @@ from rodsweep.cli.checking import print_job_check
 from rodsweep.post.headline.one_rod import ColumnTexts
 from rodsweep.post.headline.sentences import HEADLINES
 from rodsweep.post.summary import show_summary
-from rodsweep.post.tables.alignment import blocks, column_cells, point_aligned, rewrap_line, rows_with_prose
+from rodsweep.post.tables.alignment import (
+    column_cells,
+    point_aligned,
+    rewrap_line,
+    rows_with_prose,
+    table_blocks,
+)
 from rodsweep.post.tables.columns import Column
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
@@ -86,7 +92,7 @@ def test_columns_are_aligned_in_blocks_within_the_window(seed):
         for _ in names[1:]
     ]
     cells = [column_cells((name, "k3/L^2"), column) for name, column in zip(names, columns, strict=True)]
-    found = [line for block in blocks(cells) for line in (*block, "")]
+    found = [line for block in table_blocks(cells) for line in (*block, "")]
     assert max(map(len, found)) <= WINDOW
     assert not list(flaws_of_columns("\n".join(["", *found])))
     told = " ".join(found).split()

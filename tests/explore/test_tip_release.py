@@ -129,7 +129,7 @@ def test_the_film_shows_the_shapes_of_a_period():
 def test_the_film_of_an_arm_that_was_let_go_is_that_of_its_motion():
     solvers = ImmediateSolvers(("cycle",))
     page = page_with(solvers, "tab=arm")
-    film = page._connections()["film"]
+    film = page._callbacks()["film"]
     film()
     assert solvers.questions[-1].tip is None
     drag(page, "let go", 6.0, 5.0)

@@ -10,7 +10,7 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.post.branch_curves import RodBranches, ends_of, intersection, union
+from rodsweep.post.branch_curves import RodBranches, branch_ends, intersection, union
 
 from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
 from .truths import leading
@@ -171,7 +171,7 @@ def _ranges_line(page, line, true):
 def _beside(fine, rod):
     """Where stable cycles are beside a stable straight rod."""
     stable = union(piece for curve in RodBranches(fine, rod).curves for piece in curve.stable_ranges)
-    return intersection(stable, RodBranches(fine, rod).straight_ranges(ends_of(fine))[0])
+    return intersection(stable, RodBranches(fine, rod).straight_ranges(branch_ends(fine))[0])
 
 
 def _pairs(curves):

@@ -187,7 +187,7 @@ def wrong_figure(task, keywords, choices, width):
             if "that could be drawn" in str(refused) or "which needs" in str(refused)
             else [("refused", str(refused))]
         ), None
-    d, listed = Drawing(figures[0], sentence), view.listed
+    d, listed = Drawing(figures[0], sentence), view.as_list
     fine = functools.cache(lambda: solved(task, keywords | {"accuracy": FINE[task]}))
     of_arms = view.arm_axes and not choices and task in ("thresholds", "spectrum", "modes", "limit_cycle")
     found = arm_figure(d, view, listed, fine) if of_arms else CHECKS[task](d, listed, fine)

@@ -190,7 +190,7 @@ def _drawn(random, name, count):
 
 def solved(task, keywords):
     """The results of a sweep, as `show` sees them."""
-    return view_of_dataset(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5")).listed
+    return view_of_dataset(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5")).as_list
 
 
 def wrong_sentences(task, keywords):

@@ -19,7 +19,7 @@ from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.layout import remembered_ticks
-from rodsweep.post.figures.layout.fitting import WORD_PATTERN, break_lines, fit
+from rodsweep.post.figures.layout.fitting import WORD_PATTERN, break_lines, fit_layout
 from rodsweep.post.figures.layout.ticks import visible_labels
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.style import FIGURE_STYLE
@@ -293,7 +293,7 @@ def test_a_figure_whose_text_leaves_no_room_for_its_panel_grows():
     figure = Figure(figsize=(3, 1), layout="constrained")
     axes = figure.subplots()
     figure.suptitle("\n".join(["a line"] * 8))
-    fit(figure, 0.5)
+    fit_layout(figure, 0.5)
     figure.draw_without_rendering()
     assert axes.bbox.height >= 0.45 * axes.bbox.width
     assert figure.get_size_inches()[0] == 3
@@ -308,8 +308,8 @@ def places(axis_ticks_remembered):
     below.secondary_xaxis("top", functions=(lambda x: 2 * x, lambda x: x / 2)).set_xlabel("twice")
     with pytest.MonkeyPatch.context() as patch:
         if not axis_ticks_remembered:
-            patch.setattr(remembered_ticks, "FOUND_BY", ("absent in other releases",))
-        fit(figure)
+            patch.setattr(remembered_ticks, "CACHED_METHODS", ("absent in other releases",))
+        fit_layout(figure)
     found = [panel.get_position().bounds for panel in figure.axes]
     for panel in figure.axes:
         for axis in (panel.xaxis, panel.yaxis):

@@ -19,13 +19,13 @@ from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.lists import number_points
 from rodsweep.post.figures.request import FigureLook
-from rodsweep.post.figures.sections import section
+from rodsweep.post.figures.sections import section_at_values
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, pixel_classes
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
-from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number, scale
+from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -113,7 +113,7 @@ def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, drawn):
     rod = "{F: {start: 0, stop: 240, num: 13}, k1: [150, 200], k2: 1.0e4, gamma3: 1.0e-4, gamma1: 0.7}"
     command.write("c.yaml", f"task: phase_diagram\nparameters: {rod}\nphase_diagram: {{criticality: true}}\n")
     command.solved("c.yaml")
-    row = section(read_view(command.directory / "c.h5"), {"k1": 200.0})
+    row = section_at_values(read_view(command.directory / "c.h5"), {"k1": 200.0})
     assert draw(row, command.directory / "f.png").endswith("f.png: behaviour of the rod over F")
     (bar,) = drawn[0].axes[0].collections
     edges, found = np.array(bar.get_coordinates()[0, :, 0]), np.array(bar.get_array()).ravel()
@@ -214,7 +214,7 @@ def _with_force(job, force):
     ],
 )
 def test_powers_of_ten_are_written_as_such(value, written):
-    assert number(value) == written
+    assert number_in_tex(value) == written
 
 
 def test_labels_of_dimensionless_parameters_have_no_unit():
@@ -293,7 +293,11 @@ def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, drawn):
 
 
 def test_few_digits_of_a_large_number_are_written_with_a_power_of_ten():
-    assert [number(value, 3) for value in (2236.07, 200.0, 999.9)] == [r"2.24\times10^{3}", "200", "10^{3}"]
+    assert [number_in_tex(value, 3) for value in (2236.07, 200.0, 999.9)] == [
+        r"2.24\times10^{3}",
+        "200",
+        "10^{3}",
+    ]
 
 
 def drawn_of(command, monkeypatch, config, points=""):
@@ -445,7 +449,7 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
     command.write("c.yaml", LINE)
     command("run", "c.yaml", "--set", "parameters.k2=[50, 100]", "--set", "spectrum.modes=3", "-o", "grid.h5")
     command("run", "c.yaml", "--set", "spectrum.modes=3", "-o", "line.h5")
-    cut = section(read_view(command.directory / "grid.h5"), {"k2": 100.0})
+    cut = section_at_values(read_view(command.directory / "grid.h5"), {"k2": 100.0})
     line = read_view(command.directory / "line.h5")
     assert cut.variables["status"].shape == line.variables["status"].shape
     for name in ("F", "k2", "growth_rate", "frequency"):
@@ -496,7 +500,7 @@ def test_thresholds_of_every_value_are_lines_or_cells_of_a_map(command, monkeypa
 )
 def test_ticks_of_an_axis_are_all_written_the_same_way(low, high, written):
     axes = Figure().subplots()
-    scale(axes, "x", np.geomspace(low, high, 5))
+    scale_axis(axes, "x", np.geomspace(low, high, 5))
     axes.set_xlim(low, high)
     axes.figure.draw_without_rendering()
     shown = [

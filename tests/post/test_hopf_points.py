@@ -81,7 +81,7 @@ def test_points_that_are_listed_make_the_lines_that_a_grid_makes(tmp_path):
 
 def changes_on(view, name="F"):
     (line,) = lines_over(view.point_columns, name)
-    return StoredChanges(view, name).on(line)
+    return StoredChanges(view, name).thresholds_on(line)
 
 
 def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
@@ -320,7 +320,7 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     view.variables.update(found | {"linear_growth_rate": np.ones((2, 1, 1, 1, 1))})
     stored = StoredChanges(view, "F")
     (line,) = lines_over(view.point_columns, "F")
-    assert stored.on(line) == []
+    assert stored.thresholds_on(line) == []
     assert [point.position for point in stored.up_to(line)] == pytest.approx(WINDOW[:1], rel=1e-12)
     (sentence,), _ = stability_lines(view, "F", stored.up_to)
     assert sentence.startswith("F** (straight rod starts to beat): 49.7580049161")

@@ -9,8 +9,8 @@ from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
 from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
-from rodsweep.post.summary.errors import errors_of, span_of
-from rodsweep.post.summary.ranges import to_error
+from rodsweep.post.summary.errors import absolute_errors, known_range_text
+from rodsweep.post.summary.ranges import number_with_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdStatus
@@ -125,9 +125,9 @@ def test_the_time_of_a_growth_that_is_hardly_known_from_1_is_not_told():
         "transient_time": np.array([2.0, 0.04]),
         "growth_error": np.array([1e-5, 2e-4]),
     }
-    assert errors_of(v, "transient_time")[0] == pytest.approx(0.2, rel=1e-3)
-    assert span_of(v, "transient_time", np.array([True, True])) == "2"
-    assert span_of(v, "transient_time", np.array([False, True])) == "none"
+    assert absolute_errors(v, "transient_time")[0] == pytest.approx(0.2, rel=1e-3)
+    assert known_range_text(v, "transient_time", np.array([True, True])) == "2"
+    assert known_range_text(v, "transient_time", np.array([False, True])) == "none"
 
 
 @pytest.mark.parametrize("task", ["spectrum", "modes"])
@@ -241,4 +241,4 @@ def test_all_statuses_are_listed_on_request(command):
     ],
 )
 def test_a_number_has_the_digits_that_its_error_leaves(value, error, text):
-    assert to_error(value, error) == text
+    assert number_with_error(value, error) == text

@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.post.figures.stability.class_bars import draw_class_bars
 from rodsweep.post.figures.stability.diagram_curves import boundaries_to_name, force_of_plane
-from rodsweep.post.stability_curves import bounds_stability
+from rodsweep.post.stability_curves import curves_bounding_stability
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 
@@ -36,7 +36,7 @@ def diagram():
 
 def test_the_boundary_is_the_curve_on_which_the_rows_change_their_stability():
     view = diagram()
-    assert bounds_stability(view, "k1", "k2") == {1: False, 2: True}
+    assert curves_bounding_stability(view, "k1", "k2") == {1: False, 2: True}
     (named,) = boundaries_to_name(view, 1, "k1", "k2")
     assert (view.variables["curve_number"][named] == 2).all()
 

@@ -62,14 +62,14 @@ def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
 def test_stretches_to_do_are_those_that_miss_a_point(shape):
     stretches = stretches_along_longest_axis(shape, EVERY[: len(shape)])
     count = math.prod(shape)
-    assert stretches.todo([(0, count)]) == [(0, stretches.count)]
-    assert stretches.missing_in([(0, stretches.count)], [(0, count)]) == count
+    assert stretches.unsolved_ranges([(0, count)]) == [(0, stretches.count)]
+    assert stretches.missing_total([(0, stretches.count)], [(0, count)]) == count
     missing = [(0, 2), (5, 6), (count - 1, count)] if count > 9 else [(3, 4)]
     lacks = IndexSet(missing)
     expected = [n for n in range(stretches.count) if lacks[stretches.indices(n)].any()]
-    todo = stretches.todo(missing)
+    todo = stretches.unsolved_ranges(missing)
     assert [n for ends in todo for n in range(*ends)] == expected
-    assert stretches.missing_in(todo, missing) == index_count(missing)
+    assert stretches.missing_total(todo, missing) == index_count(missing)
 
 
 def test_of_a_stretch_only_missing_points_are_kept():

@@ -15,7 +15,7 @@ from rodsweep.api.keyword_arguments import config_tree, job_from
 from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
-from rodsweep.post.figures.sections import section
+from rodsweep.post.figures.sections import section_at_values
 from rodsweep.results.file.view import read_view
 
 ROOT = Path(__file__).parents[2]
@@ -76,10 +76,10 @@ def test_values_are_selected_by_the_quantities_in_si(thresholds):
 def test_a_section_has_the_points_of_a_quantity_in_any_unit(thresholds):
     view = view_of_dataset(thresholds, Path("arm.h5"))
     for length in ("10 cm", "100 mm", 0.1):
-        cut = section(view, {"length": length, "young": "0.1 MPa"})
+        cut = section_at_values(view, {"length": length, "young": "0.1 MPa"})
         assert cut.variables["F_hopf"].tolist() == [[thresholds.F_hopf.sel(length=0.1, young=1e5).item()]]
     with pytest.raises(rs.InputError, match=r"has no point there; it has length = 0\.04, 0\.1, 0\.12"):
-        section(view, {"length": "11 cm"})
+        section_at_values(view, {"length": "11 cm"})
 
 
 def test_a_force_is_told_as_a_force():
@@ -279,7 +279,7 @@ def test_a_list_of_a_grid_has_every_point_in_its_order(command):
     command.write("a.yaml", CONFIG)
     command.solved("a.yaml")
     view = read_view(command.directory / "a.h5")
-    listed = view.listed
+    listed = view.as_list
     assert not view.is_grid
     assert listed.variables["growth_rate"].shape == (72, 2)
     places = np.unravel_index(np.arange(72), (3, 2, 12))

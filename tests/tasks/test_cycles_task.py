@@ -422,9 +422,9 @@ def test_chains_hold_every_point_once_in_order_along_their_axis(axis, upward):
 
 def test_chains_that_miss_a_point_are_to_be_done():
     chains = Chains((3, 4), 0, True)
-    assert chains.todo(IndexSet([(0, 12)])) == [(0, 4)]
-    assert chains.todo(IndexSet([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
-    assert chains.todo(IndexSet([])) == []
+    assert chains.unsolved_ranges(IndexSet([(0, 12)])) == [(0, 4)]
+    assert chains.unsolved_ranges(IndexSet([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
+    assert chains.unsolved_ranges(IndexSet([])) == []
 
 
 class Count:

@@ -15,8 +15,8 @@ from ...config.document.call_arguments import refusing_wrong_arguments, unknown_
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.figures import draw
-from ...post.figures.request import KINDS, ROOTS, Drawing, FigureLook, Shapes
-from ...post.figures.sections import choices_of, section
+from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, Shapes
+from ...post.figures.sections import checked_section_values, section_at_values
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
@@ -133,11 +133,11 @@ class Picture:
         return draw(self.views, Path(path), **self.choices)
 
     @one_at_a_time
-    def figure(self) -> Drawing:
+    def figure(self) -> FigureClass:
         """A new `matplotlib.figure.Figure`, whose axes are ordered row by row; InputError for an
         animation.
         """
-        drawn: list[Drawing] = []
+        drawn: list[FigureClass] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
         draw(self.views, name, keep=drawn.append, **self.choices)
         return drawn[0]
@@ -175,7 +175,7 @@ def plot(
             raise unknown_argument_error(
                 name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
             )
-    _require_allowed_choices(roots=(roots, ROOTS), what=(what, KINDS))
+    _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")
@@ -184,8 +184,8 @@ def plot(
         raise InputError(
             f"{short_repr(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
         )
-    values = choices_of(at)
-    views = [section(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
+    values = checked_section_values(at)
+    views = [section_at_values(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
     file = None if output is None else named_file_path(output, PLOT_EXAMPLE)

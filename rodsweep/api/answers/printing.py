@@ -12,11 +12,11 @@ from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
 from ...post.tables.alignment import (
     COLUMN_GAP,
-    WIDTH,
-    Line,
-    blocks,
+    LINE_WIDTH,
+    RowCells,
     column_cells,
     rows_with_prose,
+    table_blocks,
     wrap_cell_text,
 )
 from ...post.tables.columns import Column
@@ -113,7 +113,7 @@ def whole_text(printed: PrintedAnswer) -> str:
             digits = printed.rod.lists[name]
             kept = [column for column in columns if not column.absent.all()]
             cells = [column_cells((c.name, _unit_text(c)), digits.texts(c.name)) for c in kept]
-            for number, block in enumerate(blocks(cells)):
+            for number, block in enumerate(table_blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
     return "\n\n".join(filter(None, [*parts, "\n".join(map(wrap_cell_text, printed.closing_lines))]))
@@ -180,7 +180,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     digits = printed.rod.lists.get(printed.headline.table)
     if digits is None:
         return [], 0
-    names = [printed.rod.preferred(digits, name) for name in printed.headline.columns]
+    names = [printed.rod.preferred_name(digits, name) for name in printed.headline.columns]
     columns = [digits.columns[name] for name in names if name in digits.columns]
     columns = [column for column in columns if not column.absent.all()]
     count = len(columns[0].values) if columns else 0
@@ -191,7 +191,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
         added = [column_cells((column.name, _unit_text(column)), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
-        if width > WIDTH:
+        if width > LINE_WIDTH:
             break
         found += added
     return found, count
@@ -205,7 +205,7 @@ def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
         columns, count = _brief_cells(printed, count)
     if not columns:
         return []
-    (block,) = blocks(columns)
+    (block,) = table_blocks(columns)
     return ["", *block] + ([f"and {count - rows} more"] if count > rows + 1 else [])
 
 
@@ -227,8 +227,8 @@ def _html_heading(printed: PrintedAnswer) -> str:
     return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in others)}</p>"
 
 
-def _html_table(heads: Sequence[Line], lines: Sequence[Line]) -> str:
-    def row(cells: Line, tag: str) -> str:
+def _html_table(heads: Sequence[RowCells], lines: Sequence[RowCells]) -> str:
+    def row(cells: RowCells, tag: str) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell.strip())}</{tag}>" for cell in cells) + "</tr>"
 
     body = "".join([*(row(line, "th") for line in heads), *(row(line, "td") for line in lines)])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...config.document.call_arguments import refusing_wrong_arguments
-from ...post.figures.request import Drawing
+from ...post.figures.request import FigureClass
 from ...post.rod_portrait.paragraph import paragraph
 from ...post.rod_portrait.picture import portrait_figure
 from ...post.rod_portrait.results import RodResults
@@ -88,7 +88,7 @@ class RodPortrait:
         return None if view is None else self._task_answer(view)
 
     @one_at_a_time
-    def figure(self) -> Drawing:
+    def figure(self) -> FigureClass:
         """The picture as a new `matplotlib.figure.Figure`, without the paragraph."""
         return portrait_figure(self.results, with_words=False)
 

@@ -49,7 +49,7 @@ class SettlingMethod:
     returns: float
     error: float
     run: Callable[[], object]
-    times: float = 1.0
+    time_factor: float = 1.0
     failed: tuple[str, ...] = ()
 
     @property
@@ -59,7 +59,7 @@ class SettlingMethod:
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
         """Values of a row of `settling_table`, by name. timed: times of `run`."""
-        about = "about " if self.times != 1 else ""
+        about = "about " if self.time_factor != 1 else ""
         return {
             "force": self.force,
             "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
@@ -67,7 +67,9 @@ class SettlingMethod:
             "returns": f"{about}{self.returns:.0f}"
             if self.reaches_cycle
             else f"not reached in {WAITING_PERIODS} periods",
-            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.reaches_cycle else "",
+            "milliseconds": f"{about}{1e3 * self.time_factor * timed.median:.0f}"
+            if self.reaches_cycle
+            else "",
             "error": self.error if self.reaches_cycle else nan,
         }
 

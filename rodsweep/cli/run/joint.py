@@ -12,7 +12,7 @@ from ...results.run.checkpoints import ItemResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
-from ...sweep.loop import Indices, Loop, RankWork, sweep
+from ...sweep.loop import Indices, RankWork, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
@@ -52,11 +52,11 @@ class JointWork:
         function called with every unforeseen exception; the half curve then stays empty.
         """
         self.team = team
-        self.together = together
+        self.joint_variables = together
         self.output = output
         self.note = note
         self.stop = stop
-        self.kept = ItemResults(journal_directory(output), fingerprint)
+        self.item_results = ItemResults(journal_directory(output), fingerprint)
         self.results: dict[int, NamedArrays] = {}
         """Results of all finished half curves, by number, on the first rank only."""
 
@@ -68,7 +68,7 @@ class JointWork:
         found: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
-            self.kept.write(int(item), result)
+            self.item_results.write(int(item), result)
             found[int(item)] = result
 
         def take_results() -> dict[int, NamedArrays]:
@@ -78,7 +78,7 @@ class JointWork:
 
         todo = ChunkQueue([], self.team.size)
         if self.team.first:
-            self.results = self.kept.read()
+            self.results = self.item_results.read()
             todo = DependentItemQueue(items, self.results, self.team.size)
         self._exchange_starts(items)
         shown = (
@@ -86,8 +86,8 @@ class JointWork:
             if self.team.first and title
             else SilentProgress()
         )
-        loop = Loop(
-            solve=lambda item: self._solved(items, item),
+        loop = SweepCallbacks(
+            solve=lambda item: self._solve_item(items, item),
             store=keep,
             prepare=prepare,
             new_results=take_results,
@@ -103,18 +103,18 @@ class JointWork:
         these points again. items: half curves, as in `PendingJointWork`.
         """
         chosen = self.team.on_first(lambda: items.items_to_solve(self.results))
-        for starts in self.team.exchange(self.together.initial_data(items, chosen)):
-            self.together.add_initial_data(starts)
+        for starts in self.team.exchange(self.joint_variables.initial_data(items, chosen)):
+            self.joint_variables.add_initial_data(starts)
 
-    def _solved(self, items: Any, item: int) -> Iterable[tuple[int, NamedArrays]]:
+    def _solve_item(self, items: Any, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
-            yield item, self.together.solve(items, item)
+            yield item, self.joint_variables.solve(items, item)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             destroy_pooled_solvers()
             self.note(items.item_label(item), error)
-            yield item, self.together.empty_result()
+            yield item, self.joint_variables.empty_result()
 
     def variables(self, items: Any) -> Sequence[FilledVariable] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
@@ -123,5 +123,5 @@ class JointWork:
         if items is not None and items.items_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
-            return self.together.variables(read_view(self.output), items, self.results)
+            return self.joint_variables.variables(read_view(self.output), items, self.results)
         return None

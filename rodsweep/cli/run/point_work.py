@@ -15,7 +15,7 @@ from ...results.file.creation import Plan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, journalled_points_clause
 from ...sweep.chunk_queue import ChunkQueue
-from ...sweep.loop import Indices, Loop, sweep
+from ...sweep.loop import Indices, SweepCallbacks, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
 from ...sweep.points.stretches import StretchResult, StretchSolver
@@ -54,14 +54,14 @@ class PointWork:
         """
         if self.solver.stretched is not None:
             stretches = self.solver.stretched[0]
-            items = self.shard.ranges_of_shard(stretches.todo(missing), stretches.count)
-            return items, stretches.missing_in(items, missing)
+            items = self.shard.ranges_of_shard(stretches.unsolved_ranges(missing), stretches.count)
+            return items, stretches.missing_total(items, missing)
         if self.solver.chained is None:
             items = self.shard.ranges_of_shard(missing, self.job.points.count)
             return items, index_count(items)
         lacks = IndexSet(missing)
         chains = self.solver.chained.chains
-        items = self.shard.ranges_of_shard(chains.todo(lacks), chains.count)
+        items = self.shard.ranges_of_shard(chains.unsolved_ranges(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for item in items for chain in range(*item))
         return items, int(sum(each))
 
@@ -91,7 +91,7 @@ class PointWork:
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_item(IndexSet(missing), directory)
-                loop = Loop(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
+                loop = SweepCallbacks(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
                 share = sweep(self.team, ChunkQueue(items, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(

@@ -50,7 +50,7 @@ class _RankRun:
     """The part of a run that this rank executes."""
 
     store: Store
-    """The result file, on the first rank, after `_open`."""
+    """The result file, on the first rank, after `_open_store`."""
 
     def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
         from ...solve.backend.blas_kernel import blas
@@ -61,8 +61,8 @@ class _RankRun:
         self.stop = stop
         self.options = options
         self.shard = options.shard
-        self.began = time.monotonic()
-        self.started = provenance.utc_time()
+        self.clock_at_start = time.monotonic()
+        self.date_at_start = provenance.utc_time()
         self.seconds = 0.0
         self.log = TracebackLog(output, team.rank, self._file_and_folder_text, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
@@ -94,7 +94,7 @@ class _RankRun:
                 report_stop(self.team, self.stop)
                 return STOPPED_STATUS
             self.plan = plan
-        missing = self.team.on_first(self._open)
+        missing = self.team.on_first(self._open_store)
         items, count = self.work.items(missing)
         if self.team.first:
             points = self.job.points.count
@@ -127,10 +127,10 @@ class _RankRun:
         points are still missing, with their work items. count: number of points to be solved in this run.
         contributions: reports of all ranks.
         """
-        self.seconds = time.monotonic() - self.began
+        self.seconds = time.monotonic() - self.clock_at_start
         if count:
             history = run_history(contributions, self.team.MPI.Get_library_version())
-            started = {"started": self.started, "stopped": self.stop.name}
+            started = {"started": self.date_at_start, "stopped": self.stop.name}
             self.store.add_journals(last_run_attributes(self.plan) | history | started)
         if not self._lacks_joint_variables(index_count(self.store.missing())):
             return PendingJointWork(False)
@@ -138,18 +138,18 @@ class _RankRun:
             return PendingJointWork(True)
         if not count:
             self._record_blas_kernels()
-        return PendingJointWork(True, self.joint.together.items(read_view(self.output)))
+        return PendingJointWork(True, self.joint.joint_variables.items(read_view(self.output)))
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
         if amiss or not self.options.quiet:
             click.echo(text)
 
-    def _open(self) -> list[IndexRange]:
+    def _open_store(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
         if self.joint and (self.options.fresh or not self._lacks_joint_variables(0)):
-            self.joint.kept.drop()
+            self.joint.item_results.drop()
         self._print_store_notes()
         return self.store.missing()
 
@@ -183,7 +183,7 @@ class _RankRun:
             return True
         self.store.finish({"finished": provenance.utc_time(), "stopped": self.stop.name}, variables)
         if self.joint:
-            self.joint.kept.drop()
+            self.joint.item_results.drop()
         return False
 
     def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
@@ -195,7 +195,7 @@ class _RankRun:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
-    def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
+    def _outcome_text(self, counts: Mapping[str, int], left: int) -> str:
         """Text with the number of points of each status. counts: numbers by status. left: number of points of
         this run that are not solved.
         """
@@ -226,8 +226,8 @@ class _RankRun:
             unsolved=left,
             stored=self.job.points.count - index_count(missing),
             seconds=self.seconds,
-            curve_seconds=time.monotonic() - self.began - self.seconds,
-            interrupted=sum(contribution.share.ended for contribution in contributions),
+            curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
+            interrupted=sum(contribution.share.was_interrupted for contribution in contributions),
             followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
             stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
@@ -235,7 +235,7 @@ class _RankRun:
             self._print_message(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._print_message(f"{self.output}: {self._outcomes(counts, left)}", amiss)
+        self._print_message(f"{self.output}: {self._outcome_text(counts, left)}", amiss)
         self._print_failures(contributions, exceptions)
         if left or lacks_joint_variables_in:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

@@ -62,7 +62,7 @@ class BeatingPicture:
             arguments = {"figure": figure, "grip": self.grip, "phase": phase}
             figure.js_on_event(event, CustomJS(args=arguments, code=template_text("grip.js")))
         self.card = Card("beating", figure)
-        self.card.entitle("")
+        self.card.set_title("")
 
     def animation(self) -> CustomJS:
         """Browser script that animates the arm; the page runs this script once, when the document is
@@ -102,11 +102,11 @@ class BeatingPicture:
             f"{n} ({length.label})" for n in "xy"
         )
         is_stable = found["status"] == "cycle"
-        self.card.entitle("" if is_stable or not has_cycle else found["sentence"])
+        self.card.set_title("" if is_stable or not has_cycle else found["sentence"])
         if has_cycle:
-            self.card.reveal()
+            self.card.show_figure()
         else:
-            self.card.tell(sentence_of(found))
+            self.card.show_sentence_above(sentence_of(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
@@ -133,7 +133,7 @@ class BeatingPicture:
         position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = END_WORDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
-        self.card.entitle(f"Let go at ({position}) {self.length.label}: {end}{part}")
+        self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{part}")
 
     def remove_dragged_shape(self) -> None:
         """Removes the shape of a dragged arm and its motion after the release from the picture."""

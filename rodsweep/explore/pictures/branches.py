@@ -71,7 +71,7 @@ class BranchPicture:
         self.point = vertical_line(0, POINT_COLOUR)
         figure.add_layout(self.point)
         self.card = Card("branches", figure)
-        self.card.entitle("")
+        self.card.set_title("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
         """Draws the branches of the answer `found`, with separately solved cycles as dots; the title is the
@@ -103,8 +103,8 @@ class BranchPicture:
         names = ("F", "y", "kind", "period")
         self.special.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
         title = found["sentence"] if found["status"] != "ok" else found.get("source", "")
-        self.card.entitle(title)
-        self.card.reveal()
+        self.card.set_title(title)
+        self.card.show_figure()
 
     def move_point(self, F: float) -> None:
         """Moves the vertical line that marks the load of the page. F: load, in the unit of the axis."""

@@ -99,7 +99,8 @@ def sentence_of(found: dict[str, Any]) -> str:
 
 
 class Card:
-    """A figure, or a sentence in its place. The axes of the figure are invisible until the first `reveal`."""
+    """A figure, or a sentence in its place. The axes of the figure are invisible until the first
+    `show_figure`."""
 
     def __init__(self, name: str, figure: figure, title_lines: int = 1):
         """name: prefix of the names of the Bokeh models. title_lines: number of lines reserved for the title;
@@ -112,24 +113,24 @@ class Card:
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
-    def entitle(self, text: str) -> None:
+    def set_title(self, text: str) -> None:
         """Sets the title of the figure, wrapped to lines of at most TITLE_WIDTH characters."""
         lines = wrap(text, TITLE_WIDTH)
         self.figure.title.text = "\n".join(lines + [NO_TITLE] * (self.title_lines - len(lines)))
 
-    def say(self, sentence: str) -> None:
+    def show_sentence_instead(self, sentence: str) -> None:
         """Hides the figure and shows a sentence in its place."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = False
 
-    def tell(self, sentence: str) -> None:
+    def show_sentence_above(self, sentence: str) -> None:
         """Shows a sentence above the figure, and the figure."""
         self.message.text = escape(sentence)
         self.message.visible = True
         self.figure.visible = True
 
-    def reveal(self) -> None:
+    def show_figure(self) -> None:
         """Shows the figure with its axes."""
         self.message.visible = False
         self._paint_axes(1.0)

@@ -167,7 +167,7 @@ class DiagramPicture:
         set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = second.label
-        self.card.reveal()
+        self.card.show_figure()
 
     def _show_curves(self, found: dict[str, Any]) -> None:
         x, y, kinds = _curves_of_answer(found, "curve")

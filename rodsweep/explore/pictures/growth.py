@@ -67,7 +67,7 @@ class GrowthPicture:
         self.point.line_width = 3
         figure.add_layout(self.point)
         self.card = Card("growth", figure, title_lines=2)
-        self.card.entitle("")
+        self.card.set_title("")
 
     def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
         """Draws the growth rates of the answer `found`. load: horizontal axis."""
@@ -80,7 +80,7 @@ class GrowthPicture:
         set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
         self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"
-        self.card.reveal()
+        self.card.show_figure()
 
     def show_thresholds(self, found: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `found`, and writes the first threshold of each kind into the
@@ -94,7 +94,7 @@ class GrowthPicture:
         ]
         names = ("F", "kind", "colour", "frequency")
         self.lines.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
-        self.card.entitle(threshold_title(found, load))
+        self.card.set_title(threshold_title(found, load))
 
     def move_point(self, F: float) -> None:
         """Moves the thick line that marks the load of the page. F: load, in the unit of the axis."""

@@ -36,7 +36,7 @@ class SpectrumPicture:
         figure.add_layout(vertical_line(0, NEUTRAL_COLOUR, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
         self.card = Card("spectrum", figure)
-        self.card.entitle("")
+        self.card.set_title("")
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws the eigenvalues of `found`, an answer of the task `spectrum`; if no eigenvalue is known,
@@ -46,7 +46,7 @@ class SpectrumPicture:
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
         if not known.any():
-            self.card.say(sentence_of(found))
+            self.card.show_sentence_instead(sentence_of(found))
             return
         growth = growth[known]
         frequency = frequency[known]
@@ -59,8 +59,8 @@ class SpectrumPicture:
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
         )
-        self.card.entitle(unstable_count_sentence(found))
-        self.card.reveal()
+        self.card.set_title(unstable_count_sentence(found))
+        self.card.show_figure()
 
 
 def unstable_count_sentence(found: dict[str, Any]) -> str:
@@ -99,8 +99,8 @@ class ModePicture:
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():
-            self.card.say(sentence_of(found))
+            self.card.show_sentence_instead(sentence_of(found))
             return
         self.source.data = source_columns(u=found["u"], real=real, imaginary=imaginary)
         set_axis_range(self.card.figure.y_range, *axis_limits(np.append(real, imaginary)))
-        self.card.reveal()
+        self.card.show_figure()

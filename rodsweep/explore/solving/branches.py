@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...post.branch_curves import RodBranches, runs_of
+from ...post.branch_curves import RodBranches, stability_runs
 
 BranchPiece = tuple[Array, Array, int]
 """(F, largest y of the tip, stability) of a part of a branch; F and y: (vertices,). Stability: 1 stable, 0
@@ -19,7 +19,9 @@ def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
     special: (F, y, kind, period) of each special point except ends of branches.
     """
     pieces: list[BranchPiece] = [
-        (curve.at[run], curve.y[run], stable) for curve in rod.curves for run, stable in runs_of(curve.stable)
+        (curve.at[run], curve.y[run], stable)
+        for curve in rod.curves
+        for run, stable in stability_runs(curve.stable)
     ]
     straight = rod.straight_pieces((0.0, stop))
     pieces += [(np.array([low, high]), np.zeros(2), stable) for low, high, stable in straight]

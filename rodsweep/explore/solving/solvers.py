@@ -63,10 +63,10 @@ class SolverProcess:
     """
 
     def __init__(self, patience: SolverTimeLimits | None = None, niceness: int = 0):
-        self.patience = patience or SolverTimeLimits()
+        self.time_limits = patience or SolverTimeLimits()
         self.niceness = niceness
         self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
-        self.asked: tuple[Key, ReplyCallback, ReplyCallback] | None = None
+        self.current_question: tuple[Key, ReplyCallback, ReplyCallback] | None = None
         self.number = 0
         """Number of questions sent so far. A timer compares this number with the number at which the timer
         was set, and acts only if both are equal."""
@@ -77,7 +77,7 @@ class SolverProcess:
         process."""
         self._process: ForkServerProcess | None = None
         self._connection: Connection[Any, Any] | None = None
-        self._life: Connection[Any, Any] | None = None
+        self._lifetime_pipe: Connection[Any, Any] | None = None
 
     @property
     def pid(self) -> int | None:
@@ -92,13 +92,13 @@ class SolverProcess:
         """
         self.waiting.pop(key, None)
         self.waiting[key] = question, done, progress
-        if self.asked is None:
+        if self.current_question is None:
             self._send_next()
-        elif self.asked[0] == key:
+        elif self.current_question[0] == key:
             age = time.monotonic() - self.since
             number = self.number
             IOLoop.current().call_later(
-                max(0.0, self.patience.interrupt - age), lambda: self._cancel(number, key)
+                max(0.0, self.time_limits.interrupt - age), lambda: self._cancel(number, key)
             )
 
     def cancel_session(self, session: str) -> None:
@@ -107,13 +107,13 @@ class SolverProcess:
         """
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
-        if self.asked is not None and self.asked[0][0] == session:
+        if self.current_question is not None and self.current_question[0][0] == session:
             self._interrupt(self.number)
 
     def drop(self, key: Key) -> None:
         """Removes the question with the given key from the queue, and cancels its solve if it has started."""
         self.waiting.pop(key, None)
-        if self.asked is not None and self.asked[0] == key:
+        if self.current_question is not None and self.current_question[0] == key:
             self._interrupt(self.number)
 
     def close(self) -> None:
@@ -127,7 +127,7 @@ class SolverProcess:
             return
         start_fork_server()
         self._connection, theirs = FORK_SERVER.Pipe()
-        watched, self._life = FORK_SERVER.Pipe(duplex=False)
+        watched, self._lifetime_pipe = FORK_SERVER.Pipe(duplex=False)
         self._process = FORK_SERVER.Process(
             target=worker.answer_questions, args=(theirs, watched, self.niceness), daemon=True
         )
@@ -145,7 +145,7 @@ class SolverProcess:
         question, done, progress = self.waiting.pop(key)
         self.start()
         assert self._connection is not None
-        self.asked = (key, done, progress)
+        self.current_question = (key, done, progress)
         self.since = time.monotonic()
         self.number += 1
         self._connection.send(question)
@@ -160,15 +160,15 @@ class SolverProcess:
         if reply.outcome == "ready":
             self.is_ready = True
             return
-        asked = self.asked
+        asked = self.current_question
         if reply.outcome == "progress":
             if asked is not None:
                 asked[2](reply)
             return
-        self.asked = None
+        self.current_question = None
         if asked is not None and reply.outcome != "cancelled":
             asked[1](reply)
-        if self.asked is None:
+        if self.current_question is None:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
@@ -179,33 +179,33 @@ class SolverProcess:
             self._interrupt(number)
 
     def _interrupt(self, number: int) -> None:
-        if self.asked is None or number != self.number or self._process is None:
+        if self.current_question is None or number != self.number or self._process is None:
             return
         if not self.is_ready:
             IOLoop.current().call_later(INTERRUPT_RETRY, lambda: self._interrupt(number))
             return
         if self._process.is_alive() and self._process.pid is not None:
             os.kill(self._process.pid, signal.SIGINT)
-        IOLoop.current().call_later(self.patience.kill, lambda: self._kill(number))
+        IOLoop.current().call_later(self.time_limits.kill, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
-        if self.asked is None or number != self.number:
+        if self.current_question is None or number != self.number:
             return
         self._end()
-        self.asked = None
+        self.current_question = None
         self._send_next()
 
     def _end(self) -> None:
-        if self._process is None or self._connection is None or self._life is None:
+        if self._process is None or self._connection is None or self._lifetime_pipe is None:
             return
         IOLoop.current().remove_handler(self._connection.fileno())
         self._connection.close()
-        self._life.close()
+        self._lifetime_pipe.close()
         if self._process.is_alive():
             self._process.kill()
         self._process.join()
         self._process.close()
-        self._process = self._connection = self._life = None
+        self._process = self._connection = self._lifetime_pipe = None
 
 
 class Solvers:

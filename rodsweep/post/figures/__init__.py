@@ -37,11 +37,11 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
 """For each task, the function that writes the figure and returns a description of the figure."""
 DEFAULT_LOOK = FigureLook()
 """Appearance of figures without options of the user."""
-OMITTED = {"missing": "are not computed", "failed": "failed"}
+OMITTED_STATUSES = {"missing": "are not computed", "failed": "failed"}
 """Statuses of points that no figure shows, with the predicate for such points."""
 
 
-def _styled(look: FigureLook) -> AbstractContextManager[None]:
+def _style_context(look: FigureLook) -> AbstractContextManager[None]:
     """Context in which matplotlib uses the settings for all figures and the style that the user has chosen.
     Raises InputError for an unknown style.
     """
@@ -71,13 +71,13 @@ class FigureChoices(TypedDict, total=False):
     points: Sequence[int]
 
 
-def _drawn(request: FigureRequest) -> str:
+def _draw_and_describe(request: FigureRequest) -> str:
     """Writes the figure and returns a description of the figure. If quantities of an arm vary and no other
     kind of figure is requested, the figure shows results over these quantities.
     """
     if can_draw_arm_map(request):
         return draw_arm_map(request)
-    return FIGURES[request.views[0].task](replace(request, views=[view.listed for view in request.views]))
+    return FIGURES[request.views[0].task](replace(request, views=[view.as_list for view in request.views]))
 
 
 def draw(
@@ -105,9 +105,9 @@ def draw(
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
     request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, keep=keep, **choices)
-    with _styled(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
+    with _style_context(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
         try:
-            shown = _drawn(request)
+            shown = _draw_and_describe(request)
         except OSError as error:
             raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror or error}") from error
         except RuntimeError as error:  # raised by a program that a style uses, such as LaTeX
@@ -124,6 +124,10 @@ def draw(
 def _omitted_points(views: Sequence[View]) -> str:
     """Clause on the number of points that the figure omits; empty if the figure shows all points."""
     words = np.concatenate([view.outcomes for view in views])
-    counts = (f"{np.count_nonzero(words == word)} {text}" for word, text in OMITTED.items() if word in words)
+    counts = (
+        f"{np.count_nonzero(words == word)} {text}"
+        for word, text in OMITTED_STATUSES.items()
+        if word in words
+    )
     omitted = " and ".join(counts)
     return f"; of {words.size} points {omitted}" if omitted else ""

@@ -14,7 +14,14 @@ from matplotlib.ticker import NullFormatter
 from ...model.parameters import CRUSHING
 from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, has_or_have, some_of
-from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter, runs_of
+from ..branch_curves import (
+    ParameterRange,
+    RodBranches,
+    StoredBranch,
+    branch_ends,
+    followed_parameter,
+    stability_runs,
+)
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -87,7 +94,7 @@ def draw_branch(request: FigureRequest) -> str:
         if text
     ]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
-    figure.suptitle(style.heading(view, shared))
+    figure.suptitle(style.heading_text(view, shared))
     shown = f"{counted(len(curves), 'branch')} of cycles over {along}"
     return request.write(figure, shown + _omissions_clause(rods, len(beating), len(drawn)))
 
@@ -138,11 +145,11 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     )
 
 
-def _drawn_parameter_range(rod: RodBranches) -> Range:
+def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches.
     """
-    low, high = ends_of(rod.view)
+    low, high = branch_ends(rod.view)
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
     force, stiffness = CRUSHING
@@ -159,7 +166,7 @@ def _draw_pieces(
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
     neighbouring vertices, (n - 1,). colour, marker: of the curve, for matplotlib.
     """
-    for vertices, kind in runs_of(stable):
+    for vertices, kind in stability_runs(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 

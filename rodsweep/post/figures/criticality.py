@@ -87,11 +87,11 @@ def _curves_figure(view: View, name: str) -> Figure:
     for axes, values in ((upper, a), (lower, c)):
         handles = _draw_hopf_markers(axes, x[keep], values, side)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
-        style.scale(axes, "x", np.sort(x[keep]))
+        style.scale_axis(axes, "x", np.sort(x[keep]))
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, name)))
+    figure.suptitle(style.heading_text(view, style.fixed_text(view, name)))
     return figure
 
 
@@ -113,8 +113,8 @@ def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. narrow:
     whether the maps are stacked. Raises InputError if nothing can be drawn.
     """
-    side = view.by_point("criticality")[points.at]
-    a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
+    side = view.by_point("criticality")[points.point_indices]
+    a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
     style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
     figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
@@ -131,7 +131,7 @@ def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
         if (classes == i).any()
     ]
     style.legend_below(figure, entries, columns=3)
-    figure.suptitle(style.heading(view, style.parameter_text(points.shared)))
+    figure.suptitle(style.heading_text(view, style.parameter_text(points.common_parameters)))
     return figure
 
 
@@ -185,7 +185,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     pairs = zip(ROD_COLOURS, own, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading(view, shared))
+    figure.suptitle(style.heading_text(view, shared))
     shown = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
     if len(drawn) < having.size:
         shown += f", of the first {len(drawn)} of {having.size} rods with Hopf points"

@@ -7,7 +7,7 @@ import numpy as np
 from ...errors import InputError
 from ...results.file.view import View
 from .cycle.amplitudes.amplitude import BRANCH_LOOKS, draw_amplitude
-from .cycle.amplitudes.branches import abscissa
+from .cycle.amplitudes.branches import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
@@ -38,7 +38,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     """
     points = request.points
     name = figure_name(request)
-    view = _with_needs(request, name)
+    view = _with_needed_variables(request, name)
     if name == "animation":
         request.check_output(*FILM_SUFFIXES)
         if request.keep is not None:
@@ -52,7 +52,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.narrow), STRIP_ASPECT)
 
 
-def _with_needs(request: FigureRequest, name: str) -> View:
+def _with_needed_variables(request: FigureRequest, name: str) -> View:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
     `request.shapes`, if given, computes them.
     """
@@ -115,5 +115,5 @@ def _has_many_lines(view: View) -> bool:
     """Whether the points form a map that has more lines than a figure of amplitudes can show."""
     if not is_map(view):
         return False
-    across = next(name for name in point_map(view).names if name != abscissa(view))
+    across = next(name for name in point_map(view).names if name != abscissa_parameter(view))
     return len(np.unique(view.point_columns[across])) > len(BRANCH_LOOKS)

@@ -20,7 +20,7 @@ MAX_LABELLED_POINTS = 12
 """With at most this number of points, every point has a tick label."""
 
 
-def as_grid(view: View) -> View:
+def as_grid_if_possible(view: View) -> View:
     """View as a grid, if the points of the list form a grid, in any order; else the view itself.
 
     The grid has at most two varied parameters, and each combination of the values of the parameters once.
@@ -73,10 +73,10 @@ def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
     varies.
     """
     own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
-    return [_described(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
+    return [_name_and_value_texts(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
-def _described(name: str, values: np.ndarray) -> tuple[str, list[str]]:
+def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
     in DRAGS.
     """

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import BLUE, VERMILION, heading, legend_below, number, parameter_text, require_content
+from .style import BLUE, VERMILION, heading_text, legend_below, number_in_tex, parameter_text, require_content
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
@@ -38,14 +38,14 @@ def draw_modes(request: FigureRequest) -> str:
     panels = figure.subplots(rows, columns, squeeze=False)
     for row, point in zip(panels.reshape(len(drawn), len(MODE_PANELS)), drawn, strict=True):
         for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
-            _panel(panel, view, int(point), fields)
+            _draw_mode_fields(panel, view, int(point), fields)
             panel.set_title(word)
         if len(drawn) > 1:
             row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading(view, *(_point_texts(view, int(drawn[0])) if len(drawn) == 1 else ())))
-    legend_below(figure, _parts(view, drawn), columns=2)
+    figure.suptitle(heading_text(view, *(_point_texts(view, int(drawn[0])) if len(drawn) == 1 else ())))
+    legend_below(figure, _part_entries(view, drawn), columns=2)
     left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
     if points.size > len(drawn) > 1:
         left = f" of the first {len(drawn)} of {points.size} points"
@@ -53,7 +53,7 @@ def draw_modes(request: FigureRequest) -> str:
     return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
 
 
-def _parts(view: View, points: np.ndarray) -> list[Line2D]:
+def _part_entries(view: View, points: np.ndarray) -> list[Line2D]:
     """Legend entries for the real part (solid) and, if a drawn mode oscillates, for the imaginary part
     (dotted). points: indices of the drawn points, (n,).
     """
@@ -62,7 +62,7 @@ def _parts(view: View, points: np.ndarray) -> list[Line2D]:
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
 
 
-def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
+def _draw_mode_fields(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
     """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
     height. point: index of the point. fields: (field, label) of the two fields.
     """
@@ -91,5 +91,5 @@ def _point_texts(view: View, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
-    imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""
-    return parameter_text(at, digits=4), rf"$\omega_1\tau_2 = {number(w[0])}{imaginary}$"
+    imaginary = rf" + {number_in_tex(w[1])}\,\mathrm{{i}}" if w[1] else ""
+    return parameter_text(at, digits=4), rf"$\omega_1\tau_2 = {number_in_tex(w[0])}{imaginary}$"

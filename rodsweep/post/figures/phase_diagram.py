@@ -28,14 +28,14 @@ from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_
 from .style import (
     LABELS,
     SYMBOLS,
-    heading,
+    heading_text,
     is_logarithmic,
     legend_below,
     parameter_text,
     require_content,
-    scale,
+    scale_axis,
 )
-from .style import number as number_text
+from .style import number_in_tex as number_text
 
 STATE_COLOURS = {
     "missing": "white",
@@ -120,8 +120,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     pixels = _class_of_pixels(view, palette, line, row, table)
     unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colours_of_numbers)
-    scale(axes, "x", x)
-    scale(axes, "y", y)
+    scale_axis(axes, "x", x)
+    scale_axis(axes, "y", y)
     edge = _draw_crushing(axes, x, y) if _crushed_at_k1(view, line, row) else []
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
     handles: list = palette.patches(table)
@@ -133,14 +133,14 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         handles += mark_cycles_on_rows(axes, view, line, row)
     handles += edge if (table == flag_number("crushed", palette.words)).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    figure.suptitle(heading(view, _fixed(view, line, row)))
+    figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
     missing = (
         "; curves are missing, the file is not finished" if lacks_joint_variables_in(view.attributes) else ""
     )
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}", MAP_ASPECT)
 
 
-def _fixed(view: View, line: str, row: str) -> str:
+def _constant_parameters_text(view: View, line: str, row: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
     criticality. line, row: parameters on the axes.
     """
@@ -187,12 +187,12 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **looks)
     for between in np.arange(len(y) - 1) + 0.5:
         axes.axhline(between, color="white", lw=4)
-    scale(axes, "x", x)
+    scale_axis(axes, "x", x)
     axes.set_yticks(np.arange(len(y)), [f"${SYMBOLS[row]} = {number_text(value)}$" for value in y])
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
     legend_below(figure, palette.patches(table), columns=3)
-    figure.suptitle(heading(view, _fixed(view, line, row)))
+    figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
     return figure
 
 

@@ -12,16 +12,16 @@ from ...model.units import in_si
 from ...results.file.view import View
 from .arm.axes import add_si_scales
 from .arm.validity import add_validity
-from .layout.fitting import MIN_ASPECT, fit
+from .layout.fitting import MIN_ASPECT, fit_layout
 
 Shapes = Callable[[View, Sequence[int]], View]
 """Function that computes the shapes of cycles. Arguments: view of a file, and numbers of points, from 1.
 Returns a view with the shapes."""
-Drawing = Figure
+FigureClass = Figure
 """Class of the figures: matplotlib's `Figure`."""
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Widths of the columns of a journal, in inches, by name."""
-ROOTS = ("rightmost", "smallest", "all")
+ROOT_CHOICES = ("rightmost", "smallest", "all")
 """Choices of the roots in a figure of spectra along a line: the two rightmost, the two smallest, or all
 stored roots."""
 KINDS_OF_TASK = {
@@ -29,7 +29,7 @@ KINDS_OF_TASK = {
     "thresholds": ("lines", "map"),
 }
 """Names of the kinds of figures of each task that has several kinds."""
-KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
+FIGURE_KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
 """Names of the kinds of figures of all tasks."""
 HEIGHT_POWER = 0.5
 """The height of a figure scales as the width to this power. The power is below 1, because the size of the
@@ -73,7 +73,7 @@ class FigureLook:
         if self.inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)
-        fit(figure, min_aspect)
+        fit_layout(figure, min_aspect)
 
 
 def _inches(width: str) -> float:
@@ -172,6 +172,8 @@ class FigureRequest:
         if (dpi := rcParams["savefig.dpi"]) != "figure":
             figure.set_dpi(dpi)  # texts are measured as they are saved
         self.look.fit(figure, min_aspect)
-        figure.set_layout_engine(None)  # `fit` has laid out the figure; savefig would repeat the layout
+        figure.set_layout_engine(
+            None
+        )  # `fit_layout` has laid out the figure; savefig would repeat the layout
         figure.savefig(self.output)
         return shown

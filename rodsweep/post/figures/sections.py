@@ -22,18 +22,18 @@ MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
 
-def section(view: View, at: Mapping[str, float | str]) -> View:
+def section_at_values(view: View, at: Mapping[str, float | str]) -> View:
     """View of the points at which parameters, or quantities of an arm, have the values `at`, by name.
 
     The value of a quantity is a number in SI units, or a text with a unit. Raises InputError if no point has
     a value; the message lists the values in the file.
     """
     for name, value in at.items():
-        view = _cut(view, name, _number(name, value))
+        view = _section_at_value(view, name, _number_in_si(name, value))
     return view
 
 
-def _number(name: str, value: float | str) -> float:
+def _number_in_si(name: str, value: float | str) -> float:
     """The value of the parameter or quantity `name` as a number; for a quantity, in SI units. Raises
     InputError for an invalid text.
     """
@@ -49,7 +49,7 @@ def _number(name: str, value: float | str) -> float:
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 
-def _cut(view: View, name: str, value: float) -> View:
+def _section_at_value(view: View, name: str, value: float) -> View:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
     axes = view.arm_axes or (*view.parameters, *listed)
@@ -95,7 +95,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
     return replace(view, variables=variables)
 
 
-def without_infinite(view: View) -> View:
+def without_infinite_values(view: View) -> View:
     """View of a grid without the infinite values of its axes, which a figure cannot show."""
     for name, values in view.axes.items():
         finite = np.isfinite(values)
@@ -104,7 +104,7 @@ def without_infinite(view: View) -> View:
     return view
 
 
-def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
+def checked_section_values(given: Mapping[str, float | str]) -> dict[str, float | str]:
     """Copy of the values that a Python caller gives, by name of the parameter. Raises InputError for a value
     that is neither a number nor a text.
     """

@@ -65,12 +65,14 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
         own = np.insert(own, i + 1, corners[i], axis=0)
         stable = np.insert(stable, i, stable[i])
     inner = [i + 1 + k for k, i in enumerate(sorted(corners))]
-    parts = [_smooth(own[low : high + 1], extent) for low, high in pairwise([0, *inner, len(own) - 1])]
+    parts = [
+        _smooth_vertices(own[low : high + 1], extent) for low, high in pairwise([0, *inner, len(own) - 1])
+    ]
     at, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
     return at, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
 
 
-def _smooth(own: Array, extent: Array) -> Array:
+def _smooth_vertices(own: Array, extent: Array) -> Array:
     """Vertices, (m, 3), of a smooth curve through the cycles `own`, (n, 3), with SEGMENT_COUNT segments
     between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,).
 
@@ -82,8 +84,8 @@ def _smooth(own: Array, extent: Array) -> Array:
     first = len(before) if own[0, 1] == 0 else 0
     last = len(behind) if own[-1, 1] == 0 else 0
     whole = np.concatenate([before[:first], own, behind[:last]])
-    variables = [_lengths(whole, extent, shares, power) for shares, power in CHORD_VARIABLES]
-    s = min(variables, key=lambda variable: _roughness(variable, whole / extent))
+    variables = [_cumulative_chord_lengths(whole, extent, shares, power) for shares, power in CHORD_VARIABLES]
+    s = min(variables, key=lambda variable: _largest_cubic_deviation(variable, whole / extent))
     ends = s[first : first + len(own)]
     finer = np.append(
         np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel(), ends[-1]
@@ -102,14 +104,14 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     polynomials is the arc length of (parameter, log period), which is smooth. Of candidates on neighbouring
     intervals, the candidate with the largest change of slope is the corner.
     """
-    lengths = _lengths(own * WEIGHTS_WITHOUT_Y, extent)
+    lengths = _cumulative_chord_lengths(own * WEIGHTS_WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
     for i in range(1, len(own) - 2):
         window = slice(max(0, i + 1 - CORNER_CYCLE_COUNT), i + 1 + CORNER_CYCLE_COUNT)
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
-        rises = [_rise(x, column) for column in own[window].T]
+        rises = [_relative_rise(x, column) for column in own[window].T]
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
             is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
@@ -130,7 +132,7 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     }
 
 
-def _rise(x: Array, values: Array) -> Polynomial:
+def _relative_rise(x: Array, values: Array) -> Polynomial:
     """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
     the slope of the steepest chord. x, values: (m,) each.
     """
@@ -140,7 +142,9 @@ def _rise(x: Array, values: Array) -> Polynomial:
     return (behind - before) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
 
 
-def _lengths(places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power: float = 1.0) -> Array:
+def _cumulative_chord_lengths(
+    places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power: float = 1.0
+) -> Array:
     """Sum of the chord lengths to the power `power`, from the first point to each point, (n,).
 
     places: points, (n, 3). extent: ranges of the branch, (3,). shares: weights of the coordinates, (3,).
@@ -149,7 +153,7 @@ def _lengths(places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power:
     return np.append(0.0, np.cumsum(chords**power))
 
 
-def _roughness(s: Array, places: Array) -> float:
+def _largest_cubic_deviation(s: Array, places: Array) -> float:
     """Largest deviation, in a coordinate, of a point from the cubic through two neighbours on each side of
     the point. s: variable, (n,). places: points, (n, columns).
     """

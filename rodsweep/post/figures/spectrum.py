@@ -14,9 +14,9 @@ from matplotlib.lines import Line2D
 from ...errors import InputError
 from ...results.file.view import View
 from .layout.fitting import MAP_ASPECT
-from .lists import as_grid
+from .lists import as_grid_if_possible
 from .request import FigureRequest
-from .sections import section, without_infinite
+from .sections import section_at_values, without_infinite_values
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
     FOLLOWED_ROOTS,
@@ -28,7 +28,7 @@ from .spectra.line import (
     roots_to_follow,
     threshold_text,
 )
-from .style import LABELS, fixed_text, heading, legend_below, long_axes, require_content, scale
+from .style import LABELS, fixed_text, heading_text, legend_below, require_content, scale_axis, varied_axes
 
 MAX_PANELS = 12
 """Largest number of panels in one figure."""
@@ -61,41 +61,43 @@ def draw_spectrum(request: FigureRequest) -> str:
     a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn.
     """
     if len(request.views) > 1:
-        return _several(request)
-    view = as_grid(request.only_view())
+        return _draw_files(request)
+    view = as_grid_if_possible(request.only_view())
     require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     if view.variables["status"].size == 1:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
-    long = long_axes(view)
+    long = varied_axes(view)
     few = min(long, key=lambda name: len(view.axes[name]))
     if len(long) > 1 and len(view.axes[few]) <= MAX_LINE_PANELS:
-        return _lines(view, few, request)
-    view = without_infinite(view)
-    long = long_axes(view)
+        return _draw_line_per_value(view, few, request)
+    view = without_infinite_values(view)
+    long = varied_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
-    return request.write(_map(view, long), "the leading growth rate", MAP_ASPECT)
+    return request.write(_growth_map(view, long), "the leading growth rate", MAP_ASPECT)
 
 
-def _lines(view: View, few: str, request: FigureRequest) -> str:
+def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map;
     returns a sentence."""
-    lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
+    lines = [
+        without_infinite_values(section_at_values(view, {few: float(value)})) for value in view.axes[few]
+    ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
-    return _in_panels(views, request, few)
+    return _draw_line_panels(views, request, few)
 
 
-def _in_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
+def _draw_line_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
     """Draws a panel for each view, a line of spectra; returns a sentence. each: noun for a view."""
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.narrow)
     return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {each}")
 
 
-def _several(request: FigureRequest) -> str:
+def _draw_files(request: FigureRequest) -> str:
     """Draws a panel for each file; returns a sentence. Raises InputError if a file is not a line of
     spectra.
     """
@@ -105,19 +107,19 @@ def _several(request: FigureRequest) -> str:
         raise InputError(
             f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
         )
-    views = [_line_of(view, request) for view in request.views]
-    return _in_panels(views, request, f"of {len(views)} files")
+    views = [_line_of_spectra(view, request) for view in request.views]
+    return _draw_line_panels(views, request, f"of {len(views)} files")
 
 
-def _line_of(view: View, request: FigureRequest) -> View:
+def _line_of_spectra(view: View, request: FigureRequest) -> View:
     """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
     a line of spectra.
     """
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
-    view = as_grid(view)
+    view = as_grid_if_possible(view)
     require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
-    view = without_infinite(view) if view.is_grid else view
+    view = without_infinite_values(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(
             f"{view.path} is not a line of spectra, along which one parameter varies; only lines of spectra "
@@ -126,7 +128,7 @@ def _line_of(view: View, request: FigureRequest) -> View:
     return view
 
 
-def _map(view: View, names: list[str]) -> Figure:
+def _growth_map(view: View, names: list[str]) -> Figure:
     """Map of the largest growth rate over the two parameters `names`."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
@@ -145,14 +147,14 @@ def _map(view: View, names: list[str]) -> Figure:
     axes.set_rasterization_zorder(0)
     if np.nanmin(growth) < 0 < np.nanmax(growth):
         axes.contour(x, y, drawn, levels=[0.0], colors="k", linewidths=1.2)
-    scale(axes, "x", x)
-    scale(axes, "y", y)
+    scale_axis(axes, "x", x)
+    scale_axis(axes, "y", y)
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
     _note_points(axes, view.axes[horizontal], view.axes[vertical], growth)
     figure.suptitle(
-        heading(view, fixed_text(view, *names), "black: zero growth, interpolated between the points")
+        heading_text(view, fixed_text(view, *names), "black: zero growth, interpolated between the points")
     )
     return figure
 
@@ -178,7 +180,7 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     handles: dict[str, Artist] = {}
     for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
-        (name,) = long_axes(view)
+        (name,) = varied_axes(view)
         draw_roots(panel, view, name, roots)
         thresholds = mark_thresholds(panel, view, name)
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
@@ -188,7 +190,7 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
             word = THRESHOLD_WORDS[threshold.kind]
             _, style = THRESHOLD_LOOKS[threshold.kind]
             handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
-        text = heading(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
+        text = heading_text(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()

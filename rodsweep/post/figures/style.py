@@ -40,7 +40,7 @@ SHORT_AXIS_RATIO = 6
 tick labels, because 1, 2 and 5 could all lie outside the axis."""
 MIN_POWER = 2
 """Smallest |n| for which a power of ten is written as 10^n."""
-PLAIN_BELOW = 4
+MAX_PLAIN_POWER = 4
 """Numbers below 10 to this power are written without a power of ten."""
 FIGURE_STYLE = {
     "font.size": 10,
@@ -69,7 +69,7 @@ def escape_dollar_signs(text: object) -> str:
     return str(text).replace("$", r"\$")
 
 
-def heading(view: View, *lines: str) -> str:
+def heading_text(view: View, *lines: str) -> str:
     """Text above a figure: title of the result file (if requested), constitutive law and profile (if not
     standard), and `lines`, one below the other.
     """
@@ -99,7 +99,7 @@ def file_label(view: View, views: Sequence[View]) -> str:
     return titles[list(views).index(view)] if distinct else escape_dollar_signs(view.path.stem)
 
 
-def number(value: float, digits: int = 6) -> str:
+def number_in_tex(value: float, digits: int = 6) -> str:
     """The number `value` as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives
     200. digits: largest number of significant digits.
     """
@@ -112,7 +112,7 @@ def number(value: float, digits: int = 6) -> str:
     factor = float(mantissa)
     if abs(factor) == 1 and abs(power) >= MIN_POWER:
         return f"{'-' * (factor < 0)}10^{{{power}}}"
-    if -MIN_POWER <= power < min(PLAIN_BELOW, digits):
+    if -MIN_POWER <= power < min(MAX_PLAIN_POWER, digits):
         return f"{value:.{digits}g}"
     return rf"{factor:g}\times10^{{{power}}}"
 
@@ -121,7 +121,9 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     """Parameters with their symbols and values, as one line of TeX. parameters: values by name. digits:
     largest number of significant digits.
     """
-    return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
+    return ", ".join(
+        f"${SYMBOLS[name]} = {number_in_tex(value, digits)}$" for name, value in parameters.items()
+    )
 
 
 def fixed_text(view: View, *drawn: str) -> str:
@@ -129,7 +131,7 @@ def fixed_text(view: View, *drawn: str) -> str:
     return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
 
 
-def long_axes(view: View) -> list[str]:
+def varied_axes(view: View) -> list[str]:
     """Names of the one or two parameters of a grid that have several values. Raises InputError if no
     parameter, or more than two, have several values.
     """
@@ -169,7 +171,7 @@ def is_logarithmic(values: np.ndarray) -> bool:
     return bool(even or values[-1] > 10 * values[0])
 
 
-def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
+def scale_axis(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
     """Makes the axis `which` logarithmic, with suitable tick labels, if `is_logarithmic(values)`. values:
     (n,).
     """
@@ -186,9 +188,9 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
     if high < FEW_DECADES_RATIO * low:
         subs = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=subs))
-        written_out = low >= 10.0**-MIN_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
+        written_out = low >= 10.0**-MIN_POWER and high < 10.0 ** (MAX_PLAIN_POWER + 1)
         axis.set_major_formatter(
-            FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number(value)}$")
+            FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number_in_tex(value)}$")
         )
         axis.set_minor_formatter(NullFormatter())
 

@@ -12,7 +12,7 @@ from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
 from .layout.fitting import MAP_ASPECT, MIN_ASPECT
-from .lists import as_grid
+from .lists import as_grid_if_possible
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
 from .stability.threshold_lines import (
@@ -36,8 +36,8 @@ def draw_thresholds(request: FigureRequest) -> str:
     drawn.
     """
     if request.views[1:]:
-        return _of_files(request)
-    view = as_grid(request.only_view("lines", "map"))
+        return _draw_files(request)
+    view = as_grid_if_possible(request.only_view("lines", "map"))
     if not view.is_grid or view.variables["status"].size == 1:
         if request.what and view.quantities and view.variables["status"].size > 1:
             raise InputError(
@@ -50,47 +50,47 @@ def draw_thresholds(request: FigureRequest) -> str:
             )
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
-    long = style.long_axes(view)
+    long = style.varied_axes(view)
     found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
     style.require_content(view, found, "threshold")
     few = min(len(view.axes[name]) for name in long) <= MAX_LINES
     if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
-        figure, left_out = _map(view, found, request.look.narrow)
+        figure, left_out = _threshold_maps(view, found, request.look.narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
     if len(long) == 1 or few:
-        return request.write(*draw_all_lines(view, long, searched(view)))
-    return request.write(*draw_lines_of_some(view, long, request.look.narrow, searched(view)))
+        return request.write(*draw_all_lines(view, long, searched_range_clause(view)))
+    return request.write(*draw_lines_of_some(view, long, request.look.narrow, searched_range_clause(view)))
 
 
-def _of_files(request: FigureRequest) -> str:
+def _draw_files(request: FigureRequest) -> str:
     """Draws the thresholds of several files against the parameter that varies in all files; returns a
     sentence. Raises InputError if the files do not vary in one common parameter only.
     """
     request.refuse_points(request.views[0], ("lines",))
     request.check_output()
     views = request.views
-    along = style.long_axes(views[0])
+    along = style.varied_axes(views[0])
     if len(views) > len(FILE_COLOURS):
         raise InputError(
             f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
         )
     for view in views:
-        if view.task != views[0].task or not view.is_grid or style.long_axes(view) != along or along[1:]:
+        if view.task != views[0].task or not view.is_grid or style.varied_axes(view) != along or along[1:]:
             raise InputError(
                 f"{view.path}: files of thresholds share a figure only if all are grids over one parameter, "
                 "the same in every file"
             )
-    return request.write(*draw_lines_of_files(views, along[0], searched(*views)))
+    return request.write(*draw_lines_of_files(views, along[0], searched_range_clause(*views)))
 
 
-def searched(*views: View) -> str:
+def searched_range_clause(*views: View) -> str:
     """Clause on the searched range of forces: a threshold that is not shown may lie outside this range."""
     ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
-    low, high = (style.number(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
+    low, high = (style.number_in_tex(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
-def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
+def _threshold_maps(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, left_out). The figure has a map over two parameters for each kind of threshold in
     `names`. left_out: clause on infinite values of the parameters. narrow: whether the maps are stacked.
     Raises InputError if nothing can be drawn.
@@ -101,7 +101,7 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     for axes, (name, word, *_) in zip(
         panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True
     ):
-        values = view.variables[name].ravel()[points.at]
+        values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
         style.colour_cells(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
         axes.set_facecolor(NO_THRESHOLD)
@@ -109,5 +109,7 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     label_maps(panels, points)
     if lacking:
         style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], columns=1)
-    figure.suptitle(style.heading(view, style.parameter_text(points.shared), searched(view)))
+    figure.suptitle(
+        style.heading_text(view, style.parameter_text(points.common_parameters), searched_range_clause(view))
+    )
     return figure, points.left_out

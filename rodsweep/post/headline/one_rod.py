@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
-from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, errors_of
+from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
 from ..summary.ranges import error_text, number_and_error, rounded
 from ..tables import Tables
 from ..tables.columns import Column
@@ -49,7 +49,7 @@ class ColumnTexts:
             return np.zeros_like(self._values[name])
         if name in self._beside:
             return self._beside[name]
-        known = errors_of(self._values, name)
+        known = absolute_errors(self._values, name)
         has_error = any(table.get(name, "") in self.columns for table in (RELATIVE_ERRORS, ABSOLUTE_ERRORS))
         return known if has_error else np.where(known > 0, known, np.nan)
 
@@ -109,7 +109,7 @@ class OneRod:
     def __init__(self, view: View):
         self.view = view
         self.tables = Tables(view)
-        self.si = _si_names(view)
+        self.si = _si_variable_names(view)
         own = [column for column in self.tables.table(POINTS).columns if not column.given]
         self.lists: dict[str, ColumnTexts] = {
             name: ColumnTexts(self.tables.items(name), self.si) for name in self.tables.contents.tables[1:]
@@ -132,7 +132,7 @@ class OneRod:
                 found[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
         return found
 
-    def preferred(self, digits: ColumnTexts, name: str) -> str:
+    def preferred_name(self, digits: ColumnTexts, name: str) -> str:
         """Name of the variable that is printed for the variable `name`: the corresponding SI variable if
         `digits` has such a column, else `name`.
         """
@@ -142,7 +142,7 @@ class OneRod:
         """The variable `name` of the rod as a column of one row; None if the variable or its value is
         missing.
         """
-        column = self.points.columns.get(self.preferred(self.points, name))
+        column = self.points.columns.get(self.preferred_name(self.points, name))
         return None if column is None or column.absent[0] else column
 
     def text(self, name: str) -> str:
@@ -160,7 +160,7 @@ class OneRod:
         return self.lists[table].columns[name].text()
 
 
-def _si_names(view: View) -> dict[str, str]:
+def _si_variable_names(view: View) -> dict[str, str]:
     """Name of the SI variable of an arm, by dimensionless variable; empty for a rod."""
     if view.config["parameters"].get("arm") is None:
         return {}

@@ -34,7 +34,7 @@ def eigenvalue_sentence(rod: OneRod) -> str:
     stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
     stability = "number of unstable modes not known" if count is None else stability
     modes = rod.lists["modes"]
-    rate, frequency = (rod.preferred(modes, name) for name in ("growth_rate", "frequency"))
+    rate, frequency = (rod.preferred_name(modes, name) for name in ("growth_rate", "frequency"))
     if not len(modes.columns[rate].values):
         return ""
     return f"{stability}: leading growth rate {modes.short(rate)}, frequency {modes.short(frequency)}"
@@ -51,8 +51,8 @@ def threshold_sentence(rod: OneRod) -> str:
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
             parts.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
-    none = "" if rod.count("crossing_count") else f"no threshold up to {_end(rod)}"
-    return (", ".join(parts) or none) + _not_known_beyond(rod)
+    none = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
+    return (", ".join(parts) or none) + _early_end_clause(rod)
 
 
 def hopf_sentence(rod: OneRod) -> str:
@@ -62,10 +62,10 @@ def hopf_sentence(rod: OneRod) -> str:
     if count is None:
         return ""
     if count == 0:
-        return f"no Hopf point up to {_end(rod)}{_not_known_beyond(rod)}"
+        return f"no Hopf point up to {_search_end_text(rod)}{_early_end_clause(rod)}"
     sides = Counter(word or "of unknown criticality" for word in rod.words("crossings", "criticality"))
     kinds = ", ".join(f"{number} {word}" for word, number in sides.items())
-    return f"{counted(count, 'Hopf point')}: {kinds}{_not_known_beyond(rod)}"
+    return f"{counted(count, 'Hopf point')}: {kinds}{_early_end_clause(rod)}"
 
 
 def branch_sentence(rod: OneRod) -> str:
@@ -81,7 +81,7 @@ def branch_sentence(rod: OneRod) -> str:
     cycles = rod.lists["cycles"]
     begin = counted(rod.count("hopf_count") or 0, "Hopf point")
     text = f"{counted(branches, 'branch')} of cycles from {begin}"
-    y = rod.preferred(cycles, "tip_y_max")
+    y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
     largest = cycles.short(y, int(np.nanargmax(cycles.columns[y].values)))
@@ -97,16 +97,16 @@ def cycle_sentence(rod: OneRod) -> str:
     return ""
 
 
-def _end(rod: OneRod) -> str:
+def _search_end_text(rod: OneRod) -> str:
     """Largest load of the search as text, such as "F = 200"; empty if unknown."""
     column = rod.column("F_end")
     return "" if column is None else f"{column.name.removesuffix('_end')} = {rod.text('F_end')}"
 
 
-def _not_known_beyond(rod: OneRod) -> str:
+def _early_end_clause(rod: OneRod) -> str:
     """Clause that says at which load a search ended early; empty for a complete search."""
     early = "; not known beyond {}, where the search ended early"
-    return early.format(_end(rod)) if rod.view.with_status("ended_early").all() else ""
+    return early.format(_search_end_text(rod)) if rod.view.with_status("ended_early").all() else ""
 
 
 EIGENVALUES = ("mode", "growth_rate", "frequency")

@@ -26,7 +26,7 @@ from .pictures import Pictures, pictures_of
 from .report_contents import ReportContents, report_contents
 from .vector_picture import VectorPicture
 
-QUOTED = re.compile("`([^`]*)`")
+QUOTED_TEXT = re.compile("`([^`]*)`")
 """Pattern for a text between backquotes in a sentence: a command, or a key of a config."""
 
 
@@ -59,10 +59,10 @@ def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
     pictures = [each.picture for result in results for each in result.pictures.shown]
     pictures += [each.picture for each in together.shown]
     title = "; ".join(result.title for result in results)
-    return rendered("page.html", pictures, title=title, results=results, together=together)
+    return rendered_template("page.html", pictures, title=title, results=results, together=together)
 
 
-def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:
+def rendered_template(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:
     """HTML text made from a template of this package. template: file name. drawn: all pictures of the page.
     contents: variables of the template.
     """
@@ -88,4 +88,4 @@ def rendered(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> 
 
 def _with_code(text: str) -> Markup:
     """A sentence as HTML, with texts between backquotes as code."""
-    return Markup(QUOTED.sub(r"<code>\1</code>", str(escape(text))))
+    return Markup(QUOTED_TEXT.sub(r"<code>\1</code>", str(escape(text))))

@@ -60,7 +60,7 @@ class HoverSeries:
 def hover_points(figure: Figure) -> list[HoverPoint]:
     """Texts for the values in a figure, in the order of drawing. The layout of the figure must be final."""
     words = _legend_words(figure)
-    found = [series for axes in figure.axes for series in _of_panel(axes, words)]
+    found = [series for axes in figure.axes for series in _panel_series(axes, words)]
     long = sum(len(series.texts) for series in found if len(series.texts) > MAX_UNTHINNED_POINTS)
     step = max(1, ceil(long / MAX_POINTS))
     height = figure.get_size_inches()[1] * POINTS_PER_INCH
@@ -73,16 +73,16 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     return points
 
 
-def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
+def _panel_series(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for all values inside the frame of a panel. words: legend entries by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
-    found = [*_cells(axes, names, words), *_bars(axes, names, words)]
+    found = [*_cell_series(axes, names, words), *_bar_series(axes, names, words)]
     for line in axes.lines:
         if line.get_visible():
-            found.append(_line(axes, line, names))
-    found += [_scatter(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
+            found.append(_line_series(axes, line, names))
+    found += [_scatter_series(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
     frame = axes.bbox.padded(FRAME_MARGIN)
     for series in found:
         inside = np.isfinite(series.places).all(axis=1)
@@ -90,7 +90,7 @@ def _of_panel(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
         yield HoverSeries(series.places[inside], [series.texts[i] for i in np.flatnonzero(inside)])
 
 
-def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
+def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
     """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has a single
     text, its legend entry, at the middle. names: labels of the two axes.
     """
@@ -99,12 +99,12 @@ def _line(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
         places = line.get_transform().transform(data)
     label = _series_name(line.get_label())
     if line.get_transform() == axes.transData:
-        return HoverSeries(places, _texts(names, data, label))
+        return HoverSeries(places, _curve_point_texts(names, data, label))
     # A line across the whole panel: a threshold has a name, and an axis at zero needs no text.
     return HoverSeries(places.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
 
 
-def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
+def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """Texts for the points of a scatter plot, with the value that is shown by the colour of a point, if any.
     names: labels of the two axes.
 
@@ -112,7 +112,7 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """
     data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
     places = dots.get_offset_transform().transform(data)
-    texts = _texts(names, data, _series_name(dots.get_label()))
+    texts = _curve_point_texts(names, data, _series_name(dots.get_label()))
     values = dots.get_array()
     if values is None:
         return HoverSeries(places, texts)
@@ -121,13 +121,13 @@ def _scatter(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     return HoverSeries(
         places,
         [
-            f"{name}: {_number(value)}\n{_text(names, at)}" if name else text
+            f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, at)}" if name else text
             for value, at, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
         ],
     )
 
 
-def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
+def _cell_series(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
     colour, and coordinates. names: labels of the two axes. words: legend entries by colour.
     """
@@ -146,12 +146,14 @@ def _cells(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterato
         for at, value in zip(
             axes.transData.inverted().transform(places[kept]).reshape(-1, 2), values[kept], strict=True
         ):
-            word = f"{name}: {_number(value)}" if name else words.get(to_hex(mesh.to_rgba(value)), "")
-            texts.append("\n".join(filter(None, (word, _text(names, at)))))
+            word = (
+                f"{name}: {_coordinate_text(value)}" if name else words.get(to_hex(mesh.to_rgba(value)), "")
+            )
+            texts.append("\n".join(filter(None, (word, _coordinates_text(names, at)))))
         yield HoverSeries(places[kept], texts)
 
 
-def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
+def _bar_series(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends. names:
     labels of the two axes. words: legend entries by colour.
     """
@@ -162,7 +164,7 @@ def _bars(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator
         for bar in bars.patches:
             low, high = bar.get_bbox().get_points()[:, along]
             word = words.get(to_hex(bar.get_facecolor()), "")
-            ends = f"{names[along]} from {_number(low)} to {_number(high)}"
+            ends = f"{names[along]} from {_coordinate_text(low)} to {_coordinate_text(high)}"
             middle = axes.transData.transform(bar.get_bbox().get_points().mean(axis=0))
             yield HoverSeries(middle[None], ["\n".join(filter(None, (word, ends)))])
 
@@ -172,14 +174,14 @@ def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
     there is no label.
     """
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
-    for each in (axes, *shared.get_siblings(axes), *_beside(axes, which)):
+    for each in (axes, *shared.get_siblings(axes), *_panels_with_same_axis(axes, which)):
         label = each.get_xlabel() if which == "x" else each.get_ylabel()
         if label:
             return label_text(label)
     return which
 
 
-def _beside(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
+def _panels_with_same_axis(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
     """Other panels in the same column (for "x") or row (for "y") with the same limits on this axis."""
 
     def place(panel: Axes) -> object:
@@ -212,19 +214,19 @@ def _series_name(label: object) -> str:
     return "" if text.startswith("_") else label_text(text)
 
 
-def _texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
+def _curve_point_texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
     """Text for each point of a curve: legend entry `series` and both coordinates. names: labels of the axes.
     data: points in data coordinates, (n, 2).
     """
-    return ["\n".join(filter(None, (series, _text(names, at)))) for at in data]
+    return ["\n".join(filter(None, (series, _coordinates_text(names, at)))) for at in data]
 
 
-def _text(names: tuple[str, str], at: Array) -> str:
+def _coordinates_text(names: tuple[str, str], at: Array) -> str:
     """Coordinates of a point as text, one line each. names: labels of the axes. at: point in data
     coordinates, (2,).
     """
-    return "\n".join(f"{name} = {_number(value)}" for name, value in zip(names, at, strict=True))
+    return "\n".join(f"{name} = {_coordinate_text(value)}" for name, value in zip(names, at, strict=True))
 
 
-def _number(value: float) -> str:
+def _coordinate_text(value: float) -> str:
     return f"{value:.{POINTER_DIGITS}g}"

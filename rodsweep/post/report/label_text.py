@@ -12,9 +12,9 @@ COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:mathrm|text|tilde|mathit)\s*(?:\{([^{}
 """Pattern for a TeX command that is replaced by its argument: a font, or a tilde above a letter."""
 SUBSCRIPT = re.compile(r"_(?:\{([^{}]*)\}|(.))")
 """Pattern for a TeX subscript."""
-POWER = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
+SUPERSCRIPT = re.compile(r"\^(?:\{([^{}]*)\}|(\\?\w+|.))")
 """Pattern for a TeX superscript."""
-COMMAND = re.compile(r"\\([A-Za-z]+|.)")
+TEX_COMMAND = re.compile(r"\\([A-Za-z]+|.)")
 """Pattern for a TeX command that has no pattern of its own."""
 TEX_SIGNS = {
     "times": "×",
@@ -43,17 +43,17 @@ def _formula(tex: str) -> str:
         previous = tex
         tex = COMMAND_WITH_ARGUMENT.sub(lambda found: found[1] or found[2] or "", tex)
     tex = SUBSCRIPT.sub(lambda found: found[1] or found[2], tex)
-    tex = POWER.sub(lambda found: _power(found[1] or found[2]), tex)
-    return COMMAND.sub(lambda found: _sign(found[1]), tex).replace("{", "").replace("}", "")
+    tex = SUPERSCRIPT.sub(lambda found: _superscript_text(found[1] or found[2]), tex)
+    return TEX_COMMAND.sub(lambda found: _command_text(found[1]), tex).replace("{", "").replace("}", "")
 
 
-def _power(exponent: str) -> str:
+def _superscript_text(exponent: str) -> str:
     """A superscript as text: "^" and the exponent, or only the dagger of an adjoint mode."""
     return exponent if exponent == r"\dagger" else f"^{exponent}"
 
 
 @cache
-def _sign(command: str) -> str:
+def _command_text(command: str) -> str:
     """Unicode text of a TeX command: a Greek letter, a sign, or the name of the command, such as "max"."""
     if command in TEX_SIGNS:
         return TEX_SIGNS[command]

@@ -7,7 +7,7 @@ from ...config.document.reading import tree_yaml
 from ...config.values import printable
 from ...results.file.view import View
 from ..summary import summary_of
-from ..summary.summary_lines import Summary, TextTable, region
+from ..summary.summary_lines import Summary, TextTable, region_text
 from .page_tables import PageTable, page_tables
 from .pictures import Pictures
 
@@ -66,7 +66,7 @@ def report_contents(view: View, pictures: Pictures) -> ReportContents:
         title=str(a.get("title", "")) or name,
         task=view.task,
         summary=summary,
-        statuses=_with_places(view, summary.statuses),
+        statuses=_with_parameter_ranges(view, summary.statuses),
         pictures=pictures,
         tables=list(page_tables(view)),
         config=str(a.get("config", "")).strip("\n"),
@@ -75,16 +75,16 @@ def report_contents(view: View, pictures: Pictures) -> ReportContents:
     )
 
 
-def _with_places(view: View, statuses: TextTable) -> TextTable:
+def _with_parameter_ranges(view: View, statuses: TextTable) -> TextTable:
     """Table of statuses. If there are several statuses, a column with the parameter ranges of each status is
     added.
     """
     if len(statuses.rows) == 1:
         return statuses
-    listed = view.listed
+    listed = view.as_list
     rows = []
     for word, count, meaning in statuses.rows:
-        where = region(listed, listed.with_status(word)) if word in view.flags.values() else ""
+        where = region_text(listed, listed.with_status(word)) if word in view.flags.values() else ""
         rows.append((word, count, where, meaning))
     first, second, last = statuses.headings
     return TextTable((first, second, "where", last), tuple(rows))

@@ -49,7 +49,7 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
         figure.savefig(written, format="svg", transparent=False, metadata={"Date": None})
     root = ElementTree.fromstring(written.getvalue())
     for place in ("metadata", "defs/style"):
-        _remove(root, place)
+        _remove_element(root, place)
     colours = frozenset[str]()
     has_image = next(root.iter(f"{{{SVG}}}image"), None) is not None
     if not has_image:
@@ -63,7 +63,7 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     return VectorPicture(ElementTree.tostring(root, encoding="unicode"), colours, width)
 
 
-def _remove(root: ElementTree.Element, place: str) -> None:
+def _remove_element(root: ElementTree.Element, place: str) -> None:
     """Removes the first element at a path below `root`. place: path of element names, such as
     "defs/style".
     """

@@ -40,16 +40,16 @@ SUCCESS_STATUS = "ok"
 def paragraph(results: RodResults) -> str:
     """All results about the rod as one paragraph of text."""
     sentences = [
-        *_rod(results),
+        *_rod_sentence(results),
         *_thresholds(results),
         *_branches(results),
-        *_cycles(results),
-        *_missing(results),
+        *_cycle_sentences(results),
+        *_missing_result_sentences(results),
     ]
     return " ".join(sentences)
 
 
-def _rod(results: RodResults) -> Iterator[str]:
+def _rod_sentence(results: RodResults) -> Iterator[str]:
     """Yields sentences on the parameters of the rod, and on the searched range of the load."""
     end = float(results.views["thresholds"].of_point(0)["F_end"])
     units = results.units
@@ -67,10 +67,10 @@ def _rod(results: RodResults) -> Iterator[str]:
         )
     yield f"The {kind} with {results.rod.words} {searched}."
     if results.rod.arm:
-        yield from _arm(results)
+        yield from _arm_sentence(results)
 
 
-def _arm(results: RodResults) -> Iterator[str]:
+def _arm_sentence(results: RodResults) -> Iterator[str]:
     """Yields sentences on the units of an arm, the validity of the model, and the plane of motion."""
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
@@ -97,7 +97,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
         clause = THRESHOLD_CLAUSES[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
         if frequency := float(v["crossing_frequency"][i]):
             clause += f" (frequency {units.frequency_text(frequency)}"
-            clause += f"{_side(results, float(v['crossing_F'][i]))})"
+            clause += f"{_criticality_clause(results, float(v['crossing_F'][i]))})"
         clauses.append(clause)
     if clauses:
         yield f"In the straight state, {'; '.join(clauses)}."
@@ -109,7 +109,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
         yield f"This list of thresholds{range_} is {proof}."
 
 
-def _side(results: RodResults, F: float) -> str:
+def _criticality_clause(results: RodResults, F: float) -> str:
     """Clause on the criticality of the Hopf point at the force F; empty if there is no Hopf point at F."""
     view = results.views.get("criticality")
     if view is None:
@@ -144,7 +144,7 @@ def _branches(results: RodResults) -> Iterator[str]:
     special = [
         f"{counted(len(at), word)} at {units.at(', '.join(at))}"
         for kind, word in SPECIAL_WORDS.items()
-        if (at := _special(curves, kind, units.force.factor))
+        if (at := _special_point_loads(curves, kind, units.force.factor))
     ]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
     verb = "begins" if len(curves) == 1 else "begin"
@@ -157,12 +157,12 @@ def _branches(results: RodResults) -> Iterator[str]:
     if not rod.hidden:
         beside = rod.coexistence
         ranges = units.forces_at(beside, rod.errors) if beside else ""
-        yield _beside(ranges, rod.coexistence_is_decided, results.rod.kind)
+        yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycles:
             yield f"Two different cycles are stable at {units.forces_at(pairs, rod.errors)}."
 
 
-def _beside(ranges: str, is_decided: bool, kind: str) -> str:
+def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
     """Sentence on the coexistence of a stable cycle and the stable straight rod.
 
     ranges: loads of coexistence as text; empty if no such load was found. is_decided: whether the stability
@@ -175,7 +175,7 @@ def _beside(ranges: str, is_decided: bool, kind: str) -> str:
     return f"It is not known whether a stable cycle exists beside the stable straight {kind}."
 
 
-def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
+def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
     """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
     branches of the rod.
     """
@@ -188,7 +188,7 @@ def _special(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[s
     return list(found)
 
 
-def _cycles(results: RodResults) -> Iterator[str]:
+def _cycle_sentences(results: RodResults) -> Iterator[str]:
     """Yields a sentence on the drawn cycles, and on the loads at which no cycle was found."""
     units = results.units
     clauses = []
@@ -213,7 +213,7 @@ def _cycles(results: RodResults) -> Iterator[str]:
         yield f"Cycles: {'; '.join(clauses)}."
 
 
-def _missing(results: RodResults) -> Iterator[str]:
+def _missing_result_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on missing results, and on results whose status is not `SUCCESS_STATUS`."""
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."

@@ -93,7 +93,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
     if not np.isfinite(v["F_end"]):
-        _write_sentence(axes, f"thresholds: {_outcome(view)}", PARAGRAPH_WIDTH)
+        _write_sentence(axes, f"thresholds: {_status_meaning(view)}", PARAGRAPH_WIDTH)
         return []
     axes.set_xlim(0, float(v["F_end"]))
     seen = draw_class_bar(axes, view, 0, upright=False)
@@ -157,7 +157,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     v = view.of_point(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
-        _write_sentence(axes, f"no mode: {_outcome(view)}", PANEL_TEXT_WIDTH)
+        _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
         return
     parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
     for part, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
@@ -184,7 +184,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         force = units.force_title(F)
         if not view.with_status(*CYCLE_WORDS).all():
             axes.set_title(force)
-            _write_sentence(axes, f"no cycle: {_outcome(view)}", PANEL_TEXT_WIDTH)
+            _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue
         shades = matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(v["shape_x"])))
         draw_clamp(axes, length)
@@ -199,7 +199,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.tick_params(labelleft=axes is panels[0])
 
 
-def _outcome(view: View) -> str:
+def _status_meaning(view: View) -> str:
     """Meaning of the status of the only point in `view`."""
     word = str(view.outcomes[0])
     return view.sentences.get(word, word)

@@ -11,9 +11,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...model.arm.quantities import SCALE_OF
 from ...results.file.view import View
-from ..branch_curves import Range
+from ..branch_curves import ParameterRange
 from ..figures import style
-from ..summary.arm.arm import own_unit
+from ..summary.arm.arm import printing_unit
 from ..summary.ranges import ranges_text, rounded
 
 THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
@@ -60,7 +60,7 @@ class PortraitUnits:
         """The load at the dimensionless force F as text, rounded according to the absolute error of F."""
         return self.at(rounded(self.force.factor * F, self.force.factor * error))
 
-    def forces_at(self, ranges: Sequence[Range], errors: Mapping[float, float]) -> str:
+    def forces_at(self, ranges: Sequence[ParameterRange], errors: Mapping[float, float]) -> str:
         """Ranges of the load as text. ranges: ranges of the dimensionless force. errors: absolute errors of
         the ends, by end.
         """
@@ -109,9 +109,9 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
     units = [
         Unit(name=name, factor=scale * factor)
         for scale, (factor, name) in (
-            (force, own_unit(view, "N" if load == "force" else "Pa", force * largest)),
-            (length, own_unit(view, "m", length)),
-            (tau2, own_unit(view, "s", tau2)),
+            (force, printing_unit(view, "N" if load == "force" else "Pa", force * largest)),
+            (length, printing_unit(view, "m", length)),
+            (tau2, printing_unit(view, "s", tau2)),
         )
     ]
     hertz = Unit(name="Hz", factor=1 / (tau * tau2))

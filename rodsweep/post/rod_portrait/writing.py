@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ..cost_and_provenance import origin_lines
 from ..output_files import atomic_write, require_output_path
-from ..report import rendered
+from ..report import rendered_template
 from ..report.page_tables import page_tables
 from ..report.pictures import CaptionedPicture, Pictures
 from ..report.vector_picture import vector_picture
@@ -50,7 +50,7 @@ def portrait_page(results: RodResults) -> str:
     at = results.units.force_at
     views += [(f"modes at {at(F)}", view) for F, view in results.modes.values()]
     views += [(f"limit cycle at {at(F)}", view) for F, view in results.cycles]
-    return rendered(
+    return rendered_template(
         "portrait.html",
         [picture],
         kind=results.rod.kind,

@@ -20,7 +20,7 @@ from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
 from ...wording import counted, is_or_are, plural
 from ..cost_and_provenance import origin_lines, rank_lines, time_lines
-from ..tables.alignment import blocks, column_cells, point_aligned, rewrap_line
+from ..tables.alignment import column_cells, point_aligned, rewrap_line, table_blocks
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
 from .branch import branch_summary
@@ -53,7 +53,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     """Summary of a result file. every_status: whether the list of statuses includes statuses that no point
     has.
     """
-    view = view.listed
+    view = view.as_list
     status = view.variables["status"]
     done = status != MISSING_STATUS
     noun = POINT_NOUNS.get(view.task, "point")
@@ -62,11 +62,13 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     lines = SUMMARIES[view.task](view, rods) if rods.any() else nothing
     a = view.attributes
     return Summary(
-        answer=_answer(view, done, lines),
-        trust=[*_unfinished(view, int((~done).sum()), noun), *lines.trust, *_failures(view)],
-        statuses=TextTable(("status", plural(noun), "meaning"), tuple(_statuses(view, status, every_status))),
+        answer=_answer_lines(view, done, lines),
+        trust=[*_unfinished_lines(view, int((~done).sum()), noun), *lines.trust, *_failure_sentences(view)],
+        statuses=TextTable(
+            ("status", plural(noun), "meaning"), tuple(_status_rows(view, status, every_status))
+        ),
         details=lines.details,
-        axes=_axes(view),
+        axes=_axes_table(view),
         numbers=lines.numbers,
         origin=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
     )
@@ -99,7 +101,7 @@ def show_summary(view: View, every_status: bool = False) -> None:
         console.print(heading, style="bold")
         print_lines(console, lines)
         if table is not None:
-            console.print(_printed(table))
+            console.print(_terminal_table(table))
 
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
@@ -107,10 +109,10 @@ def print_lines(console: Console, lines: Sequence[str]) -> None:
     wrapped.
     """
     for line in lines:
-        console.print(rewrap_line(line, console.width) if has_window(console) else line, soft_wrap=True)
+        console.print(rewrap_line(line, console.width) if wraps_lines(console) else line, soft_wrap=True)
 
 
-def has_window(console: Console) -> bool:
+def wraps_lines(console: Console) -> bool:
     """Whether lines are wrapped: true for a terminal, or if the environment variable COLUMNS is set."""
     return console.is_terminal or "COLUMNS" in os.environ
 
@@ -120,12 +122,12 @@ def _print_numbers(console: Console, table: TextTable) -> None:
     heads = [(*heading.split("\n"), "")[:2] for heading in table.headings]
     cells = zip(heads, zip(*table.rows, strict=True), strict=True)
     columns = [column_cells(head, column) for head, column in cells]
-    for block in blocks(columns, console.width if has_window(console) else MAX_TABLE_WIDTH):
+    for block in table_blocks(columns, console.width if wraps_lines(console) else MAX_TABLE_WIDTH):
         for line in ("", *block):
             console.print(line, soft_wrap=True)
 
 
-def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
+def _answer_lines(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. done: mask of the computed
     points, of the shape of the points. summary: lines of the task.
     """
@@ -135,7 +137,7 @@ def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
     return [*lines, "", "the rods without dimension:", *summary.answer] if summary.answer else lines
 
 
-def _unfinished(view: View, missing: int, noun: str) -> list[str]:
+def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
     missing: number of missing points. noun: noun for a point.
     """
@@ -163,7 +165,7 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     return lines
 
 
-def _failures(view: View) -> Iterable[str]:
+def _failure_sentences(view: View) -> Iterable[str]:
     """Yields one sentence for each distinct reason for which points failed, with one failed point as an
     example.
     """
@@ -178,7 +180,7 @@ def _failures(view: View) -> Iterable[str]:
             yield f"{name}, as at {where.replace('=', ' = ')}: {reason}"
 
 
-def _printed(table: TextTable) -> Table:
+def _terminal_table(table: TextTable) -> Table:
     """The table in a form for the terminal: without borders, numbers aligned at their decimal points."""
     printed = Table(*table.headings, box=None, pad_edge=False)
     if table.rows:
@@ -187,7 +189,7 @@ def _printed(table: TextTable) -> Table:
     return printed
 
 
-def _axes(view: View) -> TextTable:
+def _axes_table(view: View) -> TextTable:
     """Table of the quantities of an arm and of the parameters, with their values or ranges over the
     points.
     """
@@ -196,15 +198,19 @@ def _axes(view: View) -> TextTable:
         si = ALL_QUANTITIES[name].unit
         unit = view.typed.get(name, si)
         rows.append(
-            (name, *_extent(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)), unit)
+            (
+                name,
+                *_count_and_range(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)),
+                unit,
+            )
         )
-    rows += [(name, *_extent(values), DIMENSIONS[name][0]) for name, values in view.axes.items()]
+    rows += [(name, *_count_and_range(values), DIMENSIONS[name][0]) for name, values in view.axes.items()]
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))
 
 
-def _extent(values: np.ndarray) -> tuple[str, str, str]:
+def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
     values. NaN is ignored. `largest` is empty if all values are equal.
     """
@@ -215,7 +221,7 @@ def _extent(values: np.ndarray) -> tuple[str, str, str]:
     return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
-def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
+def _status_rows(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
     """Yields (status, number of points, meaning of the status). every: whether statuses that no point has are
     included.
     """

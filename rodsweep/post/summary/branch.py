@@ -7,13 +7,13 @@ import numpy as np
 from ...arrays import Array
 from ...results.file.view import View
 from ...wording import counted, is_or_are, some_of
-from ..branch_curves import Range, RodBranches, StoredBranch, ends_of, followed_parameter
-from .errors import span_of
-from .ranges import ranges_text, rounded, span_text, to_error
-from .summary_lines import SummaryLines, at_point, first_lines, proof_clause
+from ..branch_curves import ParameterRange, RodBranches, StoredBranch, branch_ends, followed_parameter
+from .errors import known_range_text
+from .ranges import number_with_error, ranges_text, rounded, span_text
+from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
 
-LIST_TOO_SHORT = "the list of special points is full; raise branch.special"
+FULL_LIST_REASON = "the list of special points is full; raise branch.special"
 """Reason for which branches are not shown, and remedy."""
 COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
@@ -41,33 +41,33 @@ BRANCH_END_WORDS = {
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of branches. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
-        return SummaryLines(list(_one_rod(RodBranches(view))), [_searched(view, done)])
+        return SummaryLines(list(_one_rod_lines(RodBranches(view))), [_searched_range_line(view, done)])
     v = view.variables
     rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(done.ravel())]
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
-    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
+    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes_text(view, done)}"
     along = followed_parameter(view)
-    answer = [line, *_special_lines(rods, along), *_coexistence(rods, along)]
-    return SummaryLines(answer, [_searched(view, done)])
+    answer = [line, *_special_lines(rods, along), *_coexistence_lines(rods, along)]
+    return SummaryLines(answer, [_searched_range_line(view, done)])
 
 
-def _one_rod(rod: RodBranches) -> Iterator[str]:
+def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     """Yields lines about every branch of the only rod in a file, with the errors of its special points."""
     along = followed_parameter(rod.view)
     v = rod.view.variables
     if rod.hidden:
         part = some_of(rod.hidden, rod.hidden + len(rod.curves), "branch")
-        yield f"{part} {is_or_are(rod.hidden)} not shown: {LIST_TOO_SHORT}"
+        yield f"{part} {is_or_are(rod.hidden)} not shown: {FULL_LIST_REASON}"
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known"
     elif not rod.curves:
         yield f"no Hopf point in the range of {along}, so that no branch begins there"
     for number, curve in enumerate(rod.curves, 1):
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
-        yield f"branch {number}, {_ends(curve, along)}: {_extent(curve, errors, along)}"
-        yield from _special_of_branch(curve, along)
+        yield f"branch {number}, {_ends_phrase(curve, along)}: {_extent_text(curve, errors, along)}"
+        yield from _special_points_between_ends(curve, along)
         if curve.stable_ranges:
             yield f"  stable cycles at {along} = {ranges_text(curve.stable_ranges, curve.errors)}"
         else:
@@ -81,7 +81,7 @@ def _one_rod(rod: RodBranches) -> Iterator[str]:
             yield f"{TWO_CYCLES_WORDS}: {along} = {ranges_text(pairs, rod.errors)}"
 
 
-def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
+def _extent_text(curve: StoredBranch, errors: Array, along: str) -> str:
     """Number of cycles on a branch, range of the parameter `along`, and range of the largest tip y, as text.
     errors: relative errors of y, (cycles,).
     """
@@ -93,30 +93,30 @@ def _extent(curve: StoredBranch, errors: Array, along: str) -> str:
     return f"{counted(int(cycles.sum()), 'cycle')}, {ranges}"
 
 
-def _special_of_branch(curve: StoredBranch, along: str) -> Iterator[str]:
+def _special_points_between_ends(curve: StoredBranch, along: str) -> Iterator[str]:
     """Yields one line for each special point between the ends of a branch. along: followed parameter."""
     for special in curve.special:
         if special.kind in ("hopf", "end"):
             continue
         if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
             continue
-        at = to_error(special.at, special.error)
+        at = number_with_error(special.at, special.error)
         kind = special.kind.replace("_", " ")
         kind += f", where branch {special.meets} meets it," * (special.meets > 0)
-        period = to_error(special.period, special.period * special.period_error)
-        y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
+        period = number_with_error(special.period, special.period * special.period_error)
+        y = number_with_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
         yield f"  {kind} at {along} = {at}, period {period} tau2, largest tip y {y} L"
 
 
-def _ends(curve: StoredBranch, along: str) -> str:
+def _ends_phrase(curve: StoredBranch, along: str) -> str:
     """Phrase for the start and the end of a branch: "from ... to ...". along: followed parameter."""
     first = curve.special[0]
     last = curve.special[-1]
-    start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
+    start = f"from the Hopf point at {along} = {number_with_error(first.at, first.error)}"
     if first.kind == "symmetry_breaking":
-        where = f"{along} = {to_error(first.at, first.error)}"
+        where = f"{along} = {number_with_error(first.at, first.error)}"
         start = f"without mirror symmetry, from branch {first.meets} at {where}"
-    end = f"{along} = {to_error(last.at, last.error)}"
+    end = f"{along} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {end}"
     if last.kind == "symmetry_breaking":
@@ -126,14 +126,14 @@ def _ends(curve: StoredBranch, along: str) -> str:
     return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
 
 
-def _sizes(view: View, done: np.ndarray) -> str:
+def _sizes_text(view: View, done: np.ndarray) -> str:
     """Clause with the ranges of period and amplitude over all cycles at the points in the mask `done`; empty
     if there is no cycle.
     """
     v = view.variables
     if not np.isfinite(v["period"][done]).any():
         return ""
-    period, y = (span_of(v, name, done) for name in ("period", "tip_y_max"))
+    period, y = (known_range_text(v, name, done) for name in ("period", "tip_y_max"))
     return f": period {period} tau2, largest tip y {y} L"
 
 
@@ -159,36 +159,38 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
             verb = "leads" if len(located) == 1 else "lead"
             yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
-        f"{at_point(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
+        f"{point_text(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
         for rod, number, curve in curves
         if (end := curve.special[-1]).reason == "no_cycle_found"
     ]
     yield from first_lines(stopped, "branch")
 
 
-def _coexistence(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
+def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
     along: followed parameter.
     """
     complete = [rod for rod in rods if not rod.hidden]
     if len(complete) < len(rods):
-        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
+        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {FULL_LIST_REASON}"
     if complete:
-        yield from _rods_with(complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete])
+        yield from _lines_on_rods_with(
+            complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete]
+        )
     two_cycles = [rod.two_cycles for rod in complete]
     if any(two_cycles):
-        yield from _rods_with(complete, along, TWO_CYCLES_WORDS, two_cycles)
+        yield from _lines_on_rods_with(complete, along, TWO_CYCLES_WORDS, two_cycles)
 
 
-def _rods_with(
-    rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[Range]]
+def _lines_on_rods_with(
+    rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[ParameterRange]]
 ) -> Iterator[str]:
     """Yields a line with the number of rods that have ranges with the property `words`, and a line for each
     of the first such rods. ranges: for each rod, ranges of the parameter `along` with the property.
     """
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
-        ": ".join(filter(None, (at_point(rod.view, rod.rod), f"{along} = {ranges_text(own, rod.errors)}")))
+        ": ".join(filter(None, (point_text(rod.view, rod.rod), f"{along} = {ranges_text(own, rod.errors)}")))
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]
@@ -196,11 +198,11 @@ def _rods_with(
     yield from first_lines(having, "rod")
 
 
-def _searched(view: View, done: np.ndarray) -> str:
+def _searched_range_line(view: View, done: np.ndarray) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points. done:
     mask of the computed points.
     """
-    start, stop = ends_of(view)
+    start, stop = branch_ends(view)
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (

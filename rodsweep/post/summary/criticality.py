@@ -9,9 +9,9 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
-from .errors import errors_of
+from .errors import absolute_errors
 from .ranges import number_and_error, rounded, span_text
-from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region
+from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region_text
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
@@ -41,36 +41,35 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         of_rod = view.of_point(0)
         lines = list(_hopf_lines(of_rod)) or [none]
         lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
-        trust = [_searched(view, done)]
+        trust = [_searched_range_line(view, done)]
         return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(of_rod))
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
-    where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
+    where = in_brackets(region_text(view, done & with_hopf)) if (done & with_hopf).any() else ""
     unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
     lines = [
         f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{unknown_clause(unknown)}"
     ]
     if not known.any():
-        return SummaryLines(lines, [_searched(view, done)])
-    a, b = (
-        (v[name][done], errors_of(v, name)[done]) for name in ("amplitude_coefficient", "frequency_slope")
-    )
+        return SummaryLines(lines, [_searched_range_line(view, done)])
+    names = ("amplitude_coefficient", "frequency_slope")
+    a, b = ((v[name][done], absolute_errors(v, name)[done]) for name in names)
     F = span_text(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
     lines += [
-        f"first Hopf point: {_counts(first)}; F = {F}, a = {span_text(*(table[:, 0] for table in a))} L",
+        f"first Hopf point: {_count_text(first)}; F = {F}, a = {span_text(*(table[:, 0] for table in a))} L",
         *_subcritical_lines(view),
     ]
     trust = [
-        _searched(view, done),
-        f"worst relative errors: c {_worst(v['landau_error'][done])}, dw/dF "
-        f"{_worst(v['growth_slope_error'][done])}, a {_worst(v['amplitude_coefficient_error'][done])}, b "
-        f"{_worst(v['frequency_slope_error'][done])}",
+        _searched_range_line(view, done),
+        f"worst relative errors: c {_maximum(v['landau_error'][done])}, dw/dF "
+        f"{_maximum(v['growth_slope_error'][done])}, a {_maximum(v['amplitude_coefficient_error'][done])}, b "
+        f"{_maximum(v['frequency_slope_error'][done])}",
     ]
     which = "stored" if (v["crossing_count"][done] > known.sum(axis=-1)).any() else "all"
-    every = f"{which} Hopf points: {_counts(side)}; a = {span_text(*a)} L, b = {span_text(*b)} L^2/(k3 tau2)"
-    return SummaryLines(lines, trust, [every])
+    sizes = f"a = {span_text(*a)} L, b = {span_text(*b)} L^2/(k3 tau2)"
+    return SummaryLines(lines, trust, [f"{which} Hopf points: {_count_text(side)}; {sizes}"])
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
@@ -80,7 +79,7 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         form = "its normal form is not known"
         if np.isfinite(v["landau_error"][i]):
-            form = f"{CRITICALITY_WORDS[int(v['criticality'][i])]}, {_words(v, int(i))}"
+            form = f"{CRITICALITY_WORDS[int(v['criticality'][i])]}, {_nearby_cycles_clause(v, int(i))}"
         after = int(v["unstable_after"][i])
         modes = counted(after, "unstable mode") if after >= 0 else "number of unstable modes not known"
         yield f"{kind} at F = {F}: {form}; {modes} above"
@@ -94,13 +93,13 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in at)
     rows = []
     for name, words in HOPF_NUMBERS.items():
-        numbers = zip(v[name][at].tolist(), errors_of(v, name)[at].tolist(), strict=True)
+        numbers = zip(v[name][at].tolist(), absolute_errors(v, name)[at].tolist(), strict=True)
         rows.append((words, *(cell for number in numbers for cell in number_and_error(*number))))
     headings = ("", *(head for kind in kinds for head in (kind, "+-")))
     return TextTable(headings, tuple(rows)) if len(at) else None
 
 
-def _words(v: Mapping[str, np.ndarray], i: int) -> str:
+def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
     smaller, and whether the cycles are stable. v: variables of this rod.
     """
@@ -140,7 +139,7 @@ def _subcritical_lines(view: View) -> Iterator[str]:
         yield f"and subcritical for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
 
 
-def _counts(side: np.ndarray) -> str:
+def _count_text(side: np.ndarray) -> str:
     """Numbers of supercritical, subcritical and undecided Hopf points, as text. side: signs of Re c, of any
     shape.
     """
@@ -148,7 +147,7 @@ def _counts(side: np.ndarray) -> str:
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
-def _searched(view: View, done: np.ndarray) -> str:
+def _searched_range_line(view: View, done: np.ndarray) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points. done: mask of the
     computed points.
     """
@@ -162,7 +161,7 @@ def _searched(view: View, done: np.ndarray) -> str:
     )
 
 
-def _worst(values: np.ndarray) -> str:
+def _maximum(values: np.ndarray) -> str:
     """Largest of the values that are not NaN, as text; "not known" if all values are NaN."""
     known = values[~np.isnan(values)]
     return f"{known.max():.1e}" if known.size else "not known"

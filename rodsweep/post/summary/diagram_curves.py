@@ -7,7 +7,7 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted
-from .ranges import error_text, span_text, to_error
+from .ranges import error_text, number_with_error, span_text
 
 CURVE_END_WORDS = {
     "none": "continues",
@@ -50,7 +50,7 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
         kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
         ends = " to ".join(
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
-            f"{to_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
+            f"{number_with_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
             for side, i in zip(END_SUFFIXES, on[[0, -1]], strict=True)
         )
@@ -72,14 +72,14 @@ def agreement_lines(view: View, line: str) -> list[str]:
     near = f"crossings on rows lie within {within} of these curves along {line}; " * (hopf + double > 0)
     lines = [
         f"curves: {hopf} of Hopf points, {double} of double eigenvalues; {near}"
-        f"{_on_none(int(v['curves_untraced']))}"
+        f"{_on_no_curve_clause(int(v['curves_untraced']))}"
     ]
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         within = error_text(float(v["cycle_curve_agreement"]))
         lines.append(
             f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
-            f"these curves along {line}; {_on_none(int(v['cycle_curves_untraced']))}"
+            f"these curves along {line}; {_on_no_curve_clause(int(v['cycle_curves_untraced']))}"
         )
     return lines
 
@@ -100,8 +100,8 @@ def cut_lines(view: View, line: str, row: str) -> list[str]:
     return lines
 
 
-def _on_none(count: int) -> str:
-    """Clause on the number `count` of points on rows that lie on no curve."""
+def _on_no_curve_clause(count: int) -> str:
+    """Clause on the number `count` of points on rows that lie on no curve; also for 0."""
     return f"{count} is on no curve" if count == 1 else f"{count} are on no curve"
 
 
@@ -113,7 +113,7 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
     lines = []
     for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
         what = "Hopf points" if kind else "double eigenvalues"
-        where = _place(view, "fold", i, (row, line))
+        where = _position_text(view, "fold", i, (row, line))
         lines.append(f"fold of the curve of {what}, where {(line, row)[int(of)]} is extremal: {where}")
     if "partial_beam_k1" in v:
         lines.append(
@@ -123,13 +123,14 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
     return lines
 
 
-def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
+def _position_text(view: View, what: str, i: int, names: tuple[str, str]) -> str:
     """Position of the i-th fold or generalised Hopf point as text, with errors. what: prefix of the
     variables, "fold" or "bautin". names: parameters.
     """
     v = view.variables
     return ", ".join(
-        f"{name} = {to_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}" for name in names
+        f"{name} = {number_with_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}"
+        for name in names
     )
 
 
@@ -159,7 +160,7 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
-        + _place(view, "bautin", i, (row, line))
+        + _position_text(view, "bautin", i, (row, line))
         for i in range(len(v["bautin_curve"]))
     ]
     if unlocated := int(v["bautin_unlocated"]):

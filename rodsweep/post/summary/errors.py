@@ -52,7 +52,7 @@ STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
 """Variables with the eigenvalue of the straight rod in results of limit cycles."""
 
 
-def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, of the shape of the variable; 0 for a variable without an
     error. v: variables of the file.
     """
@@ -60,10 +60,10 @@ def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
         if whole in COMPLEX_VARIABLES and part != "error" and f"{whole}_error" in v:
             return np.hypot(v[f"{whole}_real"], v[f"{whole}_imag"]) * v[f"{whole}_error"]
-        return _errors(v, name)
+        return _errors_of_real_variable(v, name)
 
 
-def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, which is not a part of a complex variable. The errors have the
     shape of the variable. NumPy may warn of infinite values. v: variables of the file.
     """
@@ -104,12 +104,12 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(errors_of(v, name) >= UNKNOWN_FROM_ERROR * values)
+    return (values == 0) | ~(absolute_errors(v, name) >= UNKNOWN_FROM_ERROR * values)
 
 
-def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
+def known_range_text(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
     """Range of the known values of the variable `name` over the points in `mask`, (...,), as text, rounded
     according to the errors. v: variables of the file.
     """
     chosen = mask & is_known(v, name) if name == "transient_time" else mask
-    return span_text(v[name][chosen], errors_of(v, name)[chosen])
+    return span_text(v[name][chosen], absolute_errors(v, name)[chosen])

@@ -11,10 +11,17 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .arm.arm import region_of_arms
-from .errors import errors_of, span_of
+from .errors import absolute_errors, known_range_text
 from .ranges import error_text, number_and_error, span_text
 from .stability import stability_lines
-from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region, varied
+from .summary_lines import (
+    SummaryLines,
+    TextTable,
+    in_brackets,
+    proof_clause,
+    region_text,
+    varied_parameters_at_points,
+)
 
 OUTCOME_WORDS = {"cycle": "beats", "straight": "stays straight"}
 """Phrase for the outcome at a point, by status; for other statuses the name of the status is used."""
@@ -32,22 +39,24 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     v = view.variables
     beats = done & view.with_status("cycle")
     orbit = done & view.with_status(*CYCLE_WORDS)
-    stability, of_arm = _stability(view)
-    answer = [outcome_line(view, done, region), *stability, *_second_state_lines(v, done)]
+    stability, of_arm = _threshold_lines(view)
+    answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(v, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
         of_arm.insert(0, outcome_line(view, done, region_of_arms))
     trust = _proof_lines(view)
-    rate, frequency = (span_of(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
+    rate, frequency = (known_range_text(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
     on_torus = done & view.with_status("torus")
     if on_torus.any():
-        details.append(f"tori: the cycles inside have multipliers {span_of(v, 'multiplier', on_torus)}")
+        details.append(
+            f"tori: the cycles inside have multipliers {known_range_text(v, 'multiplier', on_torus)}"
+        )
     if done.size == 1 and orbit.any():
         answer.insert(1, orbit_line(v, stable=bool(beats.any())))
         numbers = orbit_table(v)
     elif beats.any():
-        period, y = (span_of(v, name, beats) for name in ("period", "tip_y_max"))
+        period, y = (known_range_text(v, name, beats) for name in ("period", "tip_y_max"))
         answer.insert(1, f"period: {period} tau2; largest y of the tip: {y} L")
         trust.insert(0, _error_line(v, beats))
     details += _cycle_lines(v, beats) if beats.any() else []
@@ -75,11 +84,11 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
     return f"of {whole}: {', '.join(counts)}"
 
 
-def _stability(view: View) -> tuple[list[str], list[str]]:
+def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
     varied parameters if F is not varied.
     """
-    names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
+    names = [name for name in LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
     of_arm = list[str]()
     for name in names[:1] if "F" in names else names:
@@ -120,7 +129,7 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
     for words, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
         if np.isfinite(value):
-            rows.append((words, *number_and_error(value, float(errors_of(v, name).max())), unit))
+            rows.append((words, *number_and_error(value, float(absolute_errors(v, name).max())), unit))
     return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
@@ -132,17 +141,17 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
     lines = []
     straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
     if straight.any():
-        lines.append(f"two states{_at(straight, done)}: the straight rod is stable too")
+        lines.append(f"two states{_at_count(straight, done)}: the straight rod is stable too")
     if cycle.any():
         lines.append(
-            f"a second state is possible{_at(cycle, done)}: the rod is straight, and its Hopf point at "
+            f"a second state is possible{_at_count(cycle, done)}: the rod is straight, and its Hopf point at "
             f"F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may "
             "lead to a cycle; the task branch follows this cycle"
         )
     return lines
 
 
-def _at(some: np.ndarray, done: np.ndarray) -> str:
+def _at_count(some: np.ndarray, done: np.ndarray) -> str:
     """Clause on the number of points in the mask `done` that are also in the mask `some`; empty if `done` has
     a single point.
     """
@@ -156,21 +165,21 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     times = span_text(ratio, ratio * v["period_error"][beats])
     tips = (
-        f"{what} {span_of(v, f'tip_{name}', beats)} {unit}"
+        f"{what} {known_range_text(v, f'tip_{name}', beats)} {unit}"
         for what, name, unit in (
             ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest theta", "theta_max", "rad"),
         )
     )  # fmt: skip
-    frequency = span_of(v, "frequency", beats)
+    frequency = known_range_text(v, "frequency", beats)
     lines = [f"frequency {frequency} rad/tau2, {times} times the frequency of the leading mode"]
     if "period_tau1" in v:
-        lines.append(f"period: {span_of(v, 'period_tau1', beats)} tau1")
+        lines.append(f"period: {known_range_text(v, 'period_tau1', beats)} tau1")
     return [
         *lines,
         f"tip: {', '.join(tips)}",
-        f"power of the force, mean: {span_of(v, 'injection_mean', beats)} k3/(L tau2)",
-        f"multiplier: {span_of(v, 'multiplier', beats)}; periods integrated: "
-        f"{span_text(v['periods'][beats])}; least stretch: {span_of(v, 'least_stretch', beats)}",
+        f"power of the force, mean: {known_range_text(v, 'injection_mean', beats)} k3/(L tau2)",
+        f"multiplier: {known_range_text(v, 'multiplier', beats)}; periods integrated: "
+        f"{span_text(v['periods'][beats])}; least stretch: {known_range_text(v, 'least_stretch', beats)}",
     ]
 
 

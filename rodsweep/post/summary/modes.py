@@ -4,8 +4,8 @@ import numpy as np
 
 from ...results.file.view import View
 from ...wording import counted, some_of
-from .errors import errors_of, span_of
-from .ranges import NONE, span_text
+from .errors import absolute_errors, known_range_text
+from .ranges import NONE_TEXT, span_text
 from .spectrum import (
     count_line,
     eigenvalue_table,
@@ -47,16 +47,16 @@ def growth_lines(view: View, done: np.ndarray) -> list[str]:
     """
     v = view.variables
     condition = v["condition"][done][:, 0]
-    error = errors_of(v, "condition")[done][:, 0]
+    error = absolute_errors(v, "condition")[done][:, 0]
     lines = [f"condition of the leading eigenvalue: {span_text(condition, error)}"]
     if "transient_growth" not in v:
         return lines
     growth = v["transient_growth"][done]
-    lines.append(f"numerical abscissa: {span_of(v, 'numerical_abscissa', done)} 1/tau2")
+    lines.append(f"numerical abscissa: {known_range_text(v, 'numerical_abscissa', done)} 1/tau2")
     if np.isfinite(growth).any():
         finite = done & np.isfinite(v["transient_growth"])
-        most, when = (span_of(v, f"transient_{name}", finite) for name in ("growth", "time"))
-        at = "" if when == NONE else f", at t = {when} tau2"
+        most, when = (known_range_text(v, f"transient_{name}", finite) for name in ("growth", "time"))
+        at = "" if when == NONE_TEXT else f", at t = {when} tau2"
         lines.append(f"largest transient growth: {most} times{at}")
     if np.isinf(growth).any():
         points = counted(int(np.isinf(growth).sum()), "point")

@@ -34,11 +34,11 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
-    answer = [*share_lines(v["class"][done]), *row_lines(view, done, line, row)]
+    answer = [*class_share_lines(v["class"][done]), *lines_about_rows(view, done, line, row)]
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
     trust = search_lines(view, done, "row")
-    details = [*count_lines(v["class"][done]), *cost_lines(view, done), *saving_lines(view, done, line)]
+    details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
         trust += [*agreement_lines(view, line), *cut_lines(view, line, row)]
@@ -54,7 +54,7 @@ def count_lines(found: np.ndarray) -> list[str]:
     return [f"of {counted(found.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
 
-def saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
+def cost_saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
@@ -103,14 +103,14 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     return lines
 
 
-def share_lines(found: np.ndarray) -> list[str]:
+def class_share_lines(found: np.ndarray) -> list[str]:
     """List with a line on the fraction of the grid points in each class. found: class of each point, of any
     shape."""
     shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
     return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
 
 
-def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
+def row_start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
     done: mask of the computed rows, (...,). line: parameter along a row.
     """
@@ -122,13 +122,13 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     return [f"at {line} = {view.variables[line][0]:.6g}, where the rows begin, {rows}: {', '.join(words)}"]
 
 
-def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
+def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the rows in the mask `done`, (...,): states at their starts, crossings by kind, undecided
     ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a row.
     """
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
-    lines = start_lines(view, done, line)
+    lines = row_start_lines(view, done, line)
     stored = (v["crossing_kind"] > 0).sum(axis=-1)
     unknown = done & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))  # of incomplete rows
     for number, word in enumerate(CROSSING_KINDS):

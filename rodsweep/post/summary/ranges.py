@@ -22,7 +22,7 @@ ROUNDING_EXCESS = 1e-9
 further."""
 MIN_ERROR = 1e-300
 """Smaller errors are not rounded up, because the unit of their digit would underflow."""
-NONE = "none"
+NONE_TEXT = "none"
 """Text for a missing number or an empty range."""
 
 
@@ -35,7 +35,7 @@ def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = 
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
     if not is_finite.any():
-        return NONE
+        return NONE_TEXT
     known = np.zeros_like(values) if errors is None else np.asarray(errors, dtype=float)
     flat = values[is_finite]
     known = np.nan_to_num(known[is_finite], nan=0.0)
@@ -49,11 +49,11 @@ def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, fl
     end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS
     digits at most.
     """
-    ends = [[_rounded(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
-    return ", ".join(" to ".join(pair) for pair in ends) or NONE
+    ends = [[_rounded_to_error(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
+    return ", ".join(" to ".join(pair) for pair in ends) or NONE_TEXT
 
 
-def to_error(value: float, error: float) -> str:
+def number_with_error(value: float, error: float) -> str:
     """A number with its absolute error, as text: "1.234 (+- 2e-03)". The last printed digit of the number has
     the decimal place of the error.
 
@@ -62,7 +62,7 @@ def to_error(value: float, error: float) -> str:
     value = float(value)
     error = float(error)
     if not isfinite(value):
-        return NONE if isnan(value) else f"{value}"
+        return NONE_TEXT if isnan(value) else f"{value}"
     if value == 0:
         return "0"
     if not isfinite(error):
@@ -95,7 +95,7 @@ def stated_error(value: float, error: float) -> tuple[str, float]:
     """Returns (number as text, rounded at the decimal place of `error`; sum of `error` and the rounding
     error).
     """
-    text = _rounded(value, error / 10, MAX_DIGITS)
+    text = _rounded_to_error(value, error / 10, MAX_DIGITS)
     return text, error + abs(float(text) - value)
 
 
@@ -113,10 +113,10 @@ def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
     """A number as text with at most `most` significant digits, chosen such that `error` is at most half a
     unit of the last digit; NONE for a number that is not finite.
     """
-    return _rounded(float(value), 2 * float(error), most) if isfinite(value) else NONE
+    return _rounded_to_error(float(value), 2 * float(error), most) if isfinite(value) else NONE_TEXT
 
 
-def _rounded(value: float, error: float, most: int) -> str:
+def _rounded_to_error(value: float, error: float, most: int) -> str:
     """A finite number as text, rounded at the decimal place of `error`, with at least one and at most `most`
     significant digits.
     """

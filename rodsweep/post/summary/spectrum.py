@@ -9,7 +9,7 @@ from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .ranges import number_and_error, span_text
 from .stability import stability_lines
-from .summary_lines import SummaryLines, TextTable, in_brackets, region
+from .summary_lines import SummaryLines, TextTable, in_brackets, region_text
 
 LOCATION_EXPLANATION = (
     "located where the leading eigenvalue changes between two forces of the file: F** by a zero of the "
@@ -17,7 +17,7 @@ LOCATION_EXPLANATION = (
     "is missing"
 )
 """Explanation of the method by which the forces in `threshold_lines` are located."""
-NOT_LOCATED = "not located between the forces of the file; `task: thresholds` finds them"
+NOT_LOCATED_NOTE = "not located between the forces of the file; `task: thresholds` finds them"
 """Explanation for arms that are not uniform or not of linear material: the forces are bracketed, not
 located."""
 PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
@@ -44,7 +44,9 @@ def stable_line(view: View, done: np.ndarray) -> str:
     whole = counted(int(done.sum()), "point")
     if len(found) == 1:
         return f"straight rod: {next(iter(found))} at all {whole}"
-    counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
+    counts = (
+        f"{word} at {int(mask.sum())}{in_brackets(region_text(view, mask))}" for word, mask in found.items()
+    )
     return f"straight rod, of {whole}: {', '.join(counts)}"
 
 
@@ -62,8 +64,8 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
     empty lists if F does not vary.
     """
-    lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
-    how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED
+    lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED_NOTE
     return lines, [f"thresholds: {how}"] if lines else [], of_arm
 
 

@@ -50,14 +50,14 @@ def stability_lines(
     for kind, words in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
-            texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
+            texts.append(f"{words.format(name=name)}: {_positions_text(found, names, name)}")
             every = [(point, lines[i].at) for i, points in found.items() for point in points]
             located = [(point, at) for point, at in every if isinstance(point, LocatedChange)]
             of_arm += thresholds_of_arm(view, kind, located) if name == "F" else []
     return texts, of_arm
 
 
-def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
+def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
     """Positions of thresholds as text: one by one for a few lines of points, else as a range. found:
     thresholds by index of the line. names: description of each line. along: parameter along the lines.
     """
@@ -69,9 +69,9 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
         frequency = located[0].frequency
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
-        return _text(located[0]) + error + some + beats
+        return _position_text(located[0]) + error + some + beats
     if len(found) <= MAX_LISTED_LINES:
-        each = ((" and ".join(map(_text, found[i])), names[i]) for i in found)
+        each = ((" and ".join(map(_position_text, found[i])), names[i]) for i in found)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in each)}{error}"
     if not located:
         ends = [(point.low, point.high) for point in points if isinstance(point, BracketedChange)]
@@ -82,10 +82,10 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     last = max(located, key=lambda point: point.position)
     rest = len(points) - len(located)
     more = f"; {counted(rest, 'further threshold')} known only to lie between two points" if rest else ""
-    return f"{_text(first)} to {_text(last)}{error}{some}{more}"
+    return f"{_position_text(first)} to {_position_text(last)}{error}{some}{more}"
 
 
-def _text(threshold: Threshold) -> str:
+def _position_text(threshold: Threshold) -> str:
     """Position of a threshold as text, rounded according to its error; for a bracketed threshold, both
     ends.
     """

@@ -58,17 +58,17 @@ class Summary:
     """Table of numbers below the answer."""
 
 
-def varied(view: View) -> dict[str, np.ndarray]:
+def varied_parameters_at_points(view: View) -> dict[str, np.ndarray]:
     """Parameters that differ between points of a file, by name: values at all points, (points,)."""
     return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
 
 
-def region(view: View, mask: np.ndarray) -> str:
+def region_text(view: View, mask: np.ndarray) -> str:
     """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if no parameter
     varies.
     """
     ranges = []
-    for name, column in varied(view).items():
+    for name, column in varied_parameters_at_points(view).items():
         values = column[mask.ravel()]
         is_finite = np.isfinite(values)
         ends = [span_text(values)] if is_finite.any() else []
@@ -76,9 +76,11 @@ def region(view: View, mask: np.ndarray) -> str:
     return ", ".join(ranges)
 
 
-def at_point(view: View, index: int) -> str:
+def point_text(view: View, index: int) -> str:
     """Varied parameters at the point with the given index, as text."""
-    return ", ".join(f"{name} = {column[index]:.6g}" for name, column in varied(view).items())
+    return ", ".join(
+        f"{name} = {column[index]:.6g}" for name, column in varied_parameters_at_points(view).items()
+    )
 
 
 def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:

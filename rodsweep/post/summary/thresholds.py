@@ -10,7 +10,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import counted, plural, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span_text
-from .summary_lines import SummaryLines, TextTable, at_point, in_brackets, proof_clause
+from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
 from .threshold_trends import monotony_lines
 
 FIRST_THRESHOLD_WORDS = {
@@ -38,7 +38,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
         return SummaryLines(
             crossing_lines(view), completeness_lines(view), details, of_arm, crossing_table(view)
         )
-    answer = [event_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
+    answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
     trust = [
         *search_lines(view, done, "rod"),
         f"searched up to F = {span_text(view.variables['F_end'][done])}",
@@ -46,7 +46,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
 
 
-def event_line(view: View, done: np.ndarray, event: str) -> str:
+def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
     with this threshold and with an unknown result. done: mask of the computed points, of the shape of the
     points.
@@ -64,7 +64,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     low = int(np.nanargmin(F))
     high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
-    places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
+    places = [f"{rounded(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
     where = f"all {counted(rods, 'rod')}" if found.sum() == rods else some_of(int(found.sum()), rods, "rod")
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span_text(v[rate][done])} {unit}"

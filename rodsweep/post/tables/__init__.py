@@ -12,7 +12,7 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
 from .columns import Column
-from .contents import BRANCHES, GRID, POINTS, Contents, chosen_table, contents_of, refuse_unknown
+from .contents import BRANCHES, GRID, POINTS, Contents, chosen_table, contents_of, refuse_unknown_columns
 from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
 
 
@@ -42,7 +42,7 @@ class Tables:
 
     def __post_init__(self) -> None:
         """Replaces a grid over an arm's quantities by the list of its points."""
-        object.__setattr__(self, "view", self.view.listed)
+        object.__setattr__(self, "view", self.view.as_list)
 
     @cached_property
     def contents(self) -> Contents:
@@ -63,7 +63,7 @@ class Tables:
             before = list(PARAMETERS)[: list(PARAMETERS).index(found[0].name)]
             beside.insert(sum(column.name in before for column in beside), found.pop(0))
         by_name = {column.name: column for column in (*beside, *found)}
-        refuse_unknown(self.view.path, tuple(columns), tuple(by_name), name)
+        refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
         if not columns:
             hidden = {v.name for v in self.contents.of_points if v.name != "status"}
             columns = [each for each in by_name if name == POINTS or each not in hidden]
@@ -116,8 +116,13 @@ def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArr
     cycle, or not a special point. A special point follows the cycle that precedes it on the branch.
     """
     shape = view.variables["status"].size
-    branch = np.concatenate([_of(view, "branch", shape, cycles), _of(view, "special_branch", shape, special)])
-    place = np.concatenate([cycles[1] + 1, _of(view, "special_point", shape, special)])
+    branch = np.concatenate(
+        [
+            _values_at_items(view, "branch", shape, cycles),
+            _values_at_items(view, "special_branch", shape, special),
+        ]
+    )
+    place = np.concatenate([cycles[1] + 1, _values_at_items(view, "special_point", shape, special)])
     point = np.concatenate([cycles[0], special[0]])
     kind = np.repeat([0, 1], [len(cycles[0]), len(special[0])])
     order = np.lexsort((np.concatenate([cycles[1], special[1]]), kind, place, branch, point))
@@ -139,7 +144,7 @@ def merged_columns(
     merged = []
     for column in cycles:
         values = column.rows(of_cycle)
-        counterpart = named.get(_special_of(column.name, along))
+        counterpart = named.get(_special_variable_name(column.name, along))
         if counterpart is not None:
             others = counterpart.rows(of_special)
             both = np.where(values.absent, others.values, values.values)
@@ -148,7 +153,7 @@ def merged_columns(
     return [*merged, named["special_kind"].rows(of_special)]
 
 
-def _special_of(name: str, along: str) -> str:
+def _special_variable_name(name: str, along: str) -> str:
     """Name of the variable of special points that corresponds to the variable `name` of cycles. along:
     followed parameter.
     """
@@ -159,7 +164,7 @@ def _special_of(name: str, along: str) -> str:
     return f"special_{name}"
 
 
-def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:
+def _values_at_items(view: View, name: str, count: int, rows: Rows) -> NDArray:
     """Values of the variable `name` at the items of a list, (rows,). count: number of points. rows: indices
     of the items.
     """

@@ -4,38 +4,38 @@ import re
 import textwrap
 from collections.abc import Iterator, Sequence
 
-WIDTH = 80
+LINE_WIDTH = 80
 """Largest length of a printed line, in characters: the usual width of a terminal."""
 COLUMN_GAP = "  "
 """Space between two columns."""
 MIN_PROSE_WIDTH = 24
 """Smallest width, in characters, of a last column of prose. If less space remains, the prose is written on
 separate lines below the row."""
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
+NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|inf)")
 """Pattern for a number in decimal notation, or inf."""
 NO_BREAK = "\xa0"
 """No-break space; a line is never broken at this character."""
-UNBREAKABLE = re.compile(r" = \S+| \(\+- [^)]*\)")
+UNBREAKABLE_PATTERN = re.compile(r" = \S+| \(\+- [^)]*\)")
 """Pattern for the parts of a sentence that stay on one line: "= value" after a name, and an error in brackets
 after a number."""
-Line = tuple[str, ...]
+RowCells = tuple[str, ...]
 """Cells of a row, or of one line of the headings."""
 
 
-def wrap_cell_text(text: str, indent: str = "  ", width: int = WIDTH) -> str:
+def wrap_cell_text(text: str, indent: str = "  ", width: int = LINE_WIDTH) -> str:
     """`text` wrapped to lines of at most `width` characters; all lines except the first start with
     `indent`.
     """
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
 
 
-def rewrap_line(line: str, width: int = WIDTH) -> str:
+def rewrap_line(line: str, width: int = LINE_WIDTH) -> str:
     """`line` wrapped to at most `width` characters; the following lines are indented by two more spaces.
 
     A name and its value stay on one line, as do a number and its error. File names are not broken.
     """
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    whole = UNBREAKABLE.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
+    whole = UNBREAKABLE_PATTERN.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
     lines = textwrap.wrap(
         whole, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )
@@ -46,7 +46,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
     """Cells of a column padded to equal length. Numbers are aligned at their decimal points; if a cell is not
     a number, all cells are aligned at the left.
     """
-    if not all(NUMBER.fullmatch(cell) for cell in cells if cell):
+    if not all(NUMBER_PATTERN.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
         return [f"{cell:{width}}" for cell in cells]
     places = [re.search(r"[.e]|$", cell) for cell in cells]
@@ -68,7 +68,7 @@ def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
     return [f"{cell:{width}}" for cell in (*heads, *aligned)]
 
 
-def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[list[str]]:
+def table_blocks(columns: Sequence[Sequence[str]], width: int = LINE_WIDTH) -> Iterator[list[str]]:
     """Yields blocks of lines at most `width` wide: the first column, and as many of the following columns as
     fit. columns: cells of every column, as from `column_cells`.
 
@@ -78,19 +78,19 @@ def blocks(columns: Sequence[Sequence[str]], width: int = WIDTH) -> Iterator[lis
     for column in others:
         taken = sum(len(each[0]) + len(COLUMN_GAP) for each in block)
         if len(block) > 1 and taken + len(column[0]) > width:
-            yield _lines(block)
+            yield _table_lines(block)
             block = [first]
         block.append(column)
-    yield _lines(block)
+    yield _table_lines(block)
 
 
-def _lines(columns: Sequence[Sequence[str]]) -> list[str]:
+def _table_lines(columns: Sequence[Sequence[str]]) -> list[str]:
     """Lines of a table with the given columns, without empty lines."""
     lines = (COLUMN_GAP.join(cells).rstrip() for cells in zip(*columns, strict=True))
     return [line for line in lines if line]
 
 
-def rows_with_prose(rows: Sequence[Line], width: int = WIDTH) -> list[str]:
+def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[str]:
     """Lines of a table whose last column is prose. The prose is wrapped to the right of the other columns, or
     below the row if less than MIN_PROSE_WIDTH remains. width: largest length of a line.
     """

@@ -77,7 +77,7 @@ class Column:
         texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
         if not self.given:
             return texts
-        return [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]
+        return [_without_rounding_error(value, text) for value, text in zip(self.values, texts, strict=True)]
 
 
 def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
@@ -86,19 +86,19 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
     """
     known = dict(variable.flags) if words is None else words
     meaning = variable.long_name.removesuffix(NOT_KNOWN_SUFFIX)
-    absent = absent_in(variable, values)
+    absent = missing_values_mask(variable, values)
     boolean = variable.is_boolean
     return Column(variable.name, variable.units, meaning, values, absent, known, is_boolean=boolean)
 
 
-def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
+def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Column:
     """Column of a parameter or another coordinate, with its name, unit and meaning. values: (rows,); NaN, a
     missing value, stands for an arm to which no rod corresponds.
     """
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 
 
-def _typed(value: float, text: str) -> str:
+def _without_rounding_error(value: float, text: str) -> str:
     """Text of a coordinate, without rounding error if this text is much shorter: 2500 for 2500.0000000000005.
     text: the value with all digits.
     """
@@ -109,7 +109,7 @@ def _typed(value: float, text: str) -> str:
     return short if is_close and len(short) + 2 < len(text) else text
 
 
-def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
+def missing_values_mask(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
     """Mask of missing values of a variable, of the shape of `values`. A missing value is NaN, the fill value
     -1, or a flag with a word in UNUSED_WORDS.
     """

@@ -13,7 +13,7 @@ from ...results.file.view import View
 from ...results.layouts import beside_points, layout_of
 from ...results.layouts.variables import Variable
 
-THERE_ARE = "there are"
+LIST_INTRO = "there are"
 """Phrase before the list of known names in an error message."""
 POINTS = "points"
 """Name of the table with one row for each point of the file."""
@@ -21,7 +21,7 @@ GRID = "grid"
 """Name of the table of grid points of a phase diagram."""
 BRANCHES = "branches"
 """Name of the table of cycles and special points in their order on the branches."""
-PARTS_OF_BRANCHES = {"cycles", "special_points"}
+BRANCHES_TABLE_PARTS = {"cycles", "special_points"}
 """Names of the two tables that the table `branches` merges."""
 TABLE_NAMES = {
     ("mode",): "modes",
@@ -71,7 +71,7 @@ class Contents:
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of all tables of the result."""
-        branches = (BRANCHES,) if self.lists.keys() >= PARTS_OF_BRANCHES else ()
+        branches = (BRANCHES,) if self.lists.keys() >= BRANCHES_TABLE_PARTS else ()
         return (POINTS, *branches, *self.lists)
 
     def dimensions(self, table: str) -> tuple[str, ...]:
@@ -86,7 +86,7 @@ def contents_of(view: View) -> Contents:
     lists: dict[str, list[Variable]] = {}
     for variable in layout_of(config).variables:
         if variable.extra:
-            lists.setdefault(name_of(variable.extra), []).append(variable)
+            lists.setdefault(table_name_of(variable.extra), []).append(variable)
         else:
             own.append(variable)
     with_points = set(lists)
@@ -95,15 +95,15 @@ def contents_of(view: View) -> Contents:
             continue
         of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))
         if of_items != variable.extra:
-            lists[name_of(of_items)].append(variable)
+            lists[table_name_of(of_items)].append(variable)
         elif variable.extra:
-            lists.setdefault(name_of(variable.extra), []).append(variable)
+            lists.setdefault(table_name_of(variable.extra), []).append(variable)
     own.sort(key=lambda variable: variable.name != "status")
     found = {name: tuple(variables) for name, variables in lists.items()}
     return Contents(tuple(own), found, frozenset(found.keys() - with_points))
 
 
-def name_of(dimensions: tuple[str, ...]) -> str:
+def table_name_of(dimensions: tuple[str, ...]) -> str:
     """Name of the table with the given dimensions. dimensions: without the dimensions of the points."""
     return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
@@ -116,13 +116,13 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
     if table is not None:
         if table not in contents.tables:
             raise InputError(
-                f"{view.path} has no table {table!r}; {unknown_key_hint(table, contents.tables, THERE_ARE)}"
+                f"{view.path} has no table {table!r}; {unknown_key_hint(table, contents.tables, LIST_INTRO)}"
             )
         return table
     holding = {v.name: name for name, variables in contents.lists.items() for v in variables}
     holding |= {name: each for each in contents.lists for name in contents.dimensions(each)}
     lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
-    if set(lists) == PARTS_OF_BRANCHES:
+    if set(lists) == BRANCHES_TABLE_PARTS:
         return BRANCHES
     if len(lists) > 1:
         pair = [next(name for name in columns if holding.get(name) == each) for each in lists[:2]]
@@ -130,19 +130,23 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
             f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; name columns of one table"
         )
     every = (*(v.name for v in contents.of_points), *holding, *view.point_columns, *view.quantities)
-    refuse_unknown(view.path, columns, every, "")
+    refuse_unknown_columns(view.path, columns, every, "")
     if lists:
         return lists[0]
     return POINTS if columns else DEFAULT_TABLE[view.task]
 
 
-def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str) -> None:
+def refuse_unknown_columns(
+    path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str
+) -> None:
     """Raises InputError for the first name in `columns` that is not in `known` or occurs twice. table: name
     of the table, for the message; empty for all tables.
     """
     for index, name in enumerate(columns):
         if name not in known:
             what = f"the table {table} has" if table else "its tables have"
-            raise InputError(f"{path}: {what} no column {name!r}; {unknown_key_hint(name, known, THERE_ARE)}")
+            raise InputError(
+                f"{path}: {what} no column {name!r}; {unknown_key_hint(name, known, LIST_INTRO)}"
+            )
         if name in columns[:index]:
             raise InputError(f"{path}: the column {name} is named twice")

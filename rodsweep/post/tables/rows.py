@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
-from .columns import Column, absent_in, column_of, coordinate, marks_missing_items
+from .columns import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
 
 Rows = tuple[NDArray[np.int64], ...]
 """Indices of the items of a list, (rows,) each: index of the point, then index along each dimension of the
@@ -32,7 +32,7 @@ def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
             values = view.variables[variable.name]
             inner = len(variable.extra)
             values = values.reshape(points, *values.shape[values.ndim - inner :])
-            exists = exists | ~absent_in(variable, values)
+            exists = exists | ~missing_values_mask(variable, values)
     return np.nonzero(exists)
 
 
@@ -41,7 +41,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
     of the point of each row, (rows,).
     """
     for name, values in view.point_columns.items():
-        yield coordinate(name, *DIMENSIONS[name], values[points])
+        yield coordinate_column(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
         yield quantity_column(name, values[points])
     missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
@@ -60,7 +60,7 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
     """
     names = variables[0].extra
     for name, items in zip(names, rows[1:], strict=True):
-        yield coordinate(name, *DIMENSIONS[name], view.variables[name][items])
+        yield coordinate_column(name, *DIMENSIONS[name], view.variables[name][items])
     for variable in variables:
         values = view.variables[variable.name]
         if joint:
@@ -70,7 +70,7 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
             yield column_of(variable, values.reshape(-1, *inner)[rows])
         else:  # the variable is stored with dimensions for some parameters, or for the point
             along = variable.extra[: -len(names)]
-            places = [rows[0] if name == "point" else _places(view, name)[rows[0]] for name in along]
+            places = [rows[0] if name == "point" else _axis_indices(view, name)[rows[0]] for name in along]
             yield column_of(variable, values[(*places, *rows[1:])])
 
 
@@ -114,7 +114,7 @@ def line_columns(view: View, rows: Rows) -> Iterator[Column]:
 
 def quantity_column(name: str, values: NDArray) -> Column:
     """Column of an arm's quantity `name`, with values of shape (rows,)."""
-    column = coordinate(name, *ALL_QUANTITIES[name][:2], values)
+    column = coordinate_column(name, *ALL_QUANTITIES[name][:2], values)
     return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
 
 
@@ -125,7 +125,7 @@ def _is_of_points(view: View, variable: Variable) -> bool:
     return variable.extra[0] not in ("point", *view.parameters)
 
 
-def _places(view: View, parameter: str) -> NDArray[np.int64]:
+def _axis_indices(view: View, parameter: str) -> NDArray[np.int64]:
     """Index of each point along the axis of `parameter`, (points,)."""
     return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
 
@@ -141,5 +141,5 @@ def quantities_at_points(view: View) -> dict[str, NDArray]:
         if values.size == 1 or not view.is_grid:
             found[name] = np.broadcast_to(values, count)
         elif along in view.parameters:
-            found[name] = values[_places(view, along)]
+            found[name] = values[_axis_indices(view, along)]
     return found

@@ -53,10 +53,10 @@ class FileReplacement:
         """Takes the lock; raises InputError if the lock is taken."""
         self.path = path
         self.journals = journal_directory(path)
-        self.copy = self.journals / "next.h5"
+        self.copy_path = self.journals / "next.h5"
         path.parent.mkdir(parents=True, exist_ok=True)
         self.lock = Lock(self.journals, path)
-        self.left: FileIdentity = ()
+        self.last_identity: FileIdentity = ()
         """Identity of the file at the last check or exchange."""
 
     @contextmanager
@@ -67,15 +67,15 @@ class FileReplacement:
         """
         # The directory may have been moved or deleted meanwhile.
         self.journals.mkdir(parents=True, exist_ok=True)
-        self.copy.unlink(missing_ok=True)  # a link would redirect the writing
+        self.copy_path.unlink(missing_ok=True)  # a link would redirect the writing
         if source:
-            shutil.copyfile(source, self.copy)
-        yield self.copy
-        seal(self.copy)
-        with self.copy.open("rb+") as file:
+            shutil.copyfile(source, self.copy_path)
+        yield self.copy_path
+        seal(self.copy_path)
+        with self.copy_path.open("rb+") as file:
             os.fsync(file.fileno())
-        os.replace(self.copy, self.path)
-        self.left = file_identity(self.path)
+        os.replace(self.copy_path, self.path)
+        self.last_identity = file_identity(self.path)
         # Without syncing the directory a power failure could undo the rename.
         directory = os.open(self.path.parent, os.O_RDONLY)
         os.fsync(directory)
@@ -84,7 +84,7 @@ class FileReplacement:
     def close(self) -> None:
         """Releases the lock and removes the journal directory if it is empty."""
         with suppress(OSError):
-            self.copy.unlink()
+            self.copy_path.unlink()
         self.lock.release()
 
 

@@ -109,7 +109,7 @@ class Store:
         history = merged_history([header.attributes])
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
-            any_kept = write_points(copy, extension.kept(), self.plan.layout)
+            any_kept = write_points(copy, extension.reused_records(), self.plan.layout)
             anew = done - (self.plan.points.count - index_count(missing_ranges(copy)))
             if any_kept:
                 with h5py.File(copy, "r+") as file:
@@ -179,7 +179,7 @@ class Store:
             self._restore_missing_file()
 
     def _restore_missing_file(self) -> None:
-        if file_identity(self.path) == self.exchange.left:
+        if file_identity(self.path) == self.exchange.last_identity:
             return
         if not self.path.exists():
             with self.exchange.replacing(None) as copy:
@@ -246,5 +246,5 @@ class Store:
         """Header of the existing file; raises InputError if the file is not a complete result."""
         left = file_identity(self.path)
         header = header_of_existing_file(self.path, self.plan, self.journals)
-        self.exchange.left = left
+        self.exchange.last_identity = left
         return header

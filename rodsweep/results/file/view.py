@@ -102,7 +102,7 @@ class View:
         return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
 
     @property
-    def listed(self) -> "View":
+    def as_list(self) -> "View":
         """This view with a grid over an arm's quantities turned into a list of points; for all other points,
         this view unchanged.
         """

@@ -27,7 +27,7 @@ BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "clo
 """Names of the reasons why a curve of generalised Hopf points ends; the file stores the position in this
 list."""
 CURVE_ENDS = {
-    "none": "the curve goes on",
+    "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
     "crushed": "the rod is crushed beyond",
     "closed": "the curve returns to its first point",
@@ -47,7 +47,7 @@ MAX_CYCLE_SPECIAL = 64
 """Maximum number of special points stored for a row; the variable cycle_special_count counts all special
 points."""
 CYCLE_CURVE_ENDS = {
-    "none": "the curve goes on",
+    "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
     "crushed": "F comes within a relative distance of 1e-3 of k1",
     "hopf": "the amplitude of the cycles vanishes: for folds at a generalised Hopf point, Re c = 0; for "

@@ -71,7 +71,7 @@ class Chains:
         along = np.arange(self.length)
         return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
 
-    def todo(self, missing: IndexSet) -> list[IndexRange]:
+    def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
         points.
         """

@@ -73,14 +73,14 @@ class Stretches:
         along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
         return indices_along(self.shape, self.axis, line, along)
 
-    def missing_of(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
+    def missing_counts(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
         """Number of points in `missing` of each stretch in a range of stretch numbers, (stretches,)."""
         part, line = np.divmod(np.arange(*stretches)[:, None], self.lines)
         along = part * STRETCH_POINTS + np.arange(STRETCH_POINTS)
         index = indices_along(self.shape, self.axis, line, along)
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
 
-    def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
+    def unsolved_ranges(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
         """Ranges of the numbers of stretches with missing points; missing: ranges of flat indices."""
         if index_count(missing) == math.prod(self.shape):
             return [(0, self.count)]
@@ -88,12 +88,12 @@ class Stretches:
         ranges: list[IndexRange] = []
         for first in range(0, self.count, STRETCHES_PER_BLOCK):
             last = min(first + STRETCHES_PER_BLOCK, self.count)
-            incomplete = self.missing_of((first, last), missing_points) > 0
+            incomplete = self.missing_counts((first, last), missing_points) > 0
             edges = first + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
         return merged_ranges(ranges)
 
-    def missing_in(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
+    def missing_total(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
         """Number of missing points in the given stretches. stretches: ranges of stretch numbers. missing:
         ranges of flat indices.
         """
@@ -102,7 +102,7 @@ class Stretches:
         for first, end in stretches:
             for at in range(first, end, STRETCHES_PER_BLOCK):
                 block = (at, min(at + STRETCHES_PER_BLOCK, end))
-                number += int(self.missing_of(block, missing_points).sum())
+                number += int(self.missing_counts(block, missing_points).sum())
         return number
 
 

@@ -112,7 +112,7 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
     memory = _OutcomeCache(max(1, int(CACHE_BYTES // max(layout.bytes_per_point, MIN_OUTCOME_BYTES))))
 
     def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
-        (outcome, state), again = memory.of((int(rods[index]), start), solve)
+        (outcome, state), again = memory.get_or_solve((int(rods[index]), start), solve)
         return RepeatedOutcome(outcome) if again else outcome, state
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
@@ -127,19 +127,19 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
 class _OutcomeCache:
     """Cache of the outcomes of a rank's latest solves. most: maximum number of outcomes."""
 
-    most: int
-    kept: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
+    max_outcomes: int
+    outcomes: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
-    def of(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
+    def get_or_solve(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
         """Returns (result, was_cached). result: outcome with the key `key`, from the cache or else from
         calling `solve`.
         """
-        if key in self.kept:
-            self.kept.move_to_end(key)
-            return self.kept[key], True
-        found = self.kept[key] = solve()
-        if len(self.kept) > self.most:
-            self.kept.popitem(last=False)
+        if key in self.outcomes:
+            self.outcomes.move_to_end(key)
+            return self.outcomes[key], True
+        found = self.outcomes[key] = solve()
+        if len(self.outcomes) > self.max_outcomes:
+            self.outcomes.popitem(last=False)
         return found, False
 
 
@@ -152,15 +152,17 @@ class SkippingSolver:
     `NoRodStatus`, (points,). failures: additional messages by flat index of the point.
     """
 
-    inner: Solver
+    rod_solver: Solver
     coverage: NDArray[np.int8]
     failures: Mapping[int, str]
     layout: Layout
 
     def solver(self) -> Solver:
         """The solver of all points, with or without a rod."""
-        statuses = (*self.inner.statuses, *NoRodStatus)
-        return self.inner.with_wrapper(self._solve, self._together, record=self._record, statuses=statuses)
+        statuses = (*self.rod_solver.statuses, *NoRodStatus)
+        return self.rod_solver.with_wrapper(
+            self._solve, self._solve_stretch, record=self._record, statuses=statuses
+        )
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.coverage[index] == SLENDER:
@@ -173,22 +175,22 @@ class SkippingSolver:
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, OutcomeWithoutRod):
-            return self.inner.record(index, outcome)
-        return self._empty | {STATUS.name: int(outcome.status)}
+            return self.rod_solver.record(index, outcome)
+        return self._empty_values | {STATUS.name: int(outcome.status)}
 
     @property
-    def _empty(self) -> dict[str, Any]:
+    def _empty_values(self) -> dict[str, Any]:
         """Every variable of a point without a rod, except its status."""
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
-    def _together(self, indices: NDArray[np.int64]) -> StretchResult:
+    def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
         """Results for the points of a stretch at flat indices, (n,); only points with a rod are solved."""
-        assert self.inner.stretched is not None
+        assert self.rod_solver.stretched is not None
         coverage = self.coverage[indices]
         places = np.flatnonzero(coverage == SLENDER)
-        values = {name: np.stack([value] * len(indices)) for name, value in self._empty.items()}
+        values = {name: np.stack([value] * len(indices)) for name, value in self._empty_values.items()}
         values[STATUS.name][...] = coverage
-        found = self.inner.stretched[1](indices[places]) if len(places) else None
+        found = self.rod_solver.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column
         solved = coverage != FLUTTER_UNKNOWN

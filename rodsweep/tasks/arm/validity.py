@@ -139,10 +139,10 @@ class ArmValidity:
         self.points = points
         self.task = config.task
         at_rest = AT_REST_STATUSES.get(self.task, ())
-        self.searched = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
+        self.searched_statuses = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
-        self.each = points.count // int(np.prod(sections)) if points.arm_axes else points.count
+        self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
         self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
 
@@ -152,15 +152,15 @@ class ArmValidity:
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
         motion = MOTION_OF_TASK[self.task](record)
-        missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched)
+        missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched_statuses)
         arm = self._arm_of(int(np.ravel(index)[0]))
         return self._validity(arm, replace(motion, may_be_missed=missed), index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at the n points with a rod, (n,), as if all arms were at rest."""
         found = []
-        for first in range(0, self.points.count, self.each):
-            indices = np.arange(first, first + self.each)
+        for first in range(0, self.points.count, self.points_per_arm):
+            indices = np.arange(first, first + self.points_per_arm)
             if self.points.coverage is not None:
                 indices = indices[self.points.coverage[indices] == SLENDER]
             if len(indices):
@@ -169,13 +169,15 @@ class ArmValidity:
         return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
-        return self.arm(index // self.each if self.points.arm_axes else 0)
+        return self.arm(index // self.points_per_arm if self.points.arm_axes else 0)
 
     def _validity(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
         drag = arm.own_drag if "drag" in self.points.arm_axes else least_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force(arm, motion, index)
-        effects = effects_of(arm, rate, self._compressing(F, index), drag=drag, amplitude=motion.amplitude)
+        effects = effects_of(
+            arm, rate, self._base_compression(F, index), drag=drag, amplitude=motion.amplitude
+        )
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
@@ -200,8 +202,8 @@ class ArmValidity:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
         if the arm has no load. index: as in `of`.
         """
-        own = self._column("k1", index)
-        F = self._column("F", index) if "F" in self.points.names else motion.F
+        own = self._parameter_values("k1", index)
+        F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
         if F is None:
             return np.asarray(np.nan)
         if own is None:
@@ -209,7 +211,7 @@ class ArmValidity:
         own = own.reshape(own.shape + (1,) * (np.ndim(F) - own.ndim))
         return np.asarray(F) * (arm.k1 / own)
 
-    def _compressing(self, F: Array, index: int | NDArray[np.int64]) -> Array:
+    def _base_compression(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section.
 
         NaN for rubber, whose constitutive law includes large compression. F, index: forces, and indices of
@@ -218,11 +220,11 @@ class ArmValidity:
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
-        tapers = self._column("taper", index)
+        tapers = self._parameter_values("taper", index)
         shares = build.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
         return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
 
-    def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
+    def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
         have this parameter. index: as in `of`.
         """

@@ -53,7 +53,7 @@ class DiagramCurves:
     special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
     """Special points of cycles by the number of their row, for rows solved in this process."""
 
-    def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
+    def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
         """Returns `row` unchanged, after caching its special points if fewer than MAX_KEPT_ROWS rows are
         cached. number: number of the row.
         """

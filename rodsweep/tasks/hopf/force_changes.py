@@ -34,10 +34,10 @@ class ForceLines:
     """
 
     names: tuple[str, ...]
-    fixed: Array
+    fixed_values: Array
     F: Array
     eigenvalues: Complex
-    unstable: NDArray[np.int64]
+    unstable_counts: NDArray[np.int64]
 
 
 def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
@@ -103,14 +103,14 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     onsets = _pairs_by_line(_pairs_at_onset(w))
     changes = _pairs_by_line(_sign_changes(w))
     for number in sorted(onsets.keys() | changes.keys()):
-        fixed = dict(zip(lines.names, lines.fixed[number].tolist(), strict=True))
+        fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
         here = w[number]
         rods = rod.coefficients, rod.direction("F")
         tried = (onset_between(rods, (F[i], F[j]), here[i], here[j]) for i, j in onsets.get(number, ()))
         found = [next(filter(None, tried), None)]
         for i, j in changes.get(number, ()):
-            counted = lines.unstable[number, [i, j]]
+            counted = lines.unstable_counts[number, [i, j]]
             among_stored = np.count_nonzero(here[[i, j]].real > 0, axis=-1)
             unstable = int(np.where(counted >= 0, counted, among_stored).max())
             found.append(stability_change_between(rods, (F[i], F[j]), here[i], here[j], unstable))

@@ -11,7 +11,7 @@ from test_paper import stated
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
-from rodsweep.post.summary.branch import _ends
+from rodsweep.post.summary.branch import _ends_phrase
 from rodsweep.solve.branch import following
 from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.branch_curve import BranchCurve
@@ -191,6 +191,6 @@ def test_the_file_says_which_branches_meet(symmetric, asymmetric):
 def test_show_says_from_which_branch_one_is_born():
     ends = (StoredSpecialPoint("symmetry_breaking", at, 1e-9, 0.1, 1.0, "none", -1, 1) for at in (19.9, 25.5))
     none = np.empty(0)
-    told = _ends(StoredBranch(none, none, none, none, none, tuple(ends)), "F")
+    told = _ends_phrase(StoredBranch(none, none, none, none, none, tuple(ends)), "F")
     assert told.startswith("without mirror symmetry, from branch 1 at F = 19.9")
     assert " to branch 1 at F = 25.5" in told

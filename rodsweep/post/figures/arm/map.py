@@ -85,7 +85,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     banded = [DRAG_AXIS] if not y and DRAG_AXIS in first else []
-    figure.suptitle(style.heading(view, _constant_quantities_text(view, axes + banded)))
+    figure.suptitle(style.heading_text(view, _constant_quantities_text(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
     return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}")
 
@@ -130,8 +130,8 @@ def _draw_map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], inde
     if panel.zero_label and values.min() < 0 < values.max():
         axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)
         handles.append(Line2D([], [], color="k", lw=1.4, label=panel.zero_label))
-    style.scale(axes, "x", x)
-    style.scale(axes, "y", y)
+    style.scale_axis(axes, "x", x)
+    style.scale_axis(axes, "y", y)
     style.label_outer(axes, x_label, y_label)
     return handles
 
@@ -143,13 +143,15 @@ def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) ->
     x, label = _axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
-    for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
+    for colour, (line, values) in zip(
+        colours, (panel.threshold_lines or {"": panel.values}).items(), strict=False
+    ):
         style_of_line = "o" if name == DRAG_AXIS else "-o"
         axes.plot(x, values[index], style_of_line, ms=2.5, lw=1.2, color=colour)
         handles += _draw_drag_band(axes, view, name, values, index, colour)
         if line and np.isfinite(values[index]).any():
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
-    style.scale(axes, "x", x)
+    style.scale_axis(axes, "x", x)
     if name == DRAG_AXIS:
         axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
     several = sum(isinstance(each, Line2D) for each in handles) > 1

@@ -24,10 +24,10 @@ class Panel:
 
     label: str
     values: Array
-    lines: Mapping[str, Array] = field(default_factory=dict)
+    threshold_lines: Mapping[str, Array] = field(default_factory=dict)
     zero_label: str = ""
     lines_label: str = ""
-    """Label of the vertical axis if `lines` are drawn."""
+    """Label of the vertical axis if `threshold_lines` are drawn."""
     empty_label: str = "nothing computed"
     """Legend entry for arms without a value."""
 

@@ -47,7 +47,7 @@ def given_quantities(view: View) -> list[str]:
     return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
 
 
-def at_point(view: View, name: str, number: int) -> float:
+def quantity_at_point(view: View, name: str, number: int) -> float:
     """Value of the quantity `name` at a point of the file. number: number of the point, from 1."""
     values = np.asarray(view.variables[name])
     if values.size == 1:
@@ -64,7 +64,7 @@ def replaced_parameters(view: View, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that the config gives and that differ from the parameters of the arm.
     number: number of the point, from 1.
     """
-    given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
+    given: dict[str, Any] = {name: quantity_at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAGS[int(given["drag"])]
     arm = view.config.get("parameters", {}).get("arm") or {}

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import View
-from ..layout.fitting import fit
+from ..layout.fitting import fit_layout
 from ..style import BLUE, VERMILION
 from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
 from .selection import SHAPE_VARIABLES, CycleSelection, StoredCycle, chosen_cycles
@@ -45,7 +45,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
             f"{view.path} holds {frames} shapes of a cycle, too few for an animation; "
             "run with limit_cycle.shapes: 48"
         )
-    writer = _writer(output, max(1, round(frames / PERIOD_SECONDS)))
+    writer = _film_writer(output, max(1, round(frames / PERIOD_SECONDS)))
     figure, arms = first_frame(selection)
     with writer.saving(figure, str(output), dpi=100):
         for k in range(frames):
@@ -68,12 +68,12 @@ def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
     panels[0].set_ylim(low - TIME_HEIGHT * (high - low), high)
     for arm in arms:
         arm.show(0)
-    fit(figure)
+    fit_layout(figure)
     figure.set_layout_engine("none")  # a new layout for each frame would move the panels
     return figure, arms
 
 
-def _writer(output: Path, rate: int) -> AbstractMovieWriter:
+def _film_writer(output: Path, rate: int) -> AbstractMovieWriter:
     """Matplotlib writer for the suffix of `output`, with `rate` frames per second. Raises
     EnvironmentIncomplete for an MP4 without ffmpeg.
     """

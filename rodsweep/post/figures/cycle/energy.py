@@ -12,7 +12,7 @@ from ...summary.errors import power_error
 from ...summary.ranges import rounded
 from ..arm.quantities import NO_BREAK
 from ..style import BLUE, GREEN, VERMILION, legend_below
-from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, in_tex
+from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, power_in_tex
 
 RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
@@ -32,7 +32,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
         3, len(cycles), squeeze=False, sharex="col", sharey="row", height_ratios=(1, 1.6, 1)
     )
     for column, cycle in zip(rows.T, cycles, strict=True):
-        _budget(column, cycle)
+        _draw_budget(column, cycle)
         column[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
     for axes, label in zip(rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
@@ -50,13 +50,13 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     """
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = power_error(cycle.values)
-    mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
+    mean = power_in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
     unit = cycle.units.names[3]
     power = f"mean power ${mean}$" + (f"{NO_BREAK}{unit}" if unit else "")
     return power, f"imbalance {v['energy_imbalance']:.1e}"
 
 
-def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
+def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """Draws the three panels of a cycle, from top to bottom in `column`."""
     from ....discretization.elements.periodic import interpolate_samples, time_derivative  # compiled code
 

@@ -26,18 +26,18 @@ from ...hopf_points import LocatedChange, StoredChanges
 from ..style import (
     LABELS,
     colour_cells,
-    heading,
+    heading_text,
     is_logarithmic,
     label_outer,
     legend_below,
     parameter_text,
     require_content,
-    scale,
+    scale_axis,
 )
 from .amplitudes.hopf_marks import HOPF_SYMBOL
-from .point_map import PointMap, cell_edges, in_its_scale, point_map
+from .point_map import PointMap, axis_coordinates, cell_edges, point_map
 from .selection import shared_and_own_of_arms
-from .units import units_over
+from .units import units_of_points
 
 STATUS_LOOKS = {
     "straight": ("#E8EDF2", ""),
@@ -49,16 +49,16 @@ STATUS_LOOKS = {
 }
 """(colour, hatch) of cells without a cycle, by status. The colours are greys, which the colour maps do not
 contain."""
-OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
+UNLISTED_STATUS_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
 """(colour, hatch) of cells with a status that is not in STATUS_LOOKS, in order of appearance."""
-PANEL_POINTS = 250
+PANEL_WIDTH_POINTS = 250
 """Width of a panel, in points (1/72 inch)."""
 MARKER_SIZES = 1.0, 4.0
 """Smallest and largest size, in points, of the open marker of an unstable cycle. Between these limits the
 size is half a cell."""
 CYCLE_HATCH_COLOUR = "0.25"
 """Grey of the hatches of cells without a cycle, and of the markers of unstable cycles."""
-MAX_ROW_ENTRIES = 6
+MAX_LEGEND_ROW_ENTRIES = 6
 """Largest number of entries in one row of the legend."""
 MAP_QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 """(variable, colour map, whether colours are logarithmic if the values span more than a decade) of each
@@ -71,16 +71,16 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     stacked. Raises InputError if no point has a cycle.
     """
     points = point_map(view)
-    words = view.outcomes[points.at]
+    words = view.outcomes[points.point_indices]
     cycles = np.isin(words, CYCLE_WORDS)
     require_content(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
-    (units,) = units_over([view], [points.at.ravel()])
+    (units,) = units_of_points([view], [points.point_indices.ravel()])
     _, largest_y, period, _ = units.labels_over
     for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), MAP_QUANTITIES, strict=True):
-        drawn = units.drawn({name: view.variables[name].ravel()[points.at.ravel()]})[name]
-        values = np.where(cycles, drawn.reshape(points.at.shape), np.nan)
+        drawn = units.drawn({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
+        values = np.where(cycles, drawn.reshape(points.point_indices.shape), np.nan)
         edges = cell_edges(points.x), cell_edges(points.y)
         colour_cells(axes, edges, values, label, colours, ratios)
         handles = _draw_hopf_lines(axes, points, lines)
@@ -88,20 +88,20 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
         handles += _mark_unstable(axes, points, words == "unstable")
     label_maps(panels, points)
     if handles:
-        rows = -(-len(handles) // MAX_ROW_ENTRIES)
+        rows = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
         legend_below(figure, handles, columns=-(-len(handles) // rows))
-    figure.suptitle(heading(view, _shared(view, points, units.in_si)))
+    figure.suptitle(heading_text(view, _common_parameters_text(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
 
 
-def _shared(view: View, points: PointMap, in_si: bool) -> str:
+def _common_parameters_text(view: View, points: PointMap, in_si: bool) -> str:
     """Text of the parameters that are equal at all points; for an arm (`in_si`), of the quantities that are
     equal at all points.
     """
     if not in_si:
-        return parameter_text(points.shared)
+        return parameter_text(points.common_parameters)
     along = {quantity for quantity, moved in CHANGED_PARAMETER.items() if moved in points.names}
-    numbers = [int(points.at[0, 0]) + 1, int(points.at[-1, -1]) + 1]
+    numbers = [int(points.point_indices[0, 0]) + 1, int(points.point_indices[-1, -1]) + 1]
     return shared_and_own_of_arms(view, numbers, {*points.names, *along})[0]
 
 
@@ -120,8 +120,8 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
     labels.
     """
     for axes in panels:
-        scale(axes, "x", points.x)
-        scale(axes, "y", points.y)
+        scale_axis(axes, "x", points.x)
+        scale_axis(axes, "y", points.y)
         label_outer(axes, *(LABELS[name] for name in points.names))
 
 
@@ -129,7 +129,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
     """Fills the cells without a cycle with colours and hatches by status; returns legend entries. words:
     status of each cell, (ny, nx).
     """
-    further = cycle(OTHER_LOOKS)
+    further = cycle(UNLISTED_STATUS_LOOKS)
     handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(words).tolist()]):
         cells = words == word
@@ -138,7 +138,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
         colour, hatch = STATUS_LOOKS.get(word) or next(further)
         look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
         for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
-            axes.broken_barh(_runs(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
+            axes.broken_barh(_runs_of_cells(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
     return handles
 
@@ -151,12 +151,12 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
         return []
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
     row, column = np.nonzero(unstable)
-    size = float(np.clip(PANEL_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
+    size = float(np.clip(PANEL_WIDTH_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
     axes.plot(points.x[column], points.y[row], ms=size, **look)
     return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
 
 
-def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
+def _runs_of_cells(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
     """(left edge, width) of each run of neighbouring chosen cells in a row. chosen: mask of the cells, (n,).
     edges: edges of the cells, (n + 1,).
     """
@@ -187,9 +187,9 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
     Hopf points; between rows, linearly on the scale of y. A contour therefore passes through the located Hopf
     points of every row.
     """
-    (x, x_back), (y, y_back) = (in_its_scale(values) for values in (points.x, points.y))
+    (x, x_back), (y, y_back) = (axis_coordinates(values) for values in (points.x, points.y))
     to_scale = np.log if is_logarithmic(points.x) else np.asarray
-    growth = view.variables["linear_growth_rate"].ravel()[points.at]
+    growth = view.variables["linear_growth_rate"].ravel()[points.point_indices]
     zeros = [to_scale(places) for places in _hopf_points(points, view)]
     refined = np.unique(np.concatenate([x, *zeros]))
     rows = []
@@ -208,7 +208,7 @@ def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, other = points.names
     stored = StoredChanges(view, name)
-    for value, at in zip(points.y, points.at, strict=True):
-        row = ParameterLine(name, points.shared | {other: float(value)}, points.x, at)
-        located = (change for change in stored.on(row) if isinstance(change, LocatedChange))
+    for value, at in zip(points.y, points.point_indices, strict=True):
+        row = ParameterLine(name, points.common_parameters | {other: float(value)}, points.x, at)
+        located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedChange))
         yield np.array([change.position for change in located if change.is_hopf])

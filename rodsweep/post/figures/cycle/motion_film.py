@@ -45,7 +45,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
     frames = min(len(motion.x), MAX_FRAMES)
     figure = Figure(figsize=FRAME_SIZE, layout="constrained")
     axes = figure.subplots()
-    _frame(axes, motion)
+    _set_up_axes(axes, motion)
     (path,) = axes.plot([], [], color="0.6", lw=0.8)
     (rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
     tip = smooth_tip_path(np.stack([motion.x[:, -1], motion.y[:, -1]], axis=1), is_closed=False)
@@ -62,7 +62,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
         return output.read_bytes()
 
 
-def _frame(axes: Axes, motion: FilmedMotion) -> None:
+def _set_up_axes(axes: Axes, motion: FilmedMotion) -> None:
     """Draws the clamp, and sets the axes so that all shapes fit, with equal scales for x and y."""
     draw_clamp(axes, motion.length)
     margin = SHAPE_MARGIN * motion.length

@@ -24,9 +24,9 @@ class PointMap:
     """Values of the first parameter in increasing order, (nx,)."""
     y: Array
     """Values of the second parameter in increasing order, (ny,)."""
-    at: NDArray[np.intp]
+    point_indices: NDArray[np.intp]
     """Index in the file of the point in each cell, (ny, nx)."""
-    shared: dict[str, float]
+    common_parameters: dict[str, float]
     """Parameters that are equal at all points, by name."""
     left_out: str
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
@@ -43,7 +43,9 @@ def point_map(view: View) -> PointMap:
     """
     varied = varied_parameters(view)
     if len(varied) != 2:
-        raise InputError(f"{view.path}: a map is drawn over two parameters, and {_varying(varied)}")
+        raise InputError(
+            f"{view.path}: a map is drawn over two parameters, and {_varied_parameters_clause(varied)}"
+        )
     columns = view.point_columns
     (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in varied)
     at = np.full((len(y), len(x)), -1)
@@ -72,7 +74,7 @@ def is_map(view: View) -> bool:
     return True
 
 
-def _varying(names: list[str]) -> str:
+def _varied_parameters_clause(names: list[str]) -> str:
     """Clause on the varied parameters `names`, with a remedy, for a file in which not exactly two parameters
     vary."""
     if not names:
@@ -82,7 +84,7 @@ def _varying(names: list[str]) -> str:
     return f"only {names[0]} varies; without --what maps, lines over {names[0]} are drawn"
 
 
-def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
+def axis_coordinates(values: Array) -> tuple[Array, Callable[[Array], Array]]:
     """Returns (coordinates, inverse): the values, (n,), on the linear or logarithmic scale of their axis, and
     the function that converts coordinates to values.
     """
@@ -91,7 +93,7 @@ def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
 
 def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around increasing `values`, (n,): midpoints on the scale of the axis."""
-    centres, back = in_its_scale(values)
+    centres, back = axis_coordinates(values)
     inner = (centres[1:] + centres[:-1]) / 2
     return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))
 

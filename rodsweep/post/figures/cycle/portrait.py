@@ -35,15 +35,15 @@ WALL_HALF_HEIGHT = 0.13
 """Half the height of the drawn wall, in L."""
 SHAPE_MARGIN = 0.04
 """Margin around the shapes and arrows, in L."""
-TIP_PERIODS = 2
+DRAWN_TIP_PERIODS = 2
 """Duration of the drawn motion of the tip, in periods of the slowest cycle."""
-FEW_SAMPLES = 48
+MARKED_BELOW_SAMPLES = 48
 """With fewer samples per period than this, each sample of the tip's motion is marked."""
 SHAPES_WIDTH = 3.2
 """Width of a panel with shapes, in inches."""
 TIP_HEIGHT = 1.0
 """Height of a panel with the motion of the tip, in inches."""
-PADDING = 0.1
+PANEL_PADDING = 0.1
 """Space around panels, in inches. Matplotlib's layout misjudges the labels of panels with equal scales by up
 to half this space."""
 TEXT_HEIGHT = 1.4
@@ -62,9 +62,9 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
-    figure, shapes, tips = _panels(cycles, narrow)
+    figure, shapes, tips = _new_panels(cycles, narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
-    end = TIP_PERIODS * max(c.period for c in cycles)
+    end = DRAWN_TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
     colours = ListedColormap(
@@ -82,7 +82,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
         if emerging:
             draw_start_of_motion(upper, lower, cycle)
         else:
-            _tip(upper, lower, cycle, end)
+            _draw_tip_motion(upper, lower, cycle, end)
     set_frame(shapes, cycles)
     shapes[0].set_ylabel(cycles[0].units.along("y"))
     label_tip(*tips[0], cycles[0].units)
@@ -92,7 +92,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     return figure, f"shapes through the cycle and {tip}{selection.left_out}"
 
 
-def _panels(
+def _new_panels(
     cycles: Sequence[StoredCycle], narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
     """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
@@ -102,7 +102,7 @@ def _panels(
     page is narrow.
     """
     count = len(cycles)
-    (left, right), (low, high) = region(cycles)
+    (left, right), (low, high) = limits_of_shapes(cycles)
     if count == 1 and not narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
@@ -113,7 +113,7 @@ def _panels(
     shapes = SHAPES_WIDTH * (high - low) / (right - left)
     beside = NARROW_TEXT_HEIGHT if narrow else TEXT_HEIGHT
     size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + beside
-    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PADDING))
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PANEL_PADDING))
     heights = (shapes, TIP_HEIGHT, TIP_HEIGHT)
     rows = figure.subplots(3, count, squeeze=False, sharey="row", height_ratios=heights)
     for x, y in rows[1:].T:
@@ -184,13 +184,13 @@ def draw_clamp(axes: Axes, length: float) -> None:
 
 def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """Sets the same limits in all panels, with equal scales for x and y, so that all cycles fit."""
-    along_x, along_y = region(cycles)
+    along_x, along_y = limits_of_shapes(cycles)
     for axes in panels:
         axes.set_aspect("equal")
         axes.set(xlim=along_x, ylim=along_y)
 
 
-def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
+def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns ((left, right), (bottom, top)), the limits of all shapes and arrows, in the cycles' unit of
     length.
     """
@@ -211,7 +211,7 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
     return (left, right), (low, high)
 
 
-def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
+def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """Draws x and y of the tip against the time from 0 to `end`, with a second time axis in tau1 if the rod
     has this time scale.
     """
@@ -222,7 +222,7 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
         axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
-        if len(values) < FEW_SAMPLES:
+        if len(values) < MARKED_BELOW_SAMPLES:
             at = np.arange(int(end / cycle.period * len(values)) + 1)
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")

@@ -14,8 +14,8 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ...summary.ranges import rounded
-from ..arm.quantities import at_point, given_quantities, quantity_text, replaced_parameters
-from ..style import heading, parameter_text
+from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
+from ..style import heading_text, parameter_text
 from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_of
 
 MAX_CYCLES = 3
@@ -74,7 +74,7 @@ class StoredCycle:
         or empty.
         """
         error = float(self.values["period_error"])
-        return rf"${symbol}{{=}}$ ${in_tex(rounded(value, abs(value) * error))}\,{unit}$"
+        return rf"${symbol}{{=}}$ ${power_in_tex(rounded(value, abs(value) * error))}\,{unit}$"
 
     @property
     def tip(self) -> tuple[Array, Array]:
@@ -93,7 +93,7 @@ class StoredCycle:
         return "\n".join(filter(None, (self.label, *lines)))
 
 
-def in_tex(number: str) -> str:
+def power_in_tex(number: str) -> str:
     """TeX for a number written by `rounded`, with the power of ten as a superscript."""
     mantissa, _, power = number.partition("e")
     return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
@@ -121,7 +121,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Cy
         if words[number - 1] != "cycle":
             word = words[number - 1].replace("_", " ")
             raise InputError(f"--point {number}: the point has no cycle to draw; its status is: {word}")
-    return _selection(view, points, words == "cycle", "cycle")
+    return _selected_cycles(view, points, words == "cycle", "cycle")
 
 
 def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
@@ -136,7 +136,7 @@ def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
             raise InputError(
                 f"--point {number}: the motion of this point from its initial state is not stored"
             )
-    return _selection(view, points, is_stored, "transient")
+    return _selected_cycles(view, points, is_stored, "transient")
 
 
 def _refuse_missing(view: View, needs: Sequence[str]) -> None:
@@ -149,7 +149,9 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
 
 
-def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> CycleSelection:
+def _selected_cycles(
+    view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str
+) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
     empty. drawable: mask, (points,). what: noun for messages. Raises InputError if no point is drawable.
     """
@@ -175,7 +177,7 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     left_out = ""
     if not points and available.size > len(cycles):
         left_out = f", the first {len(cycles)} of {available.size} {what}s (--point chooses others)"
-    return CycleSelection(cycles, heading(view, shared), left_out)
+    return CycleSelection(cycles, heading_text(view, shared), left_out)
 
 
 def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
@@ -222,7 +224,9 @@ def shared_and_own_of_arms(
     """
     texts = []
     for number in numbers:
-        given = {n: quantity_text(view, n, at_point(view, n, number)) for n in given_quantities(view)}
+        given = {
+            n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in given_quantities(view)
+        }
         own = {
             name: parameter_text({name: value}) for name, value in replaced_parameters(view, number).items()
         }

@@ -23,7 +23,7 @@ ENERGY_VARIABLES = ("energy",)
 """Names of variables that are energies."""
 POWER_VARIABLES = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 """Names of variables that are powers."""
-SHORT_PERIOD = 0.1
+PREFIXED_BELOW_SECONDS = 0.1
 """If the longest period is below this value, in s, times have a prefix such as ms."""
 Factor = Any
 """A number, or an array with a number for each point, (points,)."""
@@ -115,14 +115,14 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at each point, with equal names of the units at all points; dimensionless if the file has no arm.
     numbers: numbers of the points, from 1.
     """
-    (units,) = units_over([view], [np.array(numbers, int) - 1])
+    (units,) = units_of_points([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
     drawn = zip(units.length, units.time, units.energy, units.power, strict=True)
     return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in drawn]
 
 
-def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
+def units_of_points(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm. at:
     indices of the points of each file, (n,).
     """
@@ -135,10 +135,10 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
     powers = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
     cycles = list(zip(views, at, times, powers, strict=True))
-    period = max(_largest(view, "period", places, time) for view, places, time, _ in cycles)
-    mean = max(_largest(view, "injection_mean", places, power) for view, places, _, power in cycles)
+    period = max(_largest_in_units(view, "period", places, time) for view, places, time, _ in cycles)
+    mean = max(_largest_in_units(view, "injection_mean", places, power) for view, places, _, power in cycles)
     length = views[0].typed.get("length", "m")
-    second = compact(period, "s")[1] if 0 < period < SHORT_PERIOD else "s"
+    second = compact(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
     joule = compact(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
     watt = compact(mean, "W")[1]
     names = (length, second, joule, watt)
@@ -148,7 +148,7 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]
 
 
-def _largest(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
+def _largest_in_units(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
     """Maximum of |v| f over the points with the indices `at`, (n,); 0 if no value is finite. v: variable
     `name`. f: `factors`, (n,).
     """

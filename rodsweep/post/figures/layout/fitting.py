@@ -42,7 +42,7 @@ WORD_PATTERN = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
 no-break space."""
 
 
-def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
+def fit_layout(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     """Lays out a figure so that no text is cut off or overlaps, and no panel has a ratio of height to width
     below `min_aspect`.
 
@@ -51,7 +51,7 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE_HEIGHT)
     for _ in range(MAX_PASSES):
-        _lay_out(figure)
+        _position_panels(figure)
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
         if not any(changes):
             break
@@ -59,14 +59,14 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     spare = _spare_height(figure, min_aspect)
     figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, MAX_FIGURE_HEIGHT)))
     for _ in range(MAX_PASSES):
-        _lay_out(figure)
+        _position_panels(figure)
         if not thin_ticks(figure):
             break
     if any(axes.get_aspect() != "auto" for axes in figure.axes):
-        _lay_out(figure)  # panels with equal scales have changed their shape
+        _position_panels(figure)  # panels with equal scales have changed their shape
 
 
-def _lay_out(figure: Figure) -> None:
+def _position_panels(figure: Figure) -> None:
     """Positions panels and legends of a figure, without drawing the content of the panels."""
     canvas = figure.canvas
     if not isinstance(canvas, FigureCanvasAgg):
@@ -117,11 +117,11 @@ def _break_texts(figure: Figure) -> bool:
         grid_cell = axes.get_subplotspec()
         rows = 1 if grid_cell is None else ceil(grid_cell.get_gridspec().nrows / len(grid_cell.rowspan))
         centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
-        across = min(centred, _pitch(axes, figure) - 2 * margin)
+        across = min(centred, _column_distance(axes, figure) - 2 * margin)
         down = max(figure.bbox.height / rows - 2 * margin, box.height)
         own = [text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts]
         for title in own:
-            from_left = min(width - box.x0 - margin, _pitch(axes, figure) - 2 * margin)
+            from_left = min(width - box.x0 - margin, _column_distance(axes, figure) - 2 * margin)
             room = across if title.get_horizontalalignment() == "center" else from_left
             changed.append(break_lines(title, room))
         for one in (axes, *axes.child_axes):
@@ -130,7 +130,7 @@ def _break_texts(figure: Figure) -> bool:
     return any(changed)
 
 
-def _pitch(axes: Axes, figure: Figure) -> float:
+def _column_distance(axes: Axes, figure: Figure) -> float:
     """Distance, in pixels, between the centres of a panel and of the nearest panel in another column; the
     width of the figure if there is only one column.
     """
@@ -154,8 +154,8 @@ def _fit_legends(figure: Figure) -> bool:
     changed = False
     for given in list(figure.legends):
         legend = given
-        while legend.get_window_extent().width > room and _columns(legend) > 1:
-            legend = _with_columns(figure, legend, _columns(legend) - 1)
+        while legend.get_window_extent().width > room and _legend_column_count(legend) > 1:
+            legend = _legend_with_columns(figure, legend, _legend_column_count(legend) - 1)
             changed = True
         texts = legend.get_texts()
         if legend.get_window_extent().width > room:
@@ -164,12 +164,12 @@ def _fit_legends(figure: Figure) -> bool:
     return changed
 
 
-def _columns(legend: Legend) -> int:
+def _legend_column_count(legend: Legend) -> int:
     """Number of columns of a legend."""
     return len({round(text.get_window_extent().x0) for text in legend.get_texts()})
 
 
-def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
+def _legend_with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
     """Replaces a legend of the figure by a legend with the same entries in `columns` columns; returns the new
     legend.
     """
@@ -177,7 +177,7 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
     new = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False)
-    _lay_out(figure)
+    _position_panels(figure)
     return new
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
-FOUND_BY = ("_update_ticks", "_get_ticklabel_bboxes")
+CACHED_METHODS = ("_update_ticks", "_get_ticklabel_bboxes")
 """Methods of matplotlib's Axis that compute ticks and boxes. If a method is missing, the cache is not
 used."""
 
@@ -23,22 +23,22 @@ def remembered_ticks(figure: Figure) -> Iterator[None]:
 
     """
     panels = [panel for axes in figure.axes for panel in (axes, *axes.child_axes)]
-    known = all(hasattr(Axis, name) for name in FOUND_BY)
+    known = all(hasattr(Axis, name) for name in CACHED_METHODS)
     held = [axis for panel in panels for axis in (panel.xaxis, panel.yaxis)] if known else []
     for axis in held:
-        for name, method in zip(FOUND_BY, _remembering(axis), strict=True):
+        for name, method in zip(CACHED_METHODS, _cached_methods(axis), strict=True):
             setattr(axis, name, method)
     try:
         yield
     finally:
         for axis in held:
-            for name in FOUND_BY:
+            for name in CACHED_METHODS:
                 delattr(axis, name)
 
 
-def _remembering(axis: Any) -> tuple[Callable[[], list[Any]], Callable[[Sequence[Any], Any], Any]]:
-    """Returns the two methods FOUND_BY of an axis with a cache for the last position of the panel."""
-    find, measure = (getattr(axis, name) for name in FOUND_BY)
+def _cached_methods(axis: Any) -> tuple[Callable[[], list[Any]], Callable[[Sequence[Any], Any], Any]]:
+    """Returns the two methods CACHED_METHODS of an axis with a cache for the last position of the panel."""
+    find, measure = (getattr(axis, name) for name in CACHED_METHODS)
     last: dict[str, Any] = {}
 
     def ticks() -> list[Any]:

@@ -14,7 +14,13 @@ EDGE_TOLERANCE = 1e-9
 def thin_ticks(figure: Figure) -> bool:
     """Removes tick labels from all axes with overlapping labels; returns whether any label was removed."""
     every = [*figure.axes, *(child for axes in figure.axes for child in axes.child_axes)]
-    return any([_thin(axis, way) for axes in every for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1))])
+    return any(
+        [
+            _remove_overlapping_labels(axis, way)
+            for axes in every
+            for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1))
+        ]
+    )
 
 
 def visible_labels(axis: Axis) -> list[Text]:
@@ -28,7 +34,7 @@ def visible_labels(axis: Axis) -> list[Text]:
     ]
 
 
-def _thin(axis: Axis, way: int) -> bool:
+def _remove_overlapping_labels(axis: Axis, way: int) -> bool:
     """Removes tick labels of an axis if labels overlap; returns whether any label was removed. way: 0 for a
     horizontal axis, 1 for a vertical axis.
     """

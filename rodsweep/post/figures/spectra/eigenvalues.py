@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from ....results.file.view import View
 from ..lists import number_points, shared_parameters
-from ..style import BLUE, VERMILION, heading, legend_below, parameter_text, require_content
+from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
@@ -44,7 +44,7 @@ def draw_eigenvalues(view: View) -> Figure:
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
+    figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure
 
 
@@ -62,7 +62,7 @@ def draw_list_of_spectra(view: View) -> Figure:
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
     number_points(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
+    figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure
 
 

@@ -15,7 +15,7 @@ from ....results.file.view import View
 from ....sweep.points.points import lines_over
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
-from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading, legend_below, scale
+from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading_text, legend_below, scale_axis
 from .eigenvalues import scale_if_spread
 
 FOLLOWED_ROOTS = {
@@ -26,7 +26,7 @@ FOLLOWED_ROOTS = {
 """Description of each choice of roots, by name."""
 FOLLOWED_COUNT = 2
 """Number of roots that are followed along a line."""
-LARGE_RATIO = 10.0
+LOGARITHMIC_ROOT_RATIO = 10.0
 """If the ratio of the largest to the median modulus of the roots exceeds this number, the axis of the roots
 is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
@@ -121,7 +121,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]))
+    figure.suptitle(heading_text(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]))
     return figure
 
 
@@ -146,10 +146,10 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
                 across.ravel(), part.ravel(), marker, color=colour, mfc="none", ms=2, mew=0.6, label=word
             )
     axes.axhline(0, color="0.5", lw=0.6)
-    scale(axes, "x", x)
+    scale_axis(axes, "x", x)
     axes.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     sizes = np.abs(w[np.isfinite(w)])
-    if sizes.max(initial=0.0) > LARGE_RATIO * np.median(sizes):
+    if sizes.max(initial=0.0) > LOGARITHMIC_ROOT_RATIO * np.median(sizes):
         least_tick = 10 ** np.floor(np.log10(np.median(sizes) / 10))
         axes.set_yscale("asinh", linear_width=least_tick / 3)  # asinh is smooth between linear and log
         axes.yaxis.set_major_locator(SymmetricalLogLocator(base=10, linthresh=least_tick))
@@ -193,7 +193,7 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE_LOOK)
         return []
     (line,) = lines_over(view.point_columns, name)
-    found = StoredChanges(view, name).on(line)
+    found = StoredChanges(view, name).thresholds_on(line)
     thresholds = [threshold for threshold in found if isinstance(threshold, LocatedChange)]
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]

@@ -26,7 +26,7 @@ from ..style import (
     LABELS,
     SYMBOLS,
     VERMILION,
-    heading,
+    heading_text,
     legend_below,
     parameter_text,
     require_content,
@@ -96,7 +96,7 @@ def draw_class_bars(view: View) -> Figure:
         axes.set(ylim=(0, end), ylabel=LABELS["F"])
         number_points(axes, view, count)
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
+    figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure
 
 
@@ -118,7 +118,7 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
     for index in np.flatnonzero(kinds > 0):
         yield start, float(F[index]), word
         start = float(F[index])
-        word = _class_beyond(int(kinds[index]), int(after[index]))
+        word = _class_above_crossing(int(kinds[index]), int(after[index]))
     if found > np.count_nonzero(kinds > 0):  # the file has no room for all crossings
         word = "undecided"
     if np.isfinite(end):
@@ -137,14 +137,14 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
     found: list[tuple[float, float, int]] = []
     for index in np.flatnonzero(np.isfinite(values)):
         for this, following in pairwise(np.flatnonzero(kinds[index] > 0)):
-            word = _class_beyond(int(kinds[index, this]), int(after[index, this]))
+            word = _class_above_crossing(int(kinds[index, this]), int(after[index, this]))
             middle = (at[index, this] + at[index, following]) / 2
             found.append((float(middle), float(values[index]), numbers[word]))
     x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
 
 
-def _class_beyond(kind: int, unstable: int) -> str:
+def _class_above_crossing(kind: int, unstable: int) -> str:
     """Class of a rod at F just above a crossing. kind: code of the crossing. unstable: number of unstable
     modes above the crossing; -1 if unknown.
     """
@@ -211,7 +211,7 @@ def class_along_row(
     """
     x = view.variables[line]
     classes = view.by_point(variable)[index]
-    changes = _changes(view, variable, line, index)
+    changes = _class_changes(view, variable, line, index)
     if variable == "class":
         between, rows, found = classes_between_crossings(view, row)
         own = rows == view.axes[row][index]
@@ -231,7 +231,7 @@ def class_along_row(
     return found
 
 
-def _changes(view: View, variable: str, line: str, index: int) -> Array:
+def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
     `stable_states`. line: parameter along the row. index: index of the row.
     """

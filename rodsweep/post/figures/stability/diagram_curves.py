@@ -9,9 +9,9 @@ from ....arrays import Array
 from ....model.parameters import LINEAR_PARAMETERS
 from ....results.file.view import View
 from ....results.layouts.branch import SPECIAL_KINDS
-from ...stability_curves import bounds_stability
+from ...stability_curves import curves_bounding_stability
 from ..style import GREEN, SYMBOLS
-from ..style import number as number_text
+from ..style import number_in_tex as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """(legend entry, width, style) of a boundary curve, by code of the kind in the file."""
@@ -77,7 +77,7 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
-    bounds = bounds_stability(view, line, row) if kind else dict.fromkeys(numbers.tolist(), True)
+    bounds = curves_bounding_stability(view, line, row) if kind else dict.fromkeys(numbers.tolist(), True)
     return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
 
 

@@ -54,7 +54,7 @@ class ClassifiedPoints:
         """
         inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
         at = self.at[inside]
-        return ClassifiedPoints(at, self.classes[inside]), regions[tuple(_pixels(at).T)]
+        return ClassifiedPoints(at, self.classes[inside]), regions[tuple(_pixels_of_points(at).T)]
 
 
 def pixel_classes(
@@ -68,7 +68,7 @@ def pixel_classes(
     """
     walls = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
     for curve in curves:
-        row, column = _pixels(_dense(curve)).T
+        row, column = _pixels_of_points(_dense_curve_points(curve)).T
         walls[row, column] = True
     regions, count = scipy.ndimage.label(~walls)
     known, region_of_known = computed.within(regions)
@@ -79,7 +79,7 @@ def pixel_classes(
         for source, of_region in sources:
             own = np.full(len(source.at), True) if of_region is None else of_region == region
             if own.any():
-                table[pixels] = _nearest(pixels, source.at[own], source.classes[own])
+                table[pixels] = _nearest_classes(pixels, source.at[own], source.classes[own])
                 break
     if walls.any() and not walls.all():
         nearest = scipy.ndimage.distance_transform_edt(walls, return_distances=False, return_indices=True)
@@ -87,7 +87,7 @@ def pixel_classes(
     return table
 
 
-def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
+def _nearest_classes(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
     """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. places: points as
     fractions of the axes, (m, 2). classes: classes of the points, (m,).
     """
@@ -97,12 +97,12 @@ def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[A
     return classes[scipy.spatial.cKDTree(places).query(centres)[1]]
 
 
-def _pixels(places: Array) -> NDArray[np.intp]:
+def _pixels_of_points(places: Array) -> NDArray[np.intp]:
     """(row, column) of the pixels that contain the points, (n, 2). places: fractions of the axes, (n, 2)."""
     return np.clip(places[:, ::-1] * PIXEL_COUNT, 0, PIXEL_COUNT - 1).astype(np.intp)
 
 
-def _dense(curve: Array) -> Array:
+def _dense_curve_points(curve: Array) -> Array:
     """Points, (m, 2), less than a pixel apart, on the part of a curve that lies inside the plane. curve:
     vertices, (n, 2).
 

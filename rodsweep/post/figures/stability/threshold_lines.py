@@ -33,7 +33,7 @@ LIGHTEST_SHADE = 0.85
 """End of the used range of the colour map; lighter colours are invisible on white paper."""
 MIN_LINE_DISTANCE = 0.01
 """Two lines are drawn as one line if their distance, divided by the largest force, is below this number."""
-HEADROOM = 1.05
+FORCE_AXIS_MARGIN = 1.05
 """Upper limit of the axis of forces, divided by the largest force."""
 
 
@@ -46,24 +46,28 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     other = next((name for name in long if name != along), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
-    table = _table(view, along, other)
+    table = _first_force_table(view, along, other)
     style.require_content(
-        view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}"
+        view, np.isfinite(_abscissa_values(view, along)).sum() > 1, f"two finite values of {along}"
     )
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
-        handles = _draw(axes, _abscissa(view, along), values, {"color": shade} if other else {"ls": "-"})
+        handles = _draw_threshold_lines(
+            axes, _abscissa_values(view, along), values, {"color": shade} if other else {"ls": "-"}
+        )
     if other:
-        handles = _kinds(table) + [
-            Line2D([], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number(value)}$")
+        handles = _kind_entries(table) + [
+            Line2D(
+                [], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
+            )
             for value, shade in zip(view.axes[other].tolist(), shades, strict=True)
         ]
-    _label(axes, view, along, table)
+    _label_axes(axes, view, along, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.fixed_text(view, *long), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
-    return figure, words + _left_out(view, [along])
+    return figure, words + _infinite_values_clause(view, [along])
 
 
 def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tuple[Figure, str]:
@@ -72,21 +76,23 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     """
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
-    tables = np.concatenate([_table(view, along, None) for view in views])
-    handles = _kinds(tables)
+    tables = np.concatenate([_first_force_table(view, along, None) for view in views])
+    handles = _kind_entries(tables)
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
-        _draw(axes, _abscissa(view, along), values, {"color": shade})
+        _draw_threshold_lines(axes, _abscissa_values(view, along), values, {"color": shade})
         handles.append(Line2D([], [], color=shade, lw=2, label=style.file_label(view, views)))
     longest = max(views, key=lambda view: len(view.axes[along]))
-    _label(axes, longest, along, tables)
+    _label_axes(axes, longest, along, tables)
     forces = np.sort(tables[np.isfinite(tables)])
     if style.is_logarithmic(forces):
-        style.scale(axes, "y", forces)
-        axes.set_ylim(forces[0] / HEADROOM, forces[-1] * HEADROOM)
+        style.scale_axis(axes, "y", forces)
+        axes.set_ylim(forces[0] / FORCE_AXIS_MARGIN, forces[-1] * FORCE_AXIS_MARGIN)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
     figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
-    return figure, f"critical forces against {along} of {len(views)} files" + _left_out(longest, [along])
+    return figure, f"critical forces against {along} of {len(views)} files" + _infinite_values_clause(
+        longest, [along]
+    )
 
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
@@ -108,28 +114,28 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.fixed_text(view, *long), searched))
     shown = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
-    return figure, shown + _left_out(view, long)
+    return figure, shown + _infinite_values_clause(view, long)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
     """Draws thresholds against the parameter `along` for up to three different values of the parameter
     `other`, see `_label_line_indices`; returns the number of values.
     """
-    table = _table(view, along, other)
+    table = _first_force_table(view, along, other)
     some = _label_line_indices(table)
     for line, alike in zip(LINE_STYLES, _groups_of_equal_lines({at: table[at] for at in some}), strict=False):
-        _draw(panel, _abscissa(view, along), table[alike[0]], {"ls": line, "ms": 2})
-        values = ", ".join(style.number(float(view.axes[other][at]), 3) for at in alike)
+        _draw_threshold_lines(panel, _abscissa_values(view, along), table[alike[0]], {"ls": line, "ms": 2})
+        values = ", ".join(style.number_in_tex(float(view.axes[other][at]), 3) for at in alike)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
-    _label(panel, view, along, _table(view, along, other)[some])
+    _label_axes(panel, view, along, _first_force_table(view, along, other)[some])
     panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return len(some)
 
 
-def _table(view: View, along: str, other: str | None) -> Array:
+def _first_force_table(view: View, along: str, other: str | None) -> Array:
     """First forces of the three kinds of thresholds, (values of `other`, 3, values of `along`); NaN for a
     missing threshold. along, other: parameters; `other` is None if there is no second parameter.
     """
@@ -144,7 +150,7 @@ def _table(view: View, along: str, other: str | None) -> Array:
     return np.stack(found, axis=1)
 
 
-def _abscissa(view: View, along: str) -> Array:
+def _abscissa_values(view: View, along: str) -> Array:
     """Values on the horizontal axis: values of the parameter `along`, or 1/gamma3 instead of gamma3, as in
     the paper.
     """
@@ -152,7 +158,7 @@ def _abscissa(view: View, along: str) -> Array:
     return 1 / values if along == "gamma3" else values
 
 
-def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
+def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
     """Draws lines of the three kinds of thresholds; returns legend entries. x: (n,). values: first forces,
     (3, n), with NaN at gaps. look: keywords for matplotlib that replace the look in CRITICAL_FORCES.
     """
@@ -166,19 +172,22 @@ def _draw(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Lin
     return handles
 
 
-def _label(axes: Axes, view: View, along: str, table: Array) -> None:
+def _label_axes(axes: Axes, view: View, along: str, table: Array) -> None:
     """Labels the horizontal axis, of the parameter `along`, and sets the scales. The axis of forces starts at
     0. table: drawn forces.
     """
-    x = _abscissa(view, along)
-    style.scale(axes, "x", np.sort(x[np.isfinite(x)]))
+    x = _abscissa_values(view, along)
+    style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if along == "gamma3" else style.LABELS[along])
-    highest = max(float(np.nanmax(table, initial=0.0)) * HEADROOM, axes.get_ylim()[1] if axes.lines else 0.0)
+    highest = max(
+        float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_MARGIN, axes.get_ylim()[1] if axes.lines else 0.0
+    )
     axes.set_ylim(0, highest or 1.0)
 
 
-def _kinds(table: Array) -> list[Line2D]:
-    """Legend entries for the kinds of thresholds that occur in `table`, (..., kinds, ...) as in `_table`."""
+def _kind_entries(table: Array) -> list[Line2D]:
+    """Legend entries for the kinds of thresholds that occur in `table`, (..., kinds, ...) as in
+    `_first_force_table`."""
     shown = np.isfinite(table).any(axis=(0, 2))
     return [
         Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
@@ -187,14 +196,14 @@ def _kinds(table: Array) -> list[Line2D]:
     ]
 
 
-def _left_out(view: View, names: list[str]) -> str:
+def _infinite_values_clause(view: View, names: list[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
     finite.
     """
     left_out = [
         f"{name} = {value:g}"
         for name in names
-        for value in view.axes[name][~np.isfinite(_abscissa(view, name))]
+        for value in view.axes[name][~np.isfinite(_abscissa_values(view, name))]
     ]
     return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
 

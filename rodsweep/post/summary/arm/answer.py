@@ -12,7 +12,7 @@ from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import counted, some_of
-from .arm import errors_in_si, in_own_unit, load_of, region_of_arms
+from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
 from .validity import plane_lines, validity_sentence
 
@@ -51,10 +51,10 @@ def _validity_lines(view: View, done: np.ndarray) -> Lines:
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     if not inside.any():
-        return [caveat, *(f"if the model applied: {line}" for line in ANSWERS[view.task](view, rods))]
+        return [caveat, *(f"if the model applied: {line}" for line in LINES_OF[view.task](view, rods))]
     if (inside != rods).any():
-        return [caveat, *(f"where the model applies: {line}" for line in ANSWERS[view.task](view, inside))]
-    answer = ANSWERS[view.task](view, rods)
+        return [caveat, *(f"where the model applies: {line}" for line in LINES_OF[view.task](view, inside))]
+    answer = LINES_OF[view.task](view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
@@ -62,22 +62,22 @@ def unit_range(view: View, values: np.ndarray, si: str, errors: np.ndarray | flo
     """Range of `values`, in the SI unit `si`, as text in the unit that the user typed.
     errors: absolute errors, of the shape of `values`, or 0.
     """
-    return in_own_unit(view, values, si, errors, ANSWER_DIGITS)
+    return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return unit_range(view, loads, UNITS[load_of(view)][0])
+    return unit_range(view, loads, UNITS[load_kind(view)][0])
 
 
-def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
+def _add_failed(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
     """Function from (view, mask of the points with a rod) to the answer's lines, with a line on failed
     searches. answer: function from (view, mask of the solved points) to (answer, further lines).
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
         failed = rods & view.with_status(FAILED_STATUS)
-        unsolved = [f"not known{_share(failed, rods)}: the search failed"] if failed.any() else []
+        unsolved = [f"not known{_share_clause(failed, rods)}: the search failed"] if failed.any() else []
         if (failed == rods).all():
             return unsolved
         first, further = answer(view, rods & ~failed)
@@ -86,13 +86,13 @@ def _of_search(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Cal
     return lines
 
 
-def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
     to stability). rods: mask of the points with a result."""
-    load = load_of(view)
+    load = load_kind(view)
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
-    lines = _where(view, rods, hopf)
+    lines = _extreme_arm_lines(view, rods, hopf)
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
@@ -100,10 +100,10 @@ def _of_thresholds(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     if len(hopf) > 1 and np.isfinite(back).any():
         points = some_of(int(np.isfinite(back).sum()), len(back), "point")
         lines.append(f"is straight again at {points}, from {load_spanned(view, back)} on")
-    return _flutter(view, hopf, end, rate), lines
+    return _flutter_lines(view, hopf, end, rate), lines
 
 
-def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
+def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
     """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag; empty with
     fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,).
     """
@@ -120,23 +120,23 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
     return [*lines, *drag_lines(view, whole)]
 
 
-def _of_crossings(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the points."""
     v = view.variables
-    load = load_of(view)
+    load = load_kind(view)
     end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
     loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
-    return _flutter(view, loads, end, frequency), []
+    return _flutter_lines(view, loads, end, frequency), []
 
 
-def _share(some: np.ndarray, rods: np.ndarray) -> str:
+def _share_clause(some: np.ndarray, rods: np.ndarray) -> str:
     """Clause on the number of points in `rods` that are also in `some` (masks); empty if `rods` has one
     point.
     """
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
-def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
+def _flutter_lines(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
     """Lines about flutter. hopf: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
     flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
@@ -150,7 +150,7 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
     return lines
 
 
-def _of_cycles(view: View, rods: np.ndarray) -> Lines:
+def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
     outcomes. rods: mask of the points with a rod."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
@@ -159,19 +159,19 @@ def _of_cycles(view: View, rods: np.ndarray) -> Lines:
     cycles = rods & view.with_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
         masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE_WORDS.items()}
-        return [f"{words}{_share(mask, rods)}" for words, mask in masks.items() if mask.any()]
+        return [f"{words}{_share_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
         unit_range(view, v[name][beats], unit, errors[name][beats])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
-    motion = f"beats{_share(cycles, rods)} at {rate}, its tip by {wide} to either side"
+    motion = f"beats{_share_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
-    return [motion, *_decided(view, rods), *drag_lines(view, numbers)]
+    return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
 
 
-def _decided(view: View, rods: np.ndarray) -> Lines:
+def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
     list if drag is not varied or an outcome is undecided. rods: mask of the points with a rod.
     """
@@ -190,7 +190,7 @@ def _decided(view: View, rods: np.ndarray) -> Lines:
     return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 
 
-def _of_modes(view: View, rods: np.ndarray) -> Lines:
+def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     """Lines about stability and leading frequency of the straight arms. rods: mask of the points."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
@@ -198,17 +198,17 @@ def _of_modes(view: View, rods: np.ndarray) -> Lines:
     lines = []
     if unstable.any():
         frequency = unit_range(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        lines = [f"gives way{_share(unstable, rods)}; its leading mode oscillates at {frequency}"]
+        lines = [f"gives way{_share_clause(unstable, rods)}; its leading mode oscillates at {frequency}"]
     elif not unknown.any():
         lines = ["stays straight"]
     if unknown.any():
-        lines.append(f"whether the arm gives way is not known{_share(unknown, rods)}")
+        lines.append(f"whether the arm gives way is not known{_share_clause(unknown, rods)}")
     return lines
 
 
-def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies of cycles on branches, []). rods: mask of the points."""
-    loads = view.variables[f"branch_{load_of(view)}"][rods]
+    loads = view.variables[f"branch_{load_kind(view)}"][rods]
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
@@ -216,13 +216,13 @@ def _of_branches(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return [f"beats at {load_spanned(view, loads)}, at {rate}"], []
 
 
-def _of_diagram(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
     v = view.variables
-    scale = np.broadcast_to(v[SCALE_OF[load_of(view)]], rods.shape)[rods]
+    scale = np.broadcast_to(v[SCALE_OF[load_kind(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
-    return _flutter(view, forces * scale, last * scale, frequency), []
+    return _flutter_lines(view, forces * scale, last * scale, frequency), []
 
 
 def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -238,13 +238,13 @@ def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray,
     return values, frequency
 
 
-ANSWERS: dict[str, Callable[[View, np.ndarray], Lines]] = {
-    "spectrum": _of_modes,
-    "modes": _of_modes,
-    "thresholds": _of_search(_of_thresholds),
-    "criticality": _of_search(_of_crossings),
-    "limit_cycle": _of_cycles,
-    "branch": _of_search(_of_branches),
-    "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _of_search(_of_diagram)(view, rods),
+LINES_OF: dict[str, Callable[[View, np.ndarray], Lines]] = {
+    "spectrum": _mode_lines,
+    "modes": _mode_lines,
+    "thresholds": _add_failed(_threshold_lines),
+    "criticality": _add_failed(_crossing_lines),
+    "limit_cycle": _cycle_lines,
+    "branch": _add_failed(_branch_lines),
+    "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _add_failed(_row_lines)(view, rods),
 }
 """For each task, the function of the view and a mask of computed points that returns the answer's lines."""

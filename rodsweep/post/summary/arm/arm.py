@@ -19,7 +19,7 @@ from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedChange
 from ...tables.rows import quantities_at_points
-from ..errors import errors_of, is_known
+from ..errors import absolute_errors, is_known
 from ..ranges import RANGE_DIGITS, rounded, span_text
 
 SI_LINE_WIDTH = 80
@@ -50,7 +50,7 @@ def quantity_words(name: str) -> str:
     return QUANTITY_WORDS.get(name, name.replace("_", " "))
 
 
-def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
+def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
     converts the numbers to this unit. The unit is typed by the user, or has a prefix suitable for numbers up
     to `largest`.
@@ -63,23 +63,23 @@ def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     return 1.0, si
 
 
-def in_own_unit(
+def range_in_unit(
     view: View,
     values: np.ndarray,
     si: str,
     errors: np.ndarray | float = 0.0,
     most: int = RANGE_DIGITS,
 ) -> str:
-    """Range of `values`, in the SI unit `si`, as text in the unit of `own_unit`.
+    """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
     errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. most: largest
     number of digits.
     """
-    factor, unit = own_unit(view, si, _largest(values))
+    factor, unit = printing_unit(view, si, _largest_absolute(values))
     return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
 
 
-def _largest(values: np.ndarray) -> float:
+def _largest_absolute(values: np.ndarray) -> float:
     """Largest absolute value among finite `values`; 0 if no value is finite."""
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
@@ -98,7 +98,7 @@ def region_of_arms(view: View, mask: np.ndarray) -> str:
     chosen = mask.ravel()
     ranges = [quantity_range(view, name, column, chosen) for name, column in given_columns(view).items()]
     for name in OPTIONAL_PARAMETERS:
-        column = view.listed.point_columns.get(name, np.ones(1)).ravel()
+        column = view.as_list.point_columns.get(name, np.ones(1)).ravel()
         if len(np.unique(column)) > 1:
             ends = sorted({float(column[chosen].min()), float(column[chosen].max())})
             ranges.append(f"{name} {' to '.join(f'{end:.{AXIS_DIGITS + 1}g}' for end in ends)}")
@@ -113,7 +113,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     if name == "drag":
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
-    unit = _unit(view, name)
+    unit = _quantity_unit(view, name)
     factor = written_in(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
@@ -122,10 +122,10 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     return f"{quantity_words(name)} {extent} {unit}".rstrip()
 
 
-def _unit(view: View, name: str) -> str:
+def _quantity_unit(view: View, name: str) -> str:
     """Unit in which the quantity `name` is printed; empty for a dimensionless quantity."""
     si = ALL_QUANTITIES[name].unit
-    return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
+    return "" if si == "1" else view.typed.get(name, printing_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
@@ -144,20 +144,20 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     values = {own: column for own, column in values.items() if np.isfinite(column).any()}
     largest: dict[str, float] = {}
     for own, column in values.items():
-        largest[shown[own].units] = max(largest.get(shown[own].units, 0.0), _largest(column))
+        largest[shown[own].units] = max(largest.get(shown[own].units, 0.0), _largest_absolute(column))
     items = []
     for own, column in values.items():
         variable = shown[own]
-        factor, unit = own_unit(view, variable.units, largest[variable.units])
+        factor, unit = printing_unit(view, variable.units, largest[variable.units])
         errors = errors_in_si(view.variables, own, variable.name)[done]
-        numbers = _numbers(factor * column, factor * errors)
+        numbers = _numbers_text(factor * column, factor * errors)
         items.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
     if not items:
         return []
-    return ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in items))]
+    return ["in the arm's units:", *wrapped_lines("; ".join(item.replace(" ", "\xa0") for item in items))]
 
 
-def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
+def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
     """Values as text: a few values one by one, more values as a range.
 
     errors: absolute errors, of the shape of the values, which limit the number of digits.
@@ -170,7 +170,7 @@ def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
     return span_text(finite, known)
 
 
-def wrapped(text: str) -> list[str]:
+def wrapped_lines(text: str) -> list[str]:
     """`text` as indented lines of at most SI_LINE_WIDTH characters; no line ends at a no-break space."""
     lines = textwrap.wrap(text, SI_LINE_WIDTH - 2, break_long_words=False, break_on_hyphens=False)
     return ["  " + line.replace("\xa0", " ") for line in lines]
@@ -183,10 +183,10 @@ def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndar
     """
     known = np.isfinite(v[own]) & (v[own] != 0)
     scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)
-    return np.asarray(np.abs(scale) * errors_of(v, own))
+    return np.asarray(np.abs(scale) * absolute_errors(v, own))
 
 
-def load_of(view: View) -> str:
+def load_kind(view: View) -> str:
     """Kind of the load of an arm: "force" or "pressure"."""
     return "force" if "force" in view.quantities else "pressure"
 
@@ -195,8 +195,8 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
     force, (n,).
     """
-    load = load_of(view)
-    return in_own_unit(view, F * _at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
+    load = load_kind(view)
+    return range_in_unit(view, F * _values_at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:
@@ -240,10 +240,10 @@ def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
     """Range of the frequencies in Hz as text. frequency: angular frequencies in rad/tau2, (n,). points: index
     of the point of each frequency, (n,).
     """
-    return in_own_unit(view, frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
+    return range_in_unit(view, frequency / (2 * np.pi * _values_at(view.quantities["tau2"], points)), HERTZ)
 
 
-def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _values_at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Values of a quantity at the points with the indices `points`. values: (all points,), or () for a
     quantity with the same value at all points.
     """

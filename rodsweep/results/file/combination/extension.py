@@ -67,19 +67,19 @@ class Extension:
     old: Layout
     new: Layout
     places: StoredPointMap
-    grown: tuple[tuple[ExtensionRule, Any], ...]
+    increased_options: tuple[tuple[ExtensionRule, Any], ...]
     """(rule, old value) for every option that the new config increases."""
-    nothing_stays: bool
+    recomputes_all: bool
     """Whether every stored point is computed again."""
 
-    def kept(self) -> Iterator[np.ndarray]:
+    def reused_records(self) -> Iterator[np.ndarray]:
         """Yields records, (n,) in the new layout, of the stored points that are reused."""
-        if self.nothing_stays:
+        if self.recomputes_all:
             return
         for records in stored_points(self.path, self.old):
             index = self.places(records["index"])
             stays = index >= 0
-            for increase, before in self.grown:
+            for increase, before in self.increased_options:
                 stays &= increase.has(records, before)
             if stays.any():
                 yield self._converted(records[stays], index[stays])

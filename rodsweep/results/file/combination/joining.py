@@ -89,11 +89,10 @@ class JoinedFile:
     def _is_rounding(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
-        """Whether two values of the variable `name` differ only by rounding error. first, second: the values.
-        sources: headers of their files.
+        """Whether the difference of two values of the variable `name` is taken for rounding error.
 
-        Only results of different BLAS kernels, or of stretches solved with different points, may differ by
-        rounding error.
+        Never for `status`, or without different BLAS kernels and stretches; always for error estimates and
+        numbers that are not floating-point. first, second: the values. sources: headers of their files.
         """
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":

@@ -20,14 +20,14 @@ from ...style import (
     SYMBOLS,
     VERMILION,
     escape_dollar_signs,
-    heading,
+    heading_text,
     legend_below,
     require_content,
-    scale,
+    scale_axis,
 )
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
-from ..units import units_over
-from .branches import AmplitudeBranch, abscissa, branches_of
+from ..units import units_of_points
+from .branches import AmplitudeBranch, abscissa_parameter, branches_of
 from .hopf_marks import draw_laws, mark_hopf_points
 
 BRANCH_LOOKS = tuple(
@@ -50,8 +50,8 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     for too many lines.
     """
     first = views[0]
-    name = abscissa(first)
-    units = units_over(views, [np.arange(view.variables["status"].size) for view in views])
+    name = abscissa_parameter(first)
+    units = units_of_points(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
     branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
     if len(branches) > len(BRANCH_LOOKS):
@@ -63,8 +63,8 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     require_content(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
-    shared, own = _names(branches, name)
-    handles = _draw_branches(panels, branches, own, _file_words(views, name))
+    shared, own = _common_and_own_texts(branches, name)
+    handles = _draw_branches(panels, branches, own, _legend_entries_of_files(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
@@ -74,12 +74,12 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
         [law for branch in branches for law in branch.square_root_fits],
         units[0].names[0] * units[0].in_si,
     )
-    _label(panels, name, units[0].labels_over)
+    _label_axes(panels, name, units[0].labels_over)
     for panel in panels:
-        scale(panel, "x", np.unique(branches[0].x))
+        scale_axis(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         legend_below(figure, legend, columns=min(2, len(legend)))
-    figure.suptitle(heading(first, shared))
+    figure.suptitle(heading_text(first, shared))
     return figure, f"amplitudes of the tip, period and power against {name}"
 
 
@@ -90,7 +90,7 @@ def _draw_branches(
     words: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
     """Draws all lines in all panels; returns legend entries. texts: legend entry of each line. words: result
-    of `_file_words`.
+    of `_legend_entries_of_files`.
     """
     handles = []
     lost = set[str]()
@@ -112,7 +112,7 @@ def _draw_branches(
     return handles
 
 
-def _file_words(views: Sequence[View], name: str) -> dict[int, tuple[str, bool | None]]:
+def _legend_entries_of_files(views: Sequence[View], name: str) -> dict[int, tuple[str, bool | None]]:
     """Returns {id(view): (legend entry, is_upward)}: all datasets of Python have the same path. is_upward:
     whether the parameter `name` increased during the continuation; None unless the files differ in this
     direction.
@@ -152,7 +152,7 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
         axes.annotate("", tip, tail, arrowprops=arrow, zorder=4)
 
 
-def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
+def _common_and_own_texts(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
     """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
     line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
     axis.
@@ -160,11 +160,11 @@ def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[st
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         along = {name, *(quantity for quantity, moved in CHANGED_PARAMETER.items() if moved == name)}
-        return shared_and_own_of_arms(view, [branch.first for branch in branches], along)
+        return shared_and_own_of_arms(view, [branch.first_number for branch in branches], along)
     return shared_and_own_texts([branch.parameters for branch in branches])
 
 
-def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
+def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
     """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible.
     labels: labels of the vertical axes. name: parameter on the horizontal axis.
     """
@@ -188,11 +188,11 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
         axes.plot(*branch.with_gap_at_onset(values), **look)
         if unstable.any():
             axes.plot(branch.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
-        lost |= _mark_unknown(axes, branch, look["color"])
+        lost |= _mark_unknown_amplitudes(axes, branch, look["color"])
     return lost
 
 
-def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
+def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
     """Marks points without a known amplitude at the top of a panel; returns the statuses of these points."""
     lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:

@@ -38,7 +38,7 @@ class AmplitudeBranch:
     """Hopf points on the line; empty unless x is F."""
     units: CycleUnits
     """Units of all drawn quantities."""
-    first: int
+    first_number: int
     """Number of the first point of the line in the file, from 1."""
 
     @property
@@ -60,7 +60,7 @@ class AmplitudeBranch:
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
 
 
-def abscissa(view: View) -> str:
+def abscissa_parameter(view: View) -> str:
     """Name of the parameter on the horizontal axis: F, or the parameter with the most values if F is
     constant. Raises InputError for a file with one point.
     """
@@ -89,7 +89,7 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     branches = []
     stored = StoredChanges(view, "F")
     for line in lines_over(view.point_columns, name):
-        changes = stored.on(line) if name == "F" else []
+        changes = stored.thresholds_on(line) if name == "F" else []
         at = line.at
         hopf = [change for change in changes if isinstance(change, LocatedChange) and change.is_hopf]
         branches.append(
@@ -104,7 +104,7 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
                 words=words[at],
                 hopf=hopf,
                 units=units,
-                first=int(at[0]) + 1,
+                first_number=int(at[0]) + 1,
             )
         )
     return branches

@@ -20,9 +20,9 @@ HOPF_DIGITS = 6
 """Number of significant digits of a Hopf point in a legend."""
 HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
 """Look of a vertical line at a Hopf point."""
-SHARED_GREY = "0.3"
+SHARED_POINT_COLOUR = "0.3"
 """Colour of a Hopf point that belongs to several lines."""
-LAW_GREY = "0.45"
+LAW_COLOUR = "0.45"
 """Colour of a square-root law."""
 COEFFICIENT_DIGITS = 3
 """Largest number of significant digits of a coefficient in a legend."""
@@ -47,7 +47,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
             else:
                 same.add(colour)
         for point, colours in places:
-            colour = colours.pop() if len(colours) == 1 else SHARED_GREY
+            colour = colours.pop() if len(colours) == 1 else SHARED_POINT_COLOUR
             for axes in panels:
                 axes.axvline(point.position, color=colour, zorder=0.5, **HOPF_LINE_LOOK)
         if len(places) == 1:
@@ -55,7 +55,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
             label = f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}"
             handles.append(Line2D([], [], color=colour, label=label, **HOPF_LINE_LOOK))
         elif places:
-            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **HOPF_LINE_LOOK))
+            handles.append(Line2D([], [], color=SHARED_POINT_COLOUR, label=word, **HOPF_LINE_LOOK))
     return handles
 
 
@@ -68,16 +68,18 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
         on_side = [law for law in laws if law.above == above]
         if not on_side:
             continue
-        look: dict[str, Any] = {"color": LAW_GREY, "lw": 1.0, "ls": (0, (5, 2.5))}
+        look: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}
         for law in on_side:
             axes.plot(*law.curve(), zorder=1.5, **look)
         difference = rf"\tilde F - {HOPF_SYMBOL}" if above else rf"{HOPF_SYMBOL} - \tilde F"
-        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(on_side)} {unit}".rstrip()
+        formula = (
+            rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients_text(on_side)} {unit}".rstrip()
+        )
         handles.append(Line2D([], [], label=formula, **look))
     return handles
 
 
-def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
+def _coefficients_text(laws: Sequence[SquareRootLaw]) -> str:
     """Distinct coefficients of the laws as text; the range if there are more than MAX_COEFFICIENTS."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
     each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}

@@ -55,11 +55,11 @@ def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]
     F, amplitude: force and amplitude of n cycles, (n,) each, in any order; an amplitude is NaN or 0 if there
     is no cycle. points: Hopf points.
     """
-    laws = (_law(F, amplitude, point, side) for point in points for side in (1, -1) if point.position)
+    laws = (_law_on_side(F, amplitude, point, side) for point in points for side in (1, -1) if point.position)
     return [law for law in laws if law]
 
 
-def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
+def _law_on_side(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
     """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law.
 
     To leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this
@@ -88,12 +88,16 @@ def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareR
     last = len(size) if follows.all() else int(np.argmin(follows))
     end = point.position + side * abs(point.position) * float(distance[last - 1])
     third = size[:3] ** 2 / distance[:3]
-    better = _at_zero(distance[:3], third) if len(third) > 2 and distance[2] <= MAX_FITTED_DISTANCE else q[0]
+    better = (
+        _parabola_at_zero(distance[:3], third)
+        if len(third) > 2 and distance[2] <= MAX_FITTED_DISTANCE
+        else q[0]
+    )
     error = ERROR_SAFETY_FACTOR * abs(sqrt(max(better, 0.0)) - sqrt(square))
     return SquareRootLaw(point.position, sqrt(square), side > 0, end, error)
 
 
-def _at_zero(x: Array, values: Array) -> float:
+def _parabola_at_zero(x: Array, values: Array) -> float:
     """Value at x = 0 of the parabola through three points (x, values), (3,) each."""
     a, b, c = x
     weights = [b * c / ((a - b) * (a - c)), a * c / ((b - a) * (b - c)), a * b / ((c - a) * (c - b))]
