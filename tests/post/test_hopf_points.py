@@ -97,7 +97,7 @@ def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
     assert changes_on(view) == [BracketedChange(27.0, 28.0, "hopf")]
-    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
+    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
     assert line == "F** (straight rod starts to beat): between 27 and 28"
 
 
@@ -239,7 +239,7 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert stability_lines(view, "F", StoredChanges(view, "F").on) == ([], [])
+    assert stability_lines(view, "F", StoredChanges(view, "F").thresholds_on) == ([], [])
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
@@ -271,7 +271,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
+    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
     assert line == f"F** (straight rod starts to beat): {expected}"
 
 
@@ -282,7 +282,7 @@ def test_the_summary_tells_every_window_of_flutter_on_a_line():
     places = [9.0, 29.0, 49.0, 69.0, 89.0]
     kinds = ["hopf", "restabilization"] * 2 + ["hopf"]
     view.variables.update(hopf_variables("F", [(F, 1e4, 1e2, 1e-2) for F in places], kinds=kinds))
-    (beats, again), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
+    (beats, again), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
     assert re.findall(r"(\d+)\.0+", beats) == ["9", "49", "89"]
     assert re.findall(r"(\d+)\.0+", again) == ["29", "69"]
 

@@ -42,7 +42,7 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     (line,) = lines_over(view.point_columns, "F")
     found = [
         change
-        for change in StoredChanges(view, "F").on(line)
+        for change in StoredChanges(view, "F").thresholds_on(line)
         if isinstance(change, LocatedChange) and change.is_hopf
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
@@ -79,7 +79,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
     (line,) = lines_over(view.point_columns, "F")
-    assert StoredChanges(view, "F").on(line) == [BracketedChange(45, 60, "hopf")]
+    assert StoredChanges(view, "F").thresholds_on(line) == [BracketedChange(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "beat): 49.758004916" in command("show", "all.h5").stdout
 
@@ -92,8 +92,8 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     located = make_job(command.directory / "c.yaml", ()).task.afterwards(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_over(view.point_columns, "F")
-    assert StoredChanges(view, "F").on(line) == [BracketedChange(40, 60, "hopf")]
-    (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
+    assert StoredChanges(view, "F").thresholds_on(line) == [BracketedChange(40, 60, "hopf")]
+    (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
     assert told == "F** (straight rod starts to beat): between 40 and 60"
 
 
