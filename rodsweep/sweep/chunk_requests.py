@@ -41,7 +41,7 @@ processor time from solving ranks."""
 CHUNK_POLL_GROWTH = 1.1
 """Ratio of two successive pauses of a waiting rank. The ratio is near 1, so that a wait of a millisecond is
 hardly prolonged."""
-WAIT_SECONDS = 0.05
+QUEUE_WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the queue to change before it polls for MPI messages."""
 
 
@@ -56,10 +56,10 @@ class FirstRankRequests:
         self.queue = queue
         self.stop = stop
         self.show = show
-        self.waiting: deque[int] = deque()
+        self.waiting_ranks: deque[int] = deque()
         self.answered_in_advance: set[int] = set()
         """Ranks whose next request has been answered in advance."""
-        self.working = set(range(1, team.size))
+        self.working_ranks = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.positions: dict[int, SolvePosition] = {}
         """Latest reported progress within a long point, by rank."""
@@ -83,7 +83,7 @@ class FirstRankRequests:
         self.between_points()
         while (chunk := self.queue.next_chunk(0)) is None:
             with self.queue.change:
-                self.queue.change.wait(WAIT_SECONDS)
+                self.queue.change.wait(QUEUE_WAIT_SECONDS)
             self.between_points()
             for position in list(self.positions.values())[:1]:
                 self.show(position.words, self._begun_points())
@@ -121,7 +121,7 @@ class FirstRankRequests:
         """After a stop request to the first rank, ends the queue and notifies all working ranks, once."""
         if self.stop and not self.queue.stopped:
             self.queue.stop()
-            for rank in self.working:
+            for rank in self.working_ranks:
                 self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
     def _serve(self) -> None:
@@ -136,11 +136,11 @@ class FirstRankRequests:
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
                 rank = self.status.Get_source()
                 self._handle_report(rank, comm.recv(source=rank, tag=REQUEST_TAG))
-            while self.waiting and (chunk := self.queue.next_chunk(self.waiting[0])) is not None:
-                rank = self.waiting.popleft()
+            while self.waiting_ranks and (chunk := self.queue.next_chunk(self.waiting_ranks[0])) is not None:
+                rank = self.waiting_ranks.popleft()
                 comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 if chunk == NO_WORK_LEFT:
-                    self.working.discard(rank)
+                    self.working_ranks.discard(rank)
 
     def _receive_positions(self) -> None:
         """Receives all waiting reports of progress within long points."""
@@ -170,12 +170,12 @@ class FirstRankRequests:
         if rank in self.answered_in_advance:
             self.answered_in_advance.remove(rank)
         else:
-            self.waiting.append(rank)
+            self.waiting_ranks.append(rank)
 
     def _serve_until_over(self) -> None:
         """Body of the thread: answers messages of the other ranks until all of them have finished."""
         with self.team.aborting_together():
-            while self.working:
+            while self.working_ranks:
                 self._serve()
                 answering = time.monotonic() - self.served < RELIEVED_POLL_SECONDS
                 time.sleep(RELIEVED_POLL_SECONDS if answering else POLL_SECONDS)

@@ -10,7 +10,7 @@ import numpy as np
 from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
 from ..results.file.view import View
-from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
+from ..results.layouts.limit_cycle import ENERGY_VARIABLES, SHAPE_VARIABLES, TIP_VARIABLES
 from .running.job import Job, job_of
 
 SHAPE_COUNT = 48
@@ -33,7 +33,7 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
     added: dict[str, np.ndarray] = {}
     for number in numbers:
         job, record = _solve_stored_point(view, number)
-        for name in (variable.name for variable in SHAPE + TIP + ENERGY):
+        for name in (variable.name for variable in SHAPE_VARIABLES + TIP_VARIABLES + ENERGY_VARIABLES):
             values = np.asarray(record[name])
             table = added.setdefault(name, np.full((*shape, *values.shape), np.nan))
             table.reshape(-1, *values.shape)[number - 1] = values

@@ -12,13 +12,13 @@ from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..model.parameters import Range
 from ..results.layouts.limit_cycle import (
-    CYCLE,
-    ENERGY,
+    CYCLE_VARIABLES,
+    ENERGY_VARIABLES,
     PERIOD_TAU1,
-    SHAPE,
+    SHAPE_VARIABLES,
     STORED_MULTIPLIERS,
-    TIP,
-    TRANSIENT,
+    TIP_VARIABLES,
+    TRANSIENT_VARIABLES,
 )
 from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
@@ -127,11 +127,11 @@ class LimitCycleTask(Task):
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
             ("Floquet multipliers", not marched, f"limit_cycle.method: {options.method}"),
-            self._stored("tip and energy over a cycle", "samples", TIP + ENERGY),
-            self._stored("shapes over a cycle", "shapes", SHAPE),
+            self._stored("tip and energy over a cycle", "samples", TIP_VARIABLES + ENERGY_VARIABLES),
+            self._stored("shapes over a cycle", "shapes", SHAPE_VARIABLES),
             ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
             if marched
-            else self._stored("tip from the start to the cycle", "transient", TRANSIENT),
+            else self._stored("tip from the start to the cycle", "transient", TRANSIENT_VARIABLES),
             ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
@@ -208,15 +208,19 @@ class LimitCycleTask(Task):
         stored = _StoredMultipliers(
             np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found
         )
-        values = outcome_values(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS)
+        values = outcome_values(
+            CYCLE_VARIABLES, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
+        )
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
-            values |= _values_of_arrays(TIP, cycle.tip) | _values_of_arrays(ENERGY, cycle.energy)
+            values |= _values_of_arrays(TIP_VARIABLES, cycle.tip) | _values_of_arrays(
+                ENERGY_VARIABLES, cycle.energy
+            )
         if options.shapes:
-            values |= _values_of_arrays(SHAPE, cycle.shape)
+            values |= _values_of_arrays(SHAPE_VARIABLES, cycle.shape)
         if options.transient:
-            values |= _values_of_arrays(TRANSIENT, cycle.transient)
+            values |= _values_of_arrays(TRANSIENT_VARIABLES, cycle.transient)
         return values
 
 

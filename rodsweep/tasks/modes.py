@@ -11,7 +11,7 @@ from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
-from ..results.layouts.modes import GROWTH, MODE_NUMBERS
+from ..results.layouts.modes import GROWTH_VARIABLES, MODE_NUMBERS
 from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
@@ -96,5 +96,5 @@ def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
         values[f"{name}_real"] = field.real
         values[f"{name}_imag"] = field.imag
     if growth:
-        values |= outcome_values(GROWTH, result.growth)
+        values |= outcome_values(GROWTH_VARIABLES, result.growth)
     return values

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..texts import PageText
 
-TABLE_ROWS = {
+ROW_LABELS_BY_KIND = {
     "spectrum": {
         "growth_rate": "growth rate", "growth_rate_si": "growth rate", "frequency": "frequency",
         "frequency_hz": "frequency", "unstable_count": "unstable modes",
@@ -27,7 +27,7 @@ TABLE_ROWS = {
     },
 }  # fmt: skip
 """Rows of the table for each kind of question: label of each variable."""
-HEADINGS = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
+HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
 """Heading above the rows of each kind of question."""
 TABLE_DIGITS = 8
 """Number of significant digits in the table."""
@@ -48,19 +48,23 @@ class NumbersTable:
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
-        self.found: dict[str, dict[str, Any]] = {}
+        self.answers_by_kind: dict[str, dict[str, Any]] = {}
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
         """Replaces the rows for the kind of question `kind` by numbers of the answer `found`; None removes
-        these rows. A kind that is not in TABLE_ROWS has no effect.
+        these rows. A kind that is not in ROW_LABELS_BY_KIND has no effect.
         """
-        if kind not in TABLE_ROWS:
+        if kind not in ROW_LABELS_BY_KIND:
             return
         if found is None:
-            self.found.pop(kind, None)
+            self.answers_by_kind.pop(kind, None)
         else:
-            self.found[kind] = found
-        parts = [_table_rows(name, self.found[name]) for name in TABLE_ROWS if name in self.found]
+            self.answers_by_kind[kind] = found
+        parts = [
+            _table_rows(name, self.answers_by_kind[name])
+            for name in ROW_LABELS_BY_KIND
+            if name in self.answers_by_kind
+        ]
         self.root.text = f"<table>{''.join(parts)}</table>"
 
 
@@ -76,7 +80,7 @@ def number_text(value: Any, factor: float = 1.0) -> str:
 
 def _table_rows(kind: str, found: dict[str, Any]) -> str:
     rows = []
-    for name, meaning in TABLE_ROWS[kind].items():
+    for name, meaning in ROW_LABELS_BY_KIND[kind].items():
         if name not in found or SI_NAMES.get(name, f"{name}_si") in found:
             continue
         unit, factor = TABLE_UNITS.get(found["units"][name], (found["units"][name], 1.0))
@@ -87,4 +91,6 @@ def _table_rows(kind: str, found: dict[str, Any]) -> str:
             )
     if not rows:
         return ""
-    return f'<tbody class="{kind}"><tr><th colspan="3">{HEADINGS[kind]}</th></tr>{"".join(rows)}</tbody>'
+    return (
+        f'<tbody class="{kind}"><tr><th colspan="3">{HEADINGS_BY_KIND[kind]}</th></tr>{"".join(rows)}</tbody>'
+    )

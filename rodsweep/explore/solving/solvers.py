@@ -37,7 +37,7 @@ PROCESS_GROUPS = {
 GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
 """Unix niceness of the solver process of each group. Only the group "spectrum" has the priority of the page
 and the browser, so its pictures are drawn while other processes solve."""
-INTERRUPT_RETRY = 0.1
+INTERRUPT_RETRY_SECONDS = 0.1
 """Time after which a cancellation is repeated if the process was not yet ready, in seconds."""
 WARM_UP_KINDS = ("spectrum", "cycle", "thresholds")
 """Kinds of questions that are solved once at the start of the server, to start their processes and to load
@@ -70,7 +70,7 @@ class SolverProcess:
         self.number = 0
         """Number of questions sent so far. A timer compares this number with the number at which the timer
         was set, and acts only if both are equal."""
-        self.since = 0.0
+        self.solve_start_time = 0.0
         self.starts = 0
         self.is_ready = False
         """Whether the process has installed its signal handlers. Before that, SIGINT would end the
@@ -95,7 +95,7 @@ class SolverProcess:
         if self.current_question is None:
             self._send_next()
         elif self.current_question[0] == key:
-            age = time.monotonic() - self.since
+            age = time.monotonic() - self.solve_start_time
             number = self.number
             IOLoop.current().call_later(
                 max(0.0, self.time_limits.interrupt - age), lambda: self._cancel(number, key)
@@ -146,7 +146,7 @@ class SolverProcess:
         self.start()
         assert self._connection is not None
         self.current_question = (key, done, progress)
-        self.since = time.monotonic()
+        self.solve_start_time = time.monotonic()
         self.number += 1
         self._connection.send(question)
 
@@ -182,7 +182,7 @@ class SolverProcess:
         if self.current_question is None or number != self.number or self._process is None:
             return
         if not self.is_ready:
-            IOLoop.current().call_later(INTERRUPT_RETRY, lambda: self._interrupt(number))
+            IOLoop.current().call_later(INTERRUPT_RETRY_SECONDS, lambda: self._interrupt(number))
             return
         if self._process.is_alive() and self._process.pid is not None:
             os.kill(self._process.pid, signal.SIGINT)

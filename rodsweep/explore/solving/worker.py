@@ -20,7 +20,7 @@ from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
-CANCELLATION_RETRY = 0.05
+CANCELLATION_RETRY_SECONDS = 0.05
 """A cancellation that arrives during an import, or while a progress message is sent, is repeated after this
 time, in seconds."""
 
@@ -43,7 +43,7 @@ class Cancellation:
             return
         self.is_due = True
         if self.is_sending or is_importing(frame):
-            signal.setitimer(signal.ITIMER_REAL, CANCELLATION_RETRY)
+            signal.setitimer(signal.ITIMER_REAL, CANCELLATION_RETRY_SECONDS)
             return
         self.is_solving = False
         raise KeyboardInterrupt

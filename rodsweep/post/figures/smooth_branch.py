@@ -18,7 +18,7 @@ MIRROR_FACTORS = np.array([1.0, -1.0, 1.0])
 CHORD_WEIGHTS = np.array([0.5, 1.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord; the three coordinates are divided by their
 ranges on the branch."""
-WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
+CHORD_WEIGHTS_WITHOUT_Y = np.array([1.0, 0.0, 1.0])
 """Weights of parameter, y and log period in the length of a chord that ignores y."""
 CHORD_VARIABLES = ((CHORD_WEIGHTS, 1.0), (CHORD_WEIGHTS, 0.5), (np.array([0.1, 1.0, 0.1]), 1.0))
 """(weights, power) of the candidates for the variable of the interpolation: sums of the chord lengths to this
@@ -104,7 +104,7 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     polynomials is the arc length of (parameter, log period), which is smooth. Of candidates on neighbouring
     intervals, the candidate with the largest change of slope is the corner.
     """
-    lengths = _cumulative_chord_lengths(own * WEIGHTS_WITHOUT_Y, extent)
+    lengths = _cumulative_chord_lengths(own * CHORD_WEIGHTS_WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
     for i in range(1, len(own) - 2):
         window = slice(max(0, i + 1 - CORNER_CYCLE_COUNT), i + 1 + CORNER_CYCLE_COUNT)

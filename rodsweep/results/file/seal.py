@@ -17,15 +17,15 @@ import h5py
 
 from .content import SEAL_ATTRIBUTE, digests_of
 
-FRAME_HEAD = b"\nrodsweep seal 2 "
+CHECKSUM_HEAD = b"\nrodsweep seal 2 "
 """First bytes of the checksum of HDF5's structures, which follows HDF5's own end of the file."""
-FORMER_HEAD = b"\nrodsweep seal 1 "
+FORMER_CHECKSUM_HEAD = b"\nrodsweep seal 1 "
 """First bytes of the checksum in files of format 4 and before, which are refused for their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file."""
 END_OFFSETS = {0: 40, 1: 44, 2: 28, 3: 28}
 """Offset of the eight bytes with HDF5's end of the file, by version of HDF5's superblock."""
-LONGEST_FRAME = 100_000
+MAX_CHECKSUM_TEXT_BYTES = 100_000
 """Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
 BYTES_A_READ = 1 << 20
 """Number of bytes per read of a file, which bounds the memory."""
@@ -52,7 +52,7 @@ def seal(path: Path) -> None:
         stream.truncate(end)
         frame = {"end": end, "pieces": pieces, "frame": _checksum(stream, _left_out_pieces(pieces, end))}
         stream.seek(end)
-        stream.write(FRAME_HEAD + json.dumps(frame).encode() + b"\n")
+        stream.write(CHECKSUM_HEAD + json.dumps(frame).encode() + b"\n")
 
 
 def check_frame(path: Path) -> bool:
@@ -67,13 +67,13 @@ def check_frame(path: Path) -> bool:
         if size < end:
             raise BrokenSeal(f"it ends after {size} of {end} bytes")
         stream.seek(end)
-        data = stream.read(LONGEST_FRAME)
-        if not data or data.startswith(FORMER_HEAD):
+        data = stream.read(MAX_CHECKSUM_TEXT_BYTES)
+        if not data or data.startswith(FORMER_CHECKSUM_HEAD):
             return False
-        if not data.startswith(FRAME_HEAD) or not data.endswith(b"\n"):
+        if not data.startswith(CHECKSUM_HEAD) or not data.endswith(b"\n"):
             raise BrokenSeal("its checksum cannot be read")
         try:
-            given = json.loads(data[len(FRAME_HEAD) :])
+            given = json.loads(data[len(CHECKSUM_HEAD) :])
             pieces = [(int(start), int(length)) for start, length in given["pieces"]]
             whole = given["end"] == end and given["frame"] == _checksum(stream, _left_out_pieces(pieces, end))
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):

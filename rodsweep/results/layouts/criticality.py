@@ -5,7 +5,7 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .rods import with_certified_meaning
-from .thresholds import MORE_CROSSINGS, search_variables
+from .thresholds import CROSSING_LIST_RULE, search_variables
 from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
 
 FORCE_UNIT = PARAMETERS["F"].unit
@@ -61,7 +61,7 @@ NORMAL_FORM = along_dimension(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}
+INCREASES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

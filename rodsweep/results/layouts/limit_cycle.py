@@ -35,7 +35,7 @@ CYCLE_WORDS = ("cycle", "unstable")
 """Names of the statuses of points with a limit cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
 """(stored number, word) for a second stable state of the rod, besides the state that the solve reached."""
-CYCLE = (
+CYCLE_VARIABLES = (
     real("period", "tau2", "period of the limit cycle"),
     real("frequency", ANGULAR_UNIT, "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
@@ -82,16 +82,18 @@ CYCLE = (
 PERIOD_TAU1 = real("period_tau1", "tau1", "period of the limit cycle in units of tau1: period k2/gamma3")
 TIP_UNITS = {"x": "L", "y": "L", "theta": "rad"}
 """Units of the position and the angle of the tip."""
-TIP = tuple(real(f"tip_{name}", units, f"{name} of the tip", "sample") for name, units in TIP_UNITS.items())
-ENERGY = (
+TIP_VARIABLES = tuple(
+    real(f"tip_{name}", units, f"{name} of the tip", "sample") for name, units in TIP_UNITS.items()
+)
+ENERGY_VARIABLES = (
     real("energy", "k3/L", "elastic energy", "sample"),
     real("injection", POWER_UNIT, "power of the follower force", "sample"),
     real("dissipation", POWER_UNIT, "power lost to the fluid", "sample"),
 )
-SHAPE = tuple(
+SHAPE_VARIABLES = tuple(
     real(f"shape_{name}", units, f"{name} along the rod", "shape", "u") for name, units in TIP_UNITS.items()
 )
-TRANSIENT = (
+TRANSIENT_VARIABLES = (
     real("transient_time", "tau2", "time since the start of the motion", "transient"),
     *(
         real(f"transient_{name}", units, f"{name} of the tip during the transient", "transient")
@@ -158,17 +160,17 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config; time series and shapes only if the config asks for them."""
     options = config["limit_cycle"]
-    variables: tuple[Variable, ...] = CYCLE
+    variables: tuple[Variable, ...] = CYCLE_VARIABLES
     extents = {"harmonic": options["harmonics"], "multiplier_number": STORED_MULTIPLIERS}
     if options["time"] == "tau1":
         variables += (PERIOD_TAU1,)
     if options["samples"]:
-        variables += TIP + ENERGY
+        variables += TIP_VARIABLES + ENERGY_VARIABLES
         extents |= {"sample": options["samples"]}
     if options["shapes"]:
-        variables += SHAPE
+        variables += SHAPE_VARIABLES
         extents |= {"shape": options["shapes"], "u": options["nodes"]}
     if options["transient"]:
-        variables += TRANSIENT
+        variables += TRANSIENT_VARIABLES
         extents |= {"transient": options["transient"]}
     return Layout(variables, extents, NONLINEAR_PARAMETERS)

@@ -24,7 +24,7 @@ MODE_NUMBERS = along_dimension(
     real("condition", "1", "condition number of the eigenvalue in the norm of the dissipation"),
     real("condition_error", "1", "relative error of condition"),
 )
-GROWTH = (
+GROWTH_VARIABLES = (
     real("numerical_abscissa", "1/tau2", "largest initial growth rate of any perturbation"),
     real("abscissa_error", "1/tau2", "absolute error of numerical_abscissa"),
     real("transient_growth", "1", "largest amplification of any perturbation; inf for an unstable rod"),
@@ -37,6 +37,6 @@ INCREASES = dict.fromkeys(("modes", "nodes", "growth", "certify"), NEEDS_NEW_SOL
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config; transient growth only if the config asks for it."""
     options = config["modes"]
-    growth = GROWTH if options["growth"] else ()
+    growth = GROWTH_VARIABLES if options["growth"] else ()
     variables = MODE_VARIABLES + MODE_FIELDS + MODE_NUMBERS + growth + POINT_VARIABLES
     return Layout(variables, {"mode": options["modes"], "u": options["nodes"]})

@@ -8,7 +8,7 @@ from .branch import SPECIAL_KINDS
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
-from .thresholds import MORE_CROSSINGS, search_variables
+from .thresholds import CROSSING_LIST_RULE, search_variables
 from .variables import (
     ANGULAR_UNIT,
     NEEDS_NEW_SOLVE,
@@ -38,8 +38,8 @@ CURVE_ENDS = {
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """(stored number, word) for boundary curves: of double real eigenvalues, where oscillations set in or end, or
 of Hopf points."""
-STATES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
-STABLE_STATES = ((-1, "missing"), *enumerate(STATES))
+STABLE_STATE_NAMES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
+STABLE_STATES = ((-1, "missing"), *enumerate(STABLE_STATE_NAMES))
 """(stored number, word) for the stable states of the rod at a point of a phase diagram with cycles."""
 CYCLE_SPECIAL = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
@@ -60,7 +60,7 @@ CYCLE_CURVE_ENDS = {
 """Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
 the position in this table."""
 INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
-    "crossings": MORE_CROSSINGS,
+    "crossings": CROSSING_LIST_RULE,
     "curves": NEEDS_NO_SOLVE,
 }
 

@@ -20,7 +20,7 @@ from .variables import (
 )
 
 FORCE_UNIT = PARAMETERS["F"].unit
-THRESHOLDS = (
+THRESHOLD_VARIABLES = (
     real("F_onset", FORCE_UNIT, "smallest F at which two real leading eigenvalues merge into a complex pair"),
     real("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
     real("F_hopf", FORCE_UNIT, "smallest F at which a pair becomes unstable"),
@@ -79,13 +79,15 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
-MORE_CROSSINGS = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
+CROSSING_LIST_RULE = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
 """Rule for the maximum number of stored crossings; a stored list that is not full already has all
 crossings."""
-INCREASES = {"crossings": MORE_CROSSINGS, "certify": NEEDS_NEW_SOLVE}
+INCREASES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the file of a resolved config."""
-    variables = with_certified_meaning(THRESHOLDS + search_variables("F", "crossing_F"), config, "crossings")
+    variables = with_certified_meaning(
+        THRESHOLD_VARIABLES + search_variables("F", "crossing_F"), config, "crossings"
+    )
     return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, all_but("F"))

@@ -154,7 +154,7 @@ class ArmValidity:
         motion = MOTION_OF_TASK[self.task](record)
         missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched_statuses)
         arm = self._arm_of(int(np.ravel(index)[0]))
-        return self._validity(arm, replace(motion, may_be_missed=missed), index)
+        return self._validity_variables(arm, replace(motion, may_be_missed=missed), index)
 
     def at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at the n points with a rod, (n,), as if all arms were at rest."""
@@ -165,16 +165,18 @@ class ArmValidity:
                 indices = indices[self.points.coverage[indices] == SLENDER]
             if len(indices):
                 nothing = ArmMotion(np.full(len(indices), np.nan))
-                found.append(self._validity(self._arm_of(first), nothing, indices))
+                found.append(self._validity_variables(self._arm_of(first), nothing, indices))
         return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
         return self.arm(index // self.points_per_arm if self.points.arm_axes else 0)
 
-    def _validity(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
+    def _validity_variables(
+        self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
+    ) -> dict[str, Any]:
         drag = arm.own_drag if "drag" in self.points.arm_axes else least_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
-        F = self._force(arm, motion, index)
+        F = self._force_of_points(arm, motion, index)
         effects = effects_of(
             arm, rate, self._base_compression(F, index), drag=drag, amplitude=motion.amplitude
         )
@@ -198,7 +200,7 @@ class ArmValidity:
             "neglected_excess": np.where(known & (at_worst >= 0), at_worst, np.nan),
         }
 
-    def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
+    def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
         if the arm has no load. index: as in `of`.
         """

@@ -91,8 +91,9 @@ class JoinedFile:
     ) -> bool:
         """Whether the difference of two values of the variable `name` is taken for rounding error.
 
-        Never for `status`, or without different BLAS kernels and stretches; always for error estimates and
-        numbers that are not floating-point. first, second: the values. sources: headers of their files.
+        Never for `status`, nor if there are neither different BLAS kernels nor stretches; otherwise always
+        for error estimates and numbers that are not floating-point. first, second: the values. sources:
+        headers of their files.
         """
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
