@@ -282,6 +282,6 @@ def test_the_report_is_a_table_in_a_notebook():
 def test_a_load_of_at_most_so_much_is_rounded_down(share):
     """1.3381 kPa was told as 1.34 kPa, which is beyond the limit."""
     load = Load(SlenderArm(**THICK, pressure="1.34 kPa"))
-    force = share * 1.34 / load.scale
+    force = share * 1.34 / load.load_at_unit_force
     told = float(load.at_most(force).split()[0])
     assert 0.99 * share * 1.34 < told <= share * 1.34 * (1 + 1e-9)

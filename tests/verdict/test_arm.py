@@ -292,7 +292,7 @@ def found(tau2, *changes, end=200.0):
 def verdict(rod, *forces):
     """The verdict on an arm with changes that are given for each drag."""
     plane = PlaneOfMotion(rod, FlutterRange(forces))
-    return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.found))
+    return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.flutter_range))
 
 
 @pytest.mark.parametrize(
