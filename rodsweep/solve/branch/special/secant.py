@@ -105,6 +105,8 @@ class SecantSearch:
     def _error_after(self, step: float, span: float) -> float:
         """Distance from the curve after a last, linear step. span: distance between the two cycles of the
         measured derivative; 0 if the derivative was not measured at this step."""
+        if step == 0:
+            return 0.0  # even if the curvature is unknown
         if span:
             # Remainder of linear interpolation through two values, extrapolated to their zero.
             return self.curvature * abs(step) * (abs(step) + span) / 2
@@ -166,8 +168,8 @@ class SecantSearch:
         self.slopes.append((middle, slope))
         if len(self.slopes) > 1:
             (at, before), (now, last) = self.slopes[-2:]
-            self.measured_curvature = abs((last - before) / (now - at) / last)
-            self.curvature = self.measured_curvature
+            if now != at:
+                self.measured_curvature = self.curvature = abs((last - before) / (now - at) / last)
 
     def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
         """The last cycle, moved by `step` across the curve along `derivatives`."""
