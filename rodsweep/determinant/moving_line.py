@@ -48,7 +48,7 @@ class MovingLineSettings(CompiledSettings):
     ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
 
 
-MOVING_LINE = MovingLineSettings()
+MOVING_LINE_SETTINGS = MovingLineSettings()
 
 
 class IntervalEnd(NamedTuple):
@@ -148,24 +148,24 @@ def proves_no_crossing(
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0
-    stack = [Strip(0.0, 1.0, 0.0, MOVING_LINE.first_half_height * depth)]
+    stack = [Strip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
         at = interpolate_ends((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            smallest = MOVING_LINE.min_fraction
+            smallest = MOVING_LINE_SETTINGS.min_fraction
             if examined >= most or half_y < smallest * depth or stop - start < smallest:
                 return False, examined
             examined += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             middle = y + half_y if y > 0 else 0.0
-            half = ((1 + MOVING_LINE.overlap) * half_y, (1 + MOVING_LINE.overlap) * half_p)
+            half = ((1 + MOVING_LINE_SETTINGS.overlap) * half_y, (1 + MOVING_LINE_SETTINGS.overlap) * half_p)
             proved, cost_y, cost_p = is_free_of_zeros(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
-                largest = MOVING_LINE.largest_half_height * math.hypot(at.line, y)
-                half_y = min(MOVING_LINE.half_height_growth * half_y, largest)
+                largest = MOVING_LINE_SETTINGS.largest_half_height * math.hypot(at.line, y)
+                half_y = min(MOVING_LINE_SETTINGS.half_height_growth * half_y, largest)
             elif cost_p > cost_y:
                 # Split in p from the height y upwards: the strip below y is already proved for both halves.
                 stack.append(Strip((start + stop) / 2, stop, y, half_y))

@@ -6,7 +6,7 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
-from rodsweep.determinant.arm.count.settings import NO_CROSSING
+from rodsweep.determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.solve.spectrum.path.arm_stretch import follow_interval
 from rodsweep.solve.spectrum.search import SpectrumRequest
@@ -48,7 +48,7 @@ def test_a_hidden_eigenvalue_that_crosses_the_line_is_never_missed(seed):
         path, found = followed_path(rng)
         w = found.track.w
         for k in range(w.shape[1]):
-            first = int(rng.integers(len(w) - NO_CROSSING.arms))
+            first = int(rng.integers(len(w) - NO_CROSSING_SETTINGS.arms))
             last = min(len(w) - 1, first + int(rng.choice([4, 8, 16, 32])))
             here = w[first : last + 1, k]
             line = float(rng.uniform(here.real.min(), here.real.max()))

@@ -153,7 +153,7 @@ EARLY = {"k1": np.inf, "gamma3": 0.0, "F_max": 60.0} | {
 
 def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch):
     """A smaller limit of the a-priori bound leaves none for the stepped arm beyond a force."""
-    monkeypatch.setattr(hull, "HULL", replace(hull.HULL, min_remainder=0.995))
+    monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_remainder=0.995))
     view = view_of_sweep(tmp_path, "thresholds", k2=1e4, **EARLY)
     end = float(view.variables["F_end"].ravel()[0])
     lines = told(view)

@@ -2,7 +2,7 @@
 
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.solver_pools import SOLVER_POOLS, LruPool
+from rodsweep.solve.backend.solver_pools import SOLVER_POOL_SETTINGS, LruPool
 from rodsweep.solve.spectrum.krylov_schur import UniformSolver
 
 
@@ -23,11 +23,11 @@ def test_a_pool_drops_what_has_grown_beyond_its_memory():
     pool = LruPool(Grown, 24)
     first, second, third = (pool.get(name) for name in "abc")
     for kept in (first, second, third):
-        kept.memory_bytes = SOLVER_POOLS.max_bytes // 2
+        kept.memory_bytes = SOLVER_POOL_SETTINGS.max_bytes // 2
     assert pool.get("c") is third  # who uses three objects in turn keeps them
     pool.get("d")
     assert [first.destroyed, second.destroyed, third.destroyed] == [True, False, False]
-    assert pool.memory_bytes <= SOLVER_POOLS.max_bytes
+    assert pool.memory_bytes <= SOLVER_POOL_SETTINGS.max_bytes
 
 
 def test_a_pool_drops_the_least_recently_used_beyond_its_number():

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import Path
-from ..roots.newton import FAILED, ROOT_NEWTON, LocatedZero
+from ..roots.newton import FAILED, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ARM_FAMILY, ArmFamily, determinant_in_family, eigenvalue_in_family
+from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_in_family, eigenvalue_in_family
 from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
@@ -43,7 +43,7 @@ class ArmDoubleEigenvalueSettings:
     """A difference step is divided by this number if a neighbour is not a valid arm."""
 
 
-ARM_DOUBLE_EIGENVALUES = ArmDoubleEigenvalueSettings()
+ARM_DOUBLE_EIGENVALUE_SETTINGS = ArmDoubleEigenvalueSettings()
 
 
 class ArmAlongPath:
@@ -93,7 +93,7 @@ class ArmAlongPath:
         start = x
         first = p
         last = math.inf
-        for _ in range(2 * ROOT_NEWTON.max_steps):
+        for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
             value = self._value(x, p)
             D = value.D.real
             D_w = value.D_w.real
@@ -101,7 +101,7 @@ class ArmAlongPath:
             noise = value.noise
             h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
             D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
-            stencil, k = self._stencil(p, ROOT_NEWTON.jacobian_step * reach)
+            stencil, k = self._stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
             neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
             D_p, D_wp = (sum(weight * value[i] for weight, value in neighbours) / k for i in range(2))
             cross = D_w * D_wp - D_p * D_ww
@@ -109,11 +109,11 @@ class ArmAlongPath:
                 return FAILED
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
-            blur = ARM_DOUBLE_EIGENVALUES.rounding_over_noise * noise + ROUND_OFF * abs(p * D_p)
+            blur = ARM_DOUBLE_EIGENVALUE_SETTINGS.rounding_over_noise * noise + ROUND_OFF * abs(p * D_p)
             e_p = blur * abs(D_ww) / abs(cross)
             e_x = (
                 blur * abs(D_wp)
-                + ARM_DOUBLE_EIGENVALUES.rounding_over_noise
+                + ARM_DOUBLE_EIGENVALUE_SETTINGS.rounding_over_noise
                 * noise
                 / max(abs(x), EXPONENT_SETTINGS.least_divisor)
                 * abs(D_p)
@@ -122,11 +122,11 @@ class ArmAlongPath:
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:
                 return FAILED
-            small = abs(in_p) <= ROOT_NEWTON.converged_step * e_p
-            if small and (abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2):
+            small = abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
+            if small and (abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2):
                 # Only after convergence, because D on further elements is expensive.
                 more = max(self._rounding_error_from_spread(x, p, S) / blur, 1.0)
-                e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY.interpolation_error * abs(p)
+                e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY_SETTINGS.interpolation_error * abs(p)
                 return LocatedZero(x, p, max(more * e_x, abs(in_x)), e_p)
             last = abs(in_x)
         return FAILED
@@ -140,10 +140,13 @@ class ArmAlongPath:
         arm = self.determinant(p)
         values = [
             self._value(x, p),
-            *(arm.value_at_level(x, factor) for factor in ARM_DOUBLE_EIGENVALUES.compared_level_factors),
+            *(
+                arm.value_at_level(x, factor)
+                for factor in ARM_DOUBLE_EIGENVALUE_SETTINGS.compared_level_factors
+            ),
         ]
         D = [value.D.real * math.exp(value.S - S) for value in values]
-        return ARM_DOUBLE_EIGENVALUES.spread_factor * (max(D) - min(D))
+        return ARM_DOUBLE_EIGENVALUE_SETTINGS.spread_factor * (max(D) - min(D))
 
     def _value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
@@ -165,13 +168,13 @@ class ArmAlongPath:
         The step is shortened, at most `max_shortenings` times, until both neighbouring arms are valid: not
         crushed, no negative compliance or drag. The stencil is one-sided at p = 0, unless p is the force.
         """
-        step = min(ROOT_NEWTON.jacobian_step * max(abs(p), 1.0), largest)
+        step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE, step
-        for _ in range(ARM_DOUBLE_EIGENVALUES.max_shortenings):
+        for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_shortenings):
             if self._exists(p + step) and self._exists(p - step):
                 break
-            step /= ARM_DOUBLE_EIGENVALUES.step_divisor
+            step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor
         return CENTRAL_DIFFERENCE, step
 
     def _exists(self, p: float) -> bool:

@@ -18,13 +18,13 @@ from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import Path
-from ..roots.newton import ROOT_NEWTON
+from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
 from .determinant import Samples, elements_for, samples_of
 from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENTS
-from .value import ARM_VALUE, chain_along, determinant_along_chain
+from .value import ARM_VALUE_SETTINGS, chain_along, determinant_along_chain
 
 LINEAR_SCALE = math.inf
 """Value of `ArmFamily.scale` for series in p itself, not in a logarithm of p."""
@@ -57,7 +57,7 @@ class ArmFamilySettings(CompiledSettings):
         return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 
-ARM_FAMILY = ArmFamilySettings()
+ARM_FAMILY_SETTINGS = ArmFamilySettings()
 
 
 class ArmFamily(NamedTuple):
@@ -79,7 +79,7 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
     smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm, and
     FloatingPointError if no elements resolve an arm.
     """
-    for number, share in ARM_FAMILY.trials():
+    for number, share in ARM_FAMILY_SETTINGS.trials():
         scale = share * (high - low)
         arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, number).tolist()]
         samples = samples_of(arms)
@@ -87,10 +87,10 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
         if not _series_converges(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY.max_entries:
+        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY_SETTINGS.max_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
-        if _converged(values, ARM_FAMILY.converged_tail):
+        if _converged(values, ARM_FAMILY_SETTINGS.converged_tail):
             coefficients = np.tensordot(_to_series(number), values, 1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients))
     return None
@@ -100,7 +100,7 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
     Raises ValueError at a p without a valid arm.
     """
-    for number, share in reversed(ARM_FAMILY.trials()):
+    for number, share in reversed(ARM_FAMILY_SETTINGS.trials()):
         p = _interpolation_points(low, high, share * (high - low), number)
         if _series_converges(samples_of([path.rod_at(value) for value in p.tolist()])):
             return True
@@ -109,7 +109,7 @@ def is_smooth(path: Path, low: float, high: float) -> bool:
 
 def _series_converges(samples: Samples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
-    tail = ARM_FAMILY.coefficient_tail_factor * ARM_FAMILY.converged_tail
+    tail = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail
     return _converged(np.moveaxis(np.array(samples.local), 1, 0), tail)
 
 
@@ -232,7 +232,7 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
     propagators_at(family, p, polynomials, changes)
     w = guess
     last = math.inf
-    for _ in range(ROOT_NEWTON.max_refinements):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = determinant_along_chain(w, family.W, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
@@ -246,5 +246,5 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    rounding = ARM_VALUE.root_residual * abs(D) + ARM_VALUE.root_noise * noise
-    return w, slope, rounding / size + ARM_FAMILY.interpolation_error * (abs(w) + abs(p * slope))
+    rounding = ARM_VALUE_SETTINGS.root_residual * abs(D) + ARM_VALUE_SETTINGS.root_noise * noise
+    return w, slope, rounding / size + ARM_FAMILY_SETTINGS.interpolation_error * (abs(w) + abs(p * slope))

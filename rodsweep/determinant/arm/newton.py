@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
-from ..roots.newton import ROOT_NEWTON
+from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, BoundedPropagators
-from .value import ARM_VALUE, determinant_along_chain
+from .value import ARM_VALUE_SETTINGS, determinant_along_chain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +31,7 @@ class ArmRootSettings(CompiledSettings):
     elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
 
 
-ARM_ROOTS = ArmRootSettings()
+ARM_ROOT_SETTINGS = ArmRootSettings()
 
 
 @compiled
@@ -47,7 +47,7 @@ def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> compl
 @compiled
 def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
-    e = ARM_VALUE.root_residual * abs(value.D) + ARM_VALUE.root_noise * value.noise
+    e = ARM_VALUE_SETTINGS.root_residual * abs(value.D) + ARM_VALUE_SETTINGS.root_noise * value.noise
     size = abs(value.D_w)
     error = e / max(size, EXPONENT_SETTINGS.least_divisor)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
@@ -56,7 +56,7 @@ def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> fl
         if size**2 < ROOT_SETTINGS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), size / second + spread)
-    return error + ARM_ROOTS.rounding * ROUND_OFF * abs(w)
+    return error + ARM_ROOT_SETTINGS.rounding * ROUND_OFF * abs(w)
 
 
 @compiled
@@ -74,7 +74,7 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
     error is -1 if |w| exceeds the bound W of the level.
     """
     w = guess
-    for _ in range(ROOT_NEWTON.max_refinements):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = determinant_along_chain(w, level[0], level[1])
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
         if guess.imag == 0:
@@ -83,7 +83,7 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
             return w, _error(w, value, level), last
         last = abs(step)
         w -= step
-        if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
         if not (1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w) <= level[0]:
             return w, -1.0, last

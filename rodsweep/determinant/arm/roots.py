@@ -14,12 +14,12 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..exponents import EXPONENT_SETTINGS
-from ..roots.newton import ROOT_NEWTON
+from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import Roots
 from ..roots.settings import ROOT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import Hull
-from .newton import ARM_ROOTS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
+from .newton import ARM_ROOT_SETTINGS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
 
 T = TypeVar("T")
 
@@ -33,7 +33,10 @@ def refine_mesh_eigenvalues(
     afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
     have too large a |q|, or are far from every root.
     """
-    first = [w.real + 0j if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w) else w for w in raw.tolist()]
+    first = [
+        w.real + 0j if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w) else w
+        for w in raw.tolist()
+    ]
     inside = [i for i, w in enumerate(first) if _is_in_eigenvalue_box(w, hull)]
     waves, lengths = determinant.scales_of_all(np.array([first[i] for i in inside], complex))
     scale = dict(zip(inside, lengths.tolist(), strict=True))
@@ -79,7 +82,7 @@ def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list
 def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
     """Makes elements for all |w| up to `largest` if `largest` is at most `max_w_ratio` times `size`, else for
     all |w| up to `size`."""
-    if size < largest <= ARM_ROOTS.max_w_ratio * size:
+    if size < largest <= ARM_ROOT_SETTINGS.max_w_ratio * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
             determinant.level(largest)
     determinant.level(size)

@@ -49,7 +49,7 @@ class ArmValueSettings(CompiledSettings):
     """Minors are divided by their norm if the norm is not between 1/large and large."""
 
 
-ARM_VALUE = ArmValueSettings()
+ARM_VALUE_SETTINGS = ArmValueSettings()
 
 
 @compiled_for_vectors
@@ -73,7 +73,7 @@ def _real_norm(x: Array) -> float:
 @compiled
 def _out_of_scale(size: float) -> bool:
     """Whether minors of the norm `size` must be divided by it."""
-    return not 1 / ARM_VALUE.large < size < ARM_VALUE.large
+    return not 1 / ARM_VALUE_SETTINGS.large < size < ARM_VALUE_SETTINGS.large
 
 
 @compiled

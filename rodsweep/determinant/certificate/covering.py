@@ -61,7 +61,7 @@ class BoxProofSettings(CompiledSettings):
     }
 
 
-BOX_PROOF = BoxProofSettings()
+BOX_PROOF_SETTINGS = BoxProofSettings()
 
 EMPTY = 0
 REGULAR = 1
@@ -118,9 +118,9 @@ def is_remainder_below(
     t: half-widths of the box divided by the radii of the bidisc on which M bounds the function; several t are
     tried. rates: (L, K). half: half-widths of the box.
     """
-    t = BOX_PROOF.first_radius_ratio
+    t = BOX_PROOF_SETTINGS.first_radius_ratio
     last = math.inf
-    for _ in range(BOX_PROOF.max_radius_ratios):
+    for _ in range(BOX_PROOF_SETTINGS.max_radius_ratios):
         M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
         rest = M * t * t / (1 - t) ** power
         if rest < room:
@@ -129,7 +129,7 @@ def is_remainder_below(
         if rest > last:
             return False
         last = rest
-        t *= BOX_PROOF.radius_ratio_factor
+        t *= BOX_PROOF_SETTINGS.radius_ratio_factor
     return False
 
 
@@ -217,15 +217,17 @@ def cover_with_boxes(
             away = _box_distance(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan
                 # A zero outside the box is found from a neighbouring box too.
-                known = away > 1 + BOX_PROOF.outside_distance
+                known = away > 1 + BOX_PROOF_SETTINGS.outside_distance
                 for other in zeros:  # the doubled box contains at most one zero
                     apart = _box_distance(other, eta, p, half)
-                    known = known or apart <= BOX_PROOF.same_zero_distance
+                    known = known or apart <= BOX_PROOF_SETTINGS.same_zero_distance
                 if not known:
                     zeros.append(zero)
                 continue
-        smallest = BOX_PROOF.min_half_width
-        if examined > BOX_PROOF.max_boxes or (half[0] < smallest * eta and half[1] < smallest * abs(p)):
+        smallest = BOX_PROOF_SETTINGS.min_half_width
+        if examined > BOX_PROOF_SETTINGS.max_boxes or (
+            half[0] < smallest * eta and half[1] < smallest * abs(p)
+        ):
             left.append(box)
         elif cost_w >= cost_p:
             stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))

@@ -41,7 +41,7 @@ class RootNewtonSettings(CompiledSettings):
     """An eigenvalue w is set to Re w if |Im w| <= this number times |w|, the size of rounding errors."""
 
 
-ROOT_NEWTON = RootNewtonSettings()
+ROOT_NEWTON_SETTINGS = RootNewtonSettings()
 
 
 class LocatedZero(NamedTuple):
@@ -68,11 +68,10 @@ def crossing_newton(
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
     origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
-    Returns `FAILED` if a step exceeds `ROOT_NEWTON.largest_step`, if eta <= 0, if the Jacobian is singular,
-    or if the method does not converge.
-    """
+    Returns `FAILED` if a step exceeds `ROOT_NEWTON_SETTINGS.largest_step`, if eta <= 0, if the Jacobian is
+    singular, or if the method does not converge."""
     last = math.inf
-    for _ in range(ROOT_NEWTON.max_steps):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)
         D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
         # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
@@ -89,14 +88,14 @@ def crossing_newton(
         e_p = blur * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
         # Negated comparisons are also true for NaN.
-        if not step < ROOT_NEWTON.largest_step or not eta + in_eta > 0:
+        if not step < ROOT_NEWTON_SETTINGS.largest_step or not eta + in_eta > 0:
             return FAILED
         eta += in_eta
         p += in_p
         if (
-            abs(in_eta) <= ROOT_NEWTON.converged_step * e_eta
-            and abs(in_p) <= ROOT_NEWTON.converged_step * e_p
-        ) or (step > last / 2 and step * scale[1] < ROOT_NEWTON.stagnant_step * abs(p)):
+            abs(in_eta) <= ROOT_NEWTON_SETTINGS.converged_step * e_eta
+            and abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
+        ) or (step > last / 2 and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)):
             return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
     return FAILED
@@ -115,10 +114,10 @@ def double_newton(
     start = x
     first = p
     last = math.inf
-    for _ in range(2 * ROOT_NEWTON.max_steps):
+    for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
         D, D_w, D_p, S, noise = _real(x, p, origin, direction)
-        h = ROOT_NEWTON.jacobian_step * abs(x)
-        k = ROOT_NEWTON.jacobian_step * reach
+        h = ROOT_NEWTON_SETTINGS.jacobian_step * abs(x)
+        k = ROOT_NEWTON_SETTINGS.jacobian_step * reach
         _, right, _, S_right, _ = _real(x + h, p, origin, direction)
         _, left, _, S_left, _ = _real(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real(x, p + k, origin, direction)
@@ -140,8 +139,8 @@ def double_newton(
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * reach or not x * start > 0:
             return FAILED
-        if abs(in_p) <= ROOT_NEWTON.converged_step * e_p and (
-            abs(in_x) <= ROOT_NEWTON.converged_step * e_x or abs(in_x) > last / 2
+        if abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
+            abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2
         ):
             return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
@@ -168,7 +167,7 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = 
     """
     real = w.imag == 0
     last = 2 * farthest
-    for _ in range(ROOT_NEWTON.max_refinements):
+    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = scaled_determinant(w, coefficients)
         if value.D_w == 0:
             break
@@ -181,7 +180,7 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = 
         last = abs(step)
         w -= step
         # D is real on the real axis, where rounding leaves a tiny imaginary part.
-        if abs(w.imag) <= ROOT_NEWTON.real_tolerance * abs(w):
+        if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
     return w
 

@@ -25,7 +25,7 @@ from ..value import (
     scaled_determinant,
     second_derivative,
 )
-from .newton import ROOT_NEWTON, refine_eigenvalue
+from .newton import ROOT_NEWTON_SETTINGS, refine_eigenvalue
 from .settings import ROOT_SETTINGS
 
 
@@ -166,7 +166,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
-        if abs(raw[i].imag) <= ROOT_NEWTON.real_tolerance * abs(raw[i]):
+        if abs(raw[i].imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error(first[i], coefficients)
         # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.

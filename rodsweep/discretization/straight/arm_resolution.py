@@ -23,7 +23,7 @@ class ArmResolutionSettings:
     """Increase of the order if coefficients vary within an element."""
 
 
-ARM_RESOLUTION = ArmResolutionSettings()
+ARM_RESOLUTION_SETTINGS = ArmResolutionSettings()
 
 
 class ArmMesh(Elements):
@@ -81,11 +81,13 @@ def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: i
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
         ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
         needed = _elements_for(float(share), accuracy, largest_order)
-        count = max(1, ceil(ratio / log(ARM_RESOLUTION.max_radius_ratio)), needed)
+        count = max(1, ceil(ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), needed)
         edges += _edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
-    return Elements(tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION.profile_order_increase))
+    return Elements(
+        tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
+    )
 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:

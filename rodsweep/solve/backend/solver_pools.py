@@ -19,7 +19,7 @@ class SolverPoolSettings:
     object. The limit allows dozens of solvers for a few modes, or three solvers for 300 modes."""
 
 
-SOLVER_POOLS = SolverPoolSettings()
+SOLVER_POOL_SETTINGS = SolverPoolSettings()
 
 
 class Destroyable(Protocol):
@@ -40,9 +40,8 @@ Object = TypeVar("Object", bound=Destroyable)
 class LruPool(Generic[Key, Object]):
     """Cache of objects made by `create(key)`; a full pool destroys the least recently used objects.
 
-    A pool is full with `limit` objects, or above `SOLVER_POOLS.max_bytes`. Objects may grow while they solve,
-    so a pool may exceed the memory limit until the next object is created.
-    """
+    A pool is full with `limit` objects, or above `SOLVER_POOL_SETTINGS.max_bytes`. Objects may grow while
+    they solve, so a pool may exceed the memory limit until the next object is created."""
 
     def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
         self._create = create
@@ -62,7 +61,7 @@ class LruPool(Generic[Key, Object]):
         """The object for `key`, created if the pool has none; a later call with a different key may destroy
         this object."""
         if key not in self._objects:
-            while len(self._objects) >= self._limit or self.memory_bytes > SOLVER_POOLS.max_bytes:
+            while len(self._objects) >= self._limit or self.memory_bytes > SOLVER_POOL_SETTINGS.max_bytes:
                 self._objects.popitem(last=False)[1].destroy()
             self._objects[key] = self._create(key)
         self._objects.move_to_end(key)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.floquet import min_unstable_multipliers
 from ..cycle.accuracy.cycle_errors import CycleErrors
-from ..cycle.accuracy.refinement_settings import REFINEMENT
+from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint
@@ -61,7 +61,7 @@ def _margin(point: ArcPoint) -> float:
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + REFINEMENT.multiplier_error_factor * cycle.trivial_error
+    return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_error
 
 
 @dataclass(frozen=True, slots=True)

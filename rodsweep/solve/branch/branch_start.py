@@ -15,7 +15,7 @@ from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
-from ..cycle.accuracy.refinement_settings import REFINEMENT
+from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
@@ -50,7 +50,7 @@ class BranchStartSettings:
     determinant D."""
 
 
-BRANCH_START = BranchStartSettings()
+BRANCH_START_SETTINGS = BranchStartSettings()
 
 
 ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
@@ -110,7 +110,10 @@ class HopfBranchStart:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
         parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
-        return abs(self.slope) * parameter_error / self.crossing.frequency + BRANCH_START.frequency_rounding
+        return (
+            abs(self.slope) * parameter_error / self.crossing.frequency
+            + BRANCH_START_SETTINGS.frequency_rounding
+        )
 
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,
@@ -160,11 +163,11 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
     workspace: memory of Newton's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    usual = max(accuracy, REFINEMENT.first_accuracy)
+    usual = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
-    for aim, finer in ((usual, False), (REFINEMENT.first_accuracy, True)):
-        for share in BRANCH_START.first_amplitudes:
-            amplitude = min(share, BRANCH_START.max_amplitude_share * a)
+    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.first_accuracy, True)):
+        for share in BRANCH_START_SETTINGS.first_amplitudes:
+            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_share * a)
             try:
                 return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
@@ -190,16 +193,16 @@ def _cycle_of(
     start = predicted_cycle(hopf, amplitude)
     if finer:
         start = wanted_mesh(start, aim, stages_for(aim)).interpolate(start)
-    least = abs(deflection_of(start)) * BRANCH_START.min_deflection_amplitude / amplitude
+    least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT.nearby_tolerance, workspace)
+    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace)
     near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
-    least_ratio, largest_ratio = BRANCH_START.amplitude_ratios
+    least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = wanted_mesh(near, aim, stages_for(accuracy))

@@ -20,7 +20,7 @@ from .branch_curve import BranchCurve
 from .branch_start import hopf_point
 from .computing_time import fractions_before_branches
 from .following import BranchLimits, follow_asymmetric_branch, follow_branch
-from .special.point import SPECIAL_POINT, EndReason
+from .special.point import SPECIAL_POINT_SETTINGS, EndReason
 from .symmetry import SymmetryBreaking, symmetry_breakings_in
 
 
@@ -234,7 +234,7 @@ def _status_and_message(
     ]
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
-    tolerance = max(request.accuracy, SPECIAL_POINT.accuracy)
+    tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.multipliers_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")

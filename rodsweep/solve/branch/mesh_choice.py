@@ -44,7 +44,7 @@ class BranchMeshSettings:
     factor since the last measurement."""
 
 
-BRANCH_MESH = BranchMeshSettings()
+BRANCH_MESH_SETTINGS = BranchMeshSettings()
 
 
 def first_measured_cycle(
@@ -81,7 +81,10 @@ def measurement_due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
     errors have grown too much since that cycle."""
     growth = float(point.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max())
-    return point.unmeasured >= BRANCH_MESH.max_unmeasured or growth > BRANCH_MESH.remeasure_growth
+    return (
+        point.unmeasured >= BRANCH_MESH_SETTINGS.max_unmeasured
+        or growth > BRANCH_MESH_SETTINGS.remeasure_growth
+    )
 
 
 def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
@@ -108,14 +111,14 @@ def solve_on_sufficient_mesh(
     mesh; by default the condition that its arc length is unchanged."""
     condition = condition or point.condition(0.0)
     finest = False
-    for _ in range(BRANCH_MESH.max_meshes):
+    for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
         if point.unmeasured:
             point = with_measured_errors(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
-        planned = known.cheapest_mesh(BRANCH_MESH.planned_error * accuracy)
+        planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if enough and (finest or planned.cost > BRANCH_MESH.max_cheaper_cost * known.mesh.cost):
+        if enough and (finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost * known.mesh.cost):
             return point
         if not enough:
             finest = True
@@ -195,11 +198,11 @@ def _with_errors_between(
     errors at `last` and `end` are then no bound.
     """
     ends = (last, end)
-    slow = abs(point.parameter_rate) < BRANCH_MESH.min_rate_share * min(
+    slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_rate_share * min(
         abs(one.parameter_rate) for one in ends
     )
     grown = min(one.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends)
-    if slow or float(grown) > BRANCH_MESH.max_tail_growth:
+    if slow or float(grown) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
     known = last.calibration.interpolate(
         end.calibration, share, sensitivity_of(point.cycle.path, point.derivatives)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
-from ..cycle.accuracy.refinement_settings import REFINEMENT
+from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
@@ -86,7 +86,7 @@ class AsymmetricStartSettings:
     this order."""
 
 
-ASYMMETRIC_START = AsymmetricStartSettings()
+ASYMMETRIC_START_SETTINGS = AsymmetricStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,7 @@ def first_asymmetric_cycle(
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])
-    for share in ASYMMETRIC_START.first_relative_changes:
+    for share in ASYMMETRIC_START_SETTINGS.first_relative_changes:
         try:
             ways = [moved_orbit(whole, name, sign * share * way) for sign in (1, -1)]
             # The two signs give mirror images. The cycle with the larger y is followed, so that the result
@@ -168,13 +168,13 @@ def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: f
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT.nearby_tolerance, whole.workspace)
+    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not BRANCH_END.asymmetry_ratios[0] < found < BRANCH_END.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
-    aim = max(accuracy, REFINEMENT.first_accuracy)
+    aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)

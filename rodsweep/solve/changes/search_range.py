@@ -20,7 +20,7 @@ class SearchRangeSettings:
     part, and so on, up to this many times."""
 
 
-SEARCH_RANGE = SearchRangeSettings()
+SEARCH_RANGE_SETTINGS = SearchRangeSettings()
 
 
 class SearchEnd(NamedTuple):
@@ -50,7 +50,7 @@ class SearchedIntervals:
         """Yields the intervals of the queue; raises Unsolvable if no interval could be searched."""
         while True:
             # The left part of an interval whose search failed can often be searched.
-            if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE.last_halvings:
+            if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE_SETTINGS.last_halvings:
                 self._halvings += 1
                 middle = (self.reach.p + self._unsolvable) / 2
                 self._left.append((self.reach.p, middle))
@@ -69,7 +69,7 @@ class SearchedIntervals:
         """Ends the search at path variable `p`, up to which the search is complete. reason: why the search
         ends."""
         self._left.clear()
-        self._halvings = SEARCH_RANGE.last_halvings
+        self._halvings = SEARCH_RANGE_SETTINGS.last_halvings
         self.reach = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:

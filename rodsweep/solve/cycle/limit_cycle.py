@@ -30,7 +30,7 @@ from .second_state import second_state
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
 from .straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
-from .transient.motion_mesh import MOTION_MESH, motion_mesh, motion_meshes
+from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_meshes
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
 from .transient.trace import TipTrace
@@ -129,7 +129,7 @@ def _solve(
 
 def _form_of_motion(rod: Rod) -> StressForm:
     """Discretization of a rod on the first mesh for the integration of its motion."""
-    return StressForm(rod, motion_mesh(rod, MOTION_MESH.accuracy))
+    return StressForm(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy))
 
 
 def _after_motion(

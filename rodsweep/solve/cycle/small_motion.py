@@ -31,7 +31,7 @@ class SmallMotionSettings:
     accuracy."""
 
 
-SMALL_MOTION = SmallMotionSettings()
+SMALL_MOTION_SETTINGS = SmallMotionSettings()
 
 
 def stable_cycle_near_hopf(
@@ -60,11 +60,11 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, w, SMALL_MOTION.max_cubic_growth_ratio)
+        normal = accurate_normal_form(rod, w, SMALL_MOTION_SETTINGS.max_cubic_growth_ratio)
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
     share = abs(normal.c.real) * amplitude**2 / -w.real
-    if share >= SMALL_MOTION.max_cubic_growth_ratio:
+    if share >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
         return ""
     return f"the motion decays: at the start the cubic term is {share:.0e} of the linear growth rate"

@@ -32,7 +32,7 @@ class StraightRodSettings:
     leads; a count of the eigenvalues takes three times as long."""
 
 
-STRAIGHT_ROD = StraightRodSettings()
+STRAIGHT_ROD_SETTINGS = StraightRodSettings()
 
 
 NO_EIGENVALUES: Complex = np.empty(0, complex)
@@ -57,7 +57,8 @@ class StraightRod:
         """Whether all small motions about the straight rod decay; None if the growth rate is unknown or 0
         within its error."""
         margin = max(
-            STRAIGHT_ROD.min_axis_distance_in_errors * self.error, ROOT_SETTINGS.axis_tolerance * abs(self.w)
+            STRAIGHT_ROD_SETTINGS.min_axis_distance_in_errors * self.error,
+            ROOT_SETTINGS.axis_tolerance * abs(self.w),
         )
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
@@ -89,7 +90,7 @@ def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) ->
     near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
     possible. certify: whether to prove that no other eigenvalue has a larger growth rate.
     """
-    request = SpectrumRequest(1, STRAIGHT_ROD.accuracy, certify)
+    request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
     leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
     if leader is not None:
         return StraightRod(leader.w, leader.error, followed=leader.eigenvalues)
@@ -106,7 +107,9 @@ def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
     if len(found.followed):
         return found.followed
     if not rod.uniform:
-        request = SpectrumRequest(STRAIGHT_ROD.chain_eigenvalues, STRAIGHT_ROD.accuracy, True)
+        request = SpectrumRequest(
+            STRAIGHT_ROD_SETTINGS.chain_eigenvalues, STRAIGHT_ROD_SETTINGS.accuracy, True
+        )
         w = solve_spectrum(rod, request).eigenvalues
         if np.isfinite(w).all():
             return w[w.imag >= 0]

@@ -21,7 +21,7 @@ from ...watch import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
 from ..point import FAILURES, Unsolvable
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEPS
-from .generalised import GENERALISED_HOPF, GeneralisedHopfPoint, HopfCurve
+from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve
 
 
 class BautinEnd(IntEnum):
@@ -96,7 +96,7 @@ class BautinSpace:
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
-        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF.coarsest))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)

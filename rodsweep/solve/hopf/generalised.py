@@ -43,7 +43,7 @@ class GeneralisedHopfSettings:
     Re c jumps from negative to positive values."""
 
 
-GENERALISED_HOPF = GeneralisedHopfSettings()
+GENERALISED_HOPF_SETTINGS = GeneralisedHopfSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,10 +92,11 @@ class _HopfNormalForm:
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
     """The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
 
-    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF.coarsest` if larger. If the normal form
-    fails at a point, the sign is NaN at this point only.
-    """
-    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF.coarsest))
+    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest` if larger. If the normal
+    form fails at a point, the sign is NaN at this point only."""
+    hopf = HopfCurve(
+        Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest)
+    )
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points = []
     unlocated = 0
@@ -128,7 +129,7 @@ class HopfCurve:
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
-            rough = self.at(v, normal, GENERALISED_HOPF.first_sign_accuracy).coefficients.criticality
+            rough = self.at(v, normal, GENERALISED_HOPF_SETTINGS.first_sign_accuracy).coefficients.criticality
             # An accurate c, which costs more, is needed only where the rough sign is undecided.
             return rough or self.at(v, normal, self.accuracy).coefficients.criticality
         except FAILURES:
@@ -165,17 +166,26 @@ class HopfCurve:
 
         try:
             s = float(
-                brentq(lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=GENERALISED_HOPF.tolerance)
+                brentq(
+                    lambda s: on_chord(s).relative_real_part,
+                    0.0,
+                    1.0,
+                    xtol=GENERALISED_HOPF_SETTINGS.tolerance,
+                )
             )
-            here, before, beyond = (on_chord(s + side * GENERALISED_HOPF.slope_step) for side in (0, -1, 1))
+            here, before, beyond = (
+                on_chord(s + side * GENERALISED_HOPF_SETTINGS.slope_step) for side in (0, -1, 1)
+            )
         except (*FAILURES, ValueError):
             return None
-        slope = (beyond.relative_real_part - before.relative_real_part) / (2 * GENERALISED_HOPF.slope_step)
-        if abs(here.relative_real_part) > GENERALISED_HOPF.max_zero_ratio or slope == 0:
+        slope = (beyond.relative_real_part - before.relative_real_part) / (
+            2 * GENERALISED_HOPF_SETTINGS.slope_step
+        )
+        if abs(here.relative_real_part) > GENERALISED_HOPF_SETTINGS.max_zero_ratio or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
-        along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF.tolerance
+        along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF_SETTINGS.tolerance
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
     def as_point(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:

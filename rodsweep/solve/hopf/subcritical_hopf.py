@@ -28,7 +28,7 @@ class SubcriticalHopfSettings:
     normal form is too inaccurate."""
 
 
-SUBCRITICAL_HOPF = SubcriticalHopfSettings()
+SUBCRITICAL_HOPF_SETTINGS = SubcriticalHopfSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,18 +48,17 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     the force is not positive.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
-    y of the unstable cycle is at most `SUBCRITICAL_HOPF.largest_y`. The straight rod must be stable. Raises
-    Unsolvable if the search for Hopf points or a coefficient fails.
-    """
-    low = rod.F / SUBCRITICAL_HOPF.farthest_force
-    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF.farthest_force)
+    y of the unstable cycle is at most `SUBCRITICAL_HOPF_SETTINGS.largest_y`. The straight rod must be stable.
+    Raises Unsolvable if the search for Hopf points or a coefficient fails."""
+    low = rod.F / SUBCRITICAL_HOPF_SETTINGS.farthest_force
+    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.farthest_force)
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
     nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
     for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
-        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF.accuracy)
+        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
-        if found.criticality > 0 and y <= SUBCRITICAL_HOPF.largest_y:
+        if found.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.largest_y:
             return SubcriticalHopf(hopf.at, y)
     return None

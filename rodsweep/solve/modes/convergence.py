@@ -39,13 +39,13 @@ class ModeMeshSettings:
     to the nearest eigenvalue); measured: median 0.6, maximum 3.4."""
 
 
-MODE_MESH = ModeMeshSettings()
+MODE_MESH_SETTINGS = ModeMeshSettings()
 
 
 def vector_accuracy(accuracy: float) -> float:
     """Relative accuracy of eigenvalues for which the first mesh is chosen if the modes need the relative
     accuracy `accuracy`."""
-    return max(mesh_accuracy(accuracy, True), MODE_MESH.finest_accuracy)
+    return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.finest_accuracy)
 
 
 def converged_vectors(
@@ -60,12 +60,12 @@ def converged_vectors(
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best: ModeVectors | None = None
     least = inf
-    for _ in range(MODE_MESH.max_meshes):
+    for _ in range(MODE_MESH_SETTINGS.max_meshes):
         if best is None:
-            mesh = replace(mesh, order=mesh.order + MODE_MESH.more_orders)
+            mesh = replace(mesh, order=mesh.order + MODE_MESH_SETTINGS.more_orders)
         else:
             mesh = finer_mesh(rod, mesh)
-        if mesh.unknowns > MODE_MESH.max_unknowns:
+        if mesh.unknowns > MODE_MESH_SETTINGS.max_unknowns:
             break
         fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
@@ -94,7 +94,7 @@ def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVector
         error = np.maximum(error, relative.max(axis=0))
     # Rounding turns no eigenvector of a normal operator, whose condition numbers are 1.
     turned = (
-        MODE_MESH.roundings
+        MODE_MESH_SETTINGS.roundings
         * (1 - 1 / fine.condition**2)
         * fine.rounding
         / np.maximum(gaps, EXPONENT_SETTINGS.least_divisor)

@@ -29,7 +29,7 @@ class ModeIterationSettings:
     this."""
 
 
-MODE_ITERATION = ModeIterationSettings()
+MODE_ITERATION_SETTINGS = ModeIterationSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,7 +115,11 @@ def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, A
     X = np.empty((len(B), m), complex)
     Z = np.empty((len(B), m), complex)
     for i, w in enumerate(eigenvalues):
-        if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION.conjugate * abs(w):
+        if (
+            i
+            and w.imag < 0
+            and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION_SETTINGS.conjugate * abs(w)
+        ):
             X[:, i] = X[:, i - 1].conj()
             Z[:, i] = Z[:, i - 1].conj()
         else:
@@ -146,7 +150,7 @@ def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
     x: NDArray = np.ones(len(B))
     before = x
     last = growth = 0.0
-    for _ in range(MODE_ITERATION.iterations):
+    for _ in range(MODE_ITERATION_SETTINGS.iterations):
         before = x
         last = growth
         x = inverse @ (B * x)

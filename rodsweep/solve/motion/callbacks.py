@@ -34,7 +34,7 @@ from .context import (
     roots_of,
 )
 from .petsc_calls import read_array, release_read, release_write, write_array
-from .predictor import STAGE_PREDICTOR, begin_step, points_of
+from .predictor import STAGE_PREDICTOR_SETTINGS, begin_step, points_of
 from .stage_newton import newton_test, solve_stage
 from .step_record import take_steps
 
@@ -180,7 +180,7 @@ class Workspace:
             # computation of the first slope.
             call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
             self.predict_as(ts.getARKIMEXType())
-            self.context["middle"] = STAGE_PREDICTOR.middle
+            self.context["middle"] = STAGE_PREDICTOR_SETTINGS.middle
         call("TSSetIFunction", ts.handle, 0, residual.address, context)
         call("TSSetIJacobian", ts.handle, B, B, residual_jacobian.address, context)
         call("TSSetApplicationContext", ts.handle, context)

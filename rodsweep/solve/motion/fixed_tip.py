@@ -45,7 +45,7 @@ class FixedTipSettings:
     to a different shape."""
 
 
-FIXED_TIP = FixedTipSettings()
+FIXED_TIP_SETTINGS = FixedTipSettings()
 
 
 def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
@@ -57,15 +57,15 @@ def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
     bending = _Bending(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * FIXED_TIP.first_angle * (1 - beam.mesh.positions)
+    Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.positions)
     first = bending.tip(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
-    end = np.array([min(hypot(x, y), FIXED_TIP.reach * bending.length), atan2(y, x)])
+    end = np.array([min(hypot(x, y), FIXED_TIP_SETTINGS.reach * bending.length), atan2(y, x)])
     force = np.zeros(2)
     reached = 0.0
-    step = FIXED_TIP.first_step
-    while reached < 1 and step > FIXED_TIP.least_step:
+    step = FIXED_TIP_SETTINGS.first_step
+    while reached < 1 and step > FIXED_TIP_SETTINGS.least_step:
         share = min(1.0, reached + step)
         radius, angle = start + share * (end - start)
         found = bending.placed(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
@@ -108,7 +108,7 @@ class _Bending:
         size = len(Pi)
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
-        for _ in range(FIXED_TIP.max_iterations):
+        for _ in range(FIXED_TIP_SETTINGS.max_iterations):
             first, second = self._derivatives(Pi, force)
             # Bending energy minus the work of the force, with the tip's position as two constraints.
             matrix[:size, :size] = np.diag(weights) - second
@@ -117,11 +117,11 @@ class _Bending:
             misplaced = target - self.tip(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
-            if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP.largest_turn:
+            if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
-            if np.abs(misplaced).max() < FIXED_TIP.placed:
+            if np.abs(misplaced).max() < FIXED_TIP_SETTINGS.placed:
                 return Pi, force
         return None
 

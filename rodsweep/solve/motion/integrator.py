@@ -54,10 +54,12 @@ class IntegratorSettings:
     """Maximum number of integrators in the pool, which serve further runs with the same mesh and scheme."""
 
 
-INTEGRATOR = IntegratorSettings()
+INTEGRATOR_SETTINGS = IntegratorSettings()
 
 
-RELAXATION = TimeScheme("beuler", "", tolerance=INTEGRATOR.relaxation_tolerance, prefix="cycle_relaxation_")
+RELAXATION = TimeScheme(
+    "beuler", "", tolerance=INTEGRATOR_SETTINGS.relaxation_tolerance, prefix="cycle_relaxation_"
+)
 """Time scheme of the run in `relax_fast_components`: backward Euler, which damps fast components."""
 
 
@@ -89,7 +91,7 @@ class RunLimit:
     `max_steps` steps are made."""
 
     reached: Callable[[Array], bool] | None = None
-    max_steps: int = INTEGRATOR.max_steps
+    max_steps: int = INTEGRATOR_SETTINGS.max_steps
 
 
 UNLIMITED = RunLimit()
@@ -116,8 +118,8 @@ class Integrator:
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
         ts.setOptionsPrefix(prefix)
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
-        ts.setMaxStepRejections(INTEGRATOR.max_rejections)
-        ts.setMaxSNESFailures(INTEGRATOR.max_failed_stages)
+        ts.setMaxStepRejections(INTEGRATOR_SETTINGS.max_rejections)
+        ts.setMaxSNESFailures(INTEGRATOR_SETTINGS.max_failed_stages)
         options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.family))
         ours = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
@@ -160,12 +162,12 @@ class Integrator:
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
         tolerance = scheme.newton * scheme.tolerance * size
-        self.workspace.prepare(beam, tolerance, INTEGRATOR.stage_rounding * size)
+        self.workspace.prepare(beam, tolerance, INTEGRATOR_SETTINGS.stage_rounding * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
-        ts.setTimeStep(step or INTEGRATOR.first_step_share * duration)
+        ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_share * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.reached is None:
@@ -205,7 +207,9 @@ class Integrator:
             held.destroy()
 
 
-_kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(lambda key: Integrator(*key), INTEGRATOR.kept)
+_kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(
+    lambda key: Integrator(*key), INTEGRATOR_SETTINGS.kept
+)
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
@@ -230,7 +234,7 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step
     length; backward Euler damps these components within ten steps. If the run fails, z itself is returned.
     """
-    duration = INTEGRATOR.relaxation_share * period
-    step = period / INTEGRATOR.relaxation_steps
+    duration = INTEGRATOR_SETTINGS.relaxation_share * period
+    step = period / INTEGRATOR_SETTINGS.relaxation_steps
     run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
     return run.states[-1] if run.ending == RunEnding.reached else z

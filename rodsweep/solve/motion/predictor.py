@@ -36,7 +36,7 @@ class StagePredictorSettings(CompiledSettings):
     ranges: ClassVar = {"largest_step_ratio": (1.0, inf)}
 
 
-STAGE_PREDICTOR = StagePredictorSettings()
+STAGE_PREDICTOR_SETTINGS = StagePredictorSettings()
 
 NO_POINT = -1
 """Value of the unused entries in the array of extrapolation points."""
@@ -121,7 +121,7 @@ def predict(c: Any, guess: Array) -> None:
     now = c.current * MAX_STAGES
     last = MAX_STAGES - now
     # Beyond this ratio the last step is too short to extrapolate from, and PETSc's guess is used.
-    if len(points) and c.length <= STAGE_PREDICTOR.largest_step_ratio * (times[now] - times[last]):
+    if len(points) and c.length <= STAGE_PREDICTOR_SETTINGS.largest_step_ratio * (times[now] - times[last]):
         # Indices start at the present half; indices of the last step are larger by MAX_STAGES, modulo
         # 2 MAX_STAGES.
         extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)

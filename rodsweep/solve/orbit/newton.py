@@ -31,7 +31,7 @@ class OrbitNewtonSettings:
     relative step. Nearly neutral orbits come close to this bound."""
 
 
-ORBIT_NEWTON = OrbitNewtonSettings()
+ORBIT_NEWTON_SETTINGS = OrbitNewtonSettings()
 
 
 class HasMultipliers(Protocol):
@@ -75,16 +75,16 @@ def newton(
     distance = 0.0
     last = np.inf
     step = matrix.step
-    for iteration in range(1, ORBIT_NEWTON.max_iterations + 1):
+    for iteration in range(1, ORBIT_NEWTON_SETTINGS.max_iterations + 1):
         report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
         # A long first step may come from a poor start; a long later step that is not shorter is divergence.
-        if iteration > 1 and change > max(last, ORBIT_NEWTON.longest_step):
+        if iteration > 1 and change > max(last, ORBIT_NEWTON_SETTINGS.longest_step):
             raise Unsolvable("Newton's method for the orbit diverges from its start")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
-        share = min(1.0, ORBIT_NEWTON.longest_step / change) if change > 0 else 1.0
+        share = min(1.0, ORBIT_NEWTON_SETTINGS.longest_step / change) if change > 0 else 1.0
         orbit = orbit.plus_change(step, share)
         distance += share * change
         if not orbit.period > 0:
@@ -92,11 +92,13 @@ def newton(
         fresh = distance == share * change
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
-        left = ORBIT_NEWTON.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
+        left = (
+            ORBIT_NEWTON_SETTINGS.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
+        )
         if left <= tolerance:
             return ConvergedOrbit(orbit, matrix, distance)
         # A correction with the old factors is far cheaper than a new elimination.
-        if change > ORBIT_NEWTON.new_matrix_ratio * min(last, 1.0):
+        if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(last, 1.0):
             matrix = Linearisation(orbit, workspace, parameter)
             distance = 0.0
             step = matrix.step
@@ -104,8 +106,8 @@ def newton(
             step = matrix.correction(orbit)
         last = change
     raise Unsolvable(
-        f"Newton's method for the orbit does not converge in {ORBIT_NEWTON.max_iterations} iterations; its "
-        f"last step is {change:.0e}"
+        f"Newton's method for the orbit does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
+        f"iterations; its last step is {change:.0e}"
     )
 
 

@@ -64,7 +64,7 @@ class OrbitMeshSettings:
     than a second."""
 
 
-ORBIT_MESH = OrbitMeshSettings()
+ORBIT_MESH_SETTINGS = OrbitMeshSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,14 +112,19 @@ class OrbitMesh:
     def coarser(self) -> "OrbitMesh":
         """Mesh coarser than this mesh, for the first steps along a branch to a cycle that will be solved on
         this mesh."""
-        order = max(ORBIT_MESH.min_order - ORBIT_MESH.coarser_order, self.order - ORBIT_MESH.coarser_order)
-        intervals = max(ORBIT_MESH.min_intervals - 1, round(ORBIT_MESH.coarser_share * self.intervals))
+        order = max(
+            ORBIT_MESH_SETTINGS.min_order - ORBIT_MESH_SETTINGS.coarser_order,
+            self.order - ORBIT_MESH_SETTINGS.coarser_order,
+        )
+        intervals = max(
+            ORBIT_MESH_SETTINGS.min_intervals - 1, round(ORBIT_MESH_SETTINGS.coarser_share * self.intervals)
+        )
         return replace(self, order=order, intervals=intervals)
 
     @property
     def finer(self) -> "OrbitMesh":
         """Mesh finer than this mesh in space and time, used if no error estimate is available."""
-        more = int(ORBIT_MESH.more_intervals * self.intervals) + 1
+        more = int(ORBIT_MESH_SETTINGS.more_intervals * self.intervals) + 1
         return replace(self.finer_in_space, intervals=more)
 
     @property
@@ -129,18 +134,21 @@ class OrbitMesh:
         if self.order + 2 <= RESOLUTION_SETTINGS.max_order:
             return replace(self, order=self.order + 2)
         return replace(
-            self, edges=halve_elements(self.edges), order=ceil(ORBIT_MESH.halved_order * self.order)
+            self, edges=halve_elements(self.edges), order=ceil(ORBIT_MESH_SETTINGS.halved_order * self.order)
         )
 
     @property
     def allowed(self) -> bool:
-        return self.unknowns <= ORBIT_MESH.max_unknowns and self.intervals <= ORBIT_MESH.max_intervals
+        return (
+            self.unknowns <= ORBIT_MESH_SETTINGS.max_unknowns
+            and self.intervals <= ORBIT_MESH_SETTINGS.max_intervals
+        )
 
     @property
     def cost(self) -> float:
         """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
-        multiple of `ORBIT_MESH.vector`."""
-        unknowns = ORBIT_MESH.vector * ceil(self.unknowns / ORBIT_MESH.vector)
+        multiple of `ORBIT_MESH_SETTINGS.vector`."""
+        unknowns = ORBIT_MESH_SETTINGS.vector * ceil(self.unknowns / ORBIT_MESH_SETTINGS.vector)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
     def interpolate(self, orbit: Orbit) -> Orbit:
@@ -156,7 +164,9 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
 
 def stages_for(accuracy: float) -> int:
     """Number of collocation stages with the smallest cost for the relative accuracy `accuracy`."""
-    return ORBIT_MESH.fewest_stages + sum(accuracy <= limit for limit in ORBIT_MESH.stage_accuracies)
+    return ORBIT_MESH_SETTINGS.fewest_stages + sum(
+        accuracy <= limit for limit in ORBIT_MESH_SETTINGS.stage_accuracies
+    )
 
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
@@ -165,23 +175,26 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     `max_interval_ratio`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
-    aim_space = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.space_factor) ** 0.5
-    aim_time = (ORBIT_MESH.expected_share * accuracy / ORBIT_MESH.time_factor) ** 0.5
+    aim_space = (ORBIT_MESH_SETTINGS.expected_share * accuracy / ORBIT_MESH_SETTINGS.space_factor) ** 0.5
+    aim_time = (ORBIT_MESH_SETTINGS.expected_share * accuracy / ORBIT_MESH_SETTINGS.time_factor) ** 0.5
     # Below `smallest_tail` a tail is rounding error.
     order = present.order + ceil(
-        log(max(tails.space, ORBIT_MESH.smallest_tail) / aim_space) / tails.decay / present.elements
+        log(max(tails.space, ORBIT_MESH_SETTINGS.smallest_tail) / aim_space) / tails.decay / present.elements
     )
     edges = present.edges
     while order > RESOLUTION_SETTINGS.max_order:
-        order = ceil(ORBIT_MESH.halved_order * order)
+        order = ceil(ORBIT_MESH_SETTINGS.halved_order * order)
         edges = halve_elements(edges)
     # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present
     # number of intervals is about a power of the known tail.
-    tail = max(tails.time, ORBIT_MESH.smallest_tail) ** (stages / present.stages)
+    tail = max(tails.time, ORBIT_MESH_SETTINGS.smallest_tail) ** (stages / present.stages)
     intervals = ceil(present.intervals * (tail / aim_time) ** (1 / stages))
-    order = min(max(order, ORBIT_MESH.min_order), present.order + ORBIT_MESH.max_more_orders)
+    order = min(
+        max(order, ORBIT_MESH_SETTINGS.min_order), present.order + ORBIT_MESH_SETTINGS.max_more_orders
+    )
     intervals = min(
-        max(intervals, ORBIT_MESH.min_intervals), ORBIT_MESH.max_interval_ratio * present.intervals
+        max(intervals, ORBIT_MESH_SETTINGS.min_intervals),
+        ORBIT_MESH_SETTINGS.max_interval_ratio * present.intervals,
     )
     return OrbitMesh(edges, order, intervals, stages)
 
@@ -194,4 +207,4 @@ def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     finer = replace(target, order=order, intervals=intervals, stages=stages)
     if finer != mesh:
         return finer
-    return replace(mesh.finer_in_space, intervals=ceil(ORBIT_MESH.more_intervals * mesh.intervals))
+    return replace(mesh.finer_in_space, intervals=ceil(ORBIT_MESH_SETTINGS.more_intervals * mesh.intervals))

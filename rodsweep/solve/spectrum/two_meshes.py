@@ -49,7 +49,7 @@ class TwoMeshSettings:
     derivative, and the highest modes of a mesh are not resolved."""
 
 
-TWO_MESHES = TwoMeshSettings()
+TWO_MESH_SETTINGS = TwoMeshSettings()
 
 
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -72,7 +72,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     mesh: AnyMesh = problem.mesh_for(modes, aim)
     before = _leading(problem, mesh, modes)
     best: Spectrum | None = None
-    for _ in range(TWO_MESHES.max_finer_meshes):
+    for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
         if mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns:
             break
@@ -88,7 +88,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
         most = RESOLUTION_SETTINGS.max_unknowns
         raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
-    return replace(best, error_estimate=TWO_MESHES.mesh_error_factor * best.error_estimate)
+    return replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
 
 
 def _scale(problem: TransverseProblem) -> float:
@@ -112,7 +112,7 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
     The result is empty if the mesh is too coarse for a doubled request.
     """
     solver = problem.solver(mesh)
-    requested = modes + TWO_MESHES.spare_eigenvalues
+    requested = modes + TWO_MESH_SETTINGS.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
     before = np.empty(0, complex)
@@ -121,10 +121,12 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
-        by_rounding = TWO_MESHES.unchanged_rounding_tolerance * _scale(problem)
-        if complete and np.allclose(leading, before, rtol=TWO_MESHES.unchanged_tolerance, atol=by_rounding):
+        by_rounding = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _scale(problem)
+        if complete and np.allclose(
+            leading, before, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=by_rounding
+        ):
             return _MeshEigenvalues(raw[order], order)
-        if 2 * requested > mesh.unknowns // TWO_MESHES.min_unknowns_per_mode:
+        if 2 * requested > mesh.unknowns // TWO_MESH_SETTINGS.min_unknowns_per_mode:
             return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
         requested = 2 * requested
@@ -148,9 +150,9 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     relative = np.max([padded[:-2], padded[1:-1], padded[2:]], axis=0)
     others = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
     meeting = np.sqrt(1 + np.abs(w) / others.min(axis=1, initial=np.inf))
-    errors: Array = TWO_MESHES.mesh_error_factor * relative * np.abs(w) + TWO_MESHES.rounding * meeting * (
-        np.abs(w) + scale
-    )
+    errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * relative * np.abs(
+        w
+    ) + TWO_MESH_SETTINGS.rounding * meeting * (np.abs(w) + scale)
     return errors
 
 

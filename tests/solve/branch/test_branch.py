@@ -309,9 +309,9 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
 
 def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkeypatch):
     """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
-    smallest = branch_start.BRANCH_START.first_amplitudes[-1]
-    beginning = replace(branch_start.BRANCH_START, first_amplitudes=(smallest,))
-    monkeypatch.setattr(branch_start, "BRANCH_START", beginning)
+    smallest = branch_start.BRANCH_START_SETTINGS.first_amplitudes[-1]
+    beginning = replace(branch_start.BRANCH_START_SETTINGS, first_amplitudes=(smallest,))
+    monkeypatch.setattr(branch_start, "BRANCH_START_SETTINGS", beginning)
     monkeypatch.setattr(branch_start, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings

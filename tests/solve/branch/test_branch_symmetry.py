@@ -25,7 +25,7 @@ from rodsweep.solve.branch.following import (
 )
 from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.point import SPECIAL_POINT, EndReason, SpecialKind
+from rodsweep.solve.branch.special.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_kinds_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
@@ -49,7 +49,7 @@ def limits():
     path = Path(straight, "F")
     hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(locating, "SPECIAL_POINT", replace(SPECIAL_POINT, accuracy=1e-5))
+        patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
 
 

@@ -13,7 +13,7 @@ from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient import transient
 from rodsweep.solve.cycle.transient.returns import tip_angle_row
-from rodsweep.solve.cycle.transient.torus import TORUS_TEST, modulation_of
+from rodsweep.solve.cycle.transient.torus import TORUS_TEST_SETTINGS, modulation_of
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.point import Unsolvable
 
@@ -85,7 +85,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
             returns.append(beam.layout.field(state(low), "m3"))
     found = modulation_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle == pytest.approx(ROTATION, abs=1e-3)
-    assert found.prediction_error < TORUS_TEST.max_prediction_error / 5
+    assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error / 5
 
 
 # --- returns that are made up -----------------------------------------------------------------------------
@@ -106,13 +106,13 @@ def test_rotation_on_a_closed_curve_is_found():
 @pytest.mark.parametrize("rate", [3e-3, -3e-3])
 def test_growing_and_decaying_modulations_are_not_predicted(rate):
     returns = 5 + (closed_curve(ANGLE * NUMBERS) - 5) * np.exp(rate * NUMBERS)[:, None]
-    assert modulation_of(returns, ANGLE).prediction_error > TORUS_TEST.max_prediction_error
+    assert modulation_of(returns, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
 
 
 def test_irregular_returns_are_not_predicted():
     noise = np.random.default_rng(1).normal(size=len(NUMBERS))
     irregular = closed_curve(ANGLE * NUMBERS + np.cumsum(0.3 * noise))
-    assert modulation_of(irregular, ANGLE).prediction_error > TORUS_TEST.max_prediction_error
+    assert modulation_of(irregular, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
 
 
 @pytest.mark.parametrize("turns, after", [(1, 2), (1, 3), (1, 4), (2, 9), (3, 11), (6, 13), (2, 15)])

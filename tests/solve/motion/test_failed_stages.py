@@ -10,7 +10,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
-from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH, motion_mesh
+from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh
 from rodsweep.solve.motion.integrator import RELAXATION, Integrator, RunEnding
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.motion.time_scheme import TimeScheme
@@ -25,7 +25,7 @@ DURATION = 0.005
 @pytest.mark.parametrize("scheme", [RELAXATION, TimeScheme("arkimex", "4", tolerance=1e-4)])
 def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     """From a first step of twice the duration, the iterates at the jump of the material become infinite."""
-    mesh = motion_mesh(RUBBER, MOTION_MESH.accuracy)
+    mesh = motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy)
     beam = Beam(RUBBER, mesh)
     integrator = Integrator(mesh, scheme)
     run = integrator.run(beam, leading_mode(beam).z.real, DURATION, 2 * DURATION)
@@ -46,7 +46,7 @@ def moved_energy(beam, z, pull, moment):
 
 def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_positive():
     """The energy of states with one bent node each, by central differences in its stretch and bending."""
-    beam = Beam(RUBBER, motion_mesh(RUBBER, MOTION_MESH.accuracy))
+    beam = Beam(RUBBER, motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy))
     h, verdicts = 1e-3, []
     for bending in (1.0, 10.0, 14.0, 17.0, 20.0, 30.0):
         z = np.zeros(beam.unknowns)

@@ -7,7 +7,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.motion.fixed_tip import FIXED_TIP, equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, equilibrium_at_tip
 
 RODS = {
     "flutter": Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2),
@@ -62,4 +62,6 @@ def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     beam = beam_of(rod)
     length = beam.tip(np.zeros(beam.unknowns))[0]
     x, y = beam.tip(equilibrium_at_tip(beam, 3.0, 4.0))[:2]
-    assert (x, y) == pytest.approx((0.6 * FIXED_TIP.reach * length, 0.8 * FIXED_TIP.reach * length), abs=1e-8)
+    assert (x, y) == pytest.approx(
+        (0.6 * FIXED_TIP_SETTINGS.reach * length, 0.8 * FIXED_TIP_SETTINGS.reach * length), abs=1e-8
+    )

@@ -17,9 +17,9 @@ from rodsweep.post.figures.cycle.transient import draw_transients
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
-from rodsweep.solve.cycle.transient.amplitude_equation import AMPLITUDE_EQUATION
-from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH, motion_mesh
-from rodsweep.solve.motion.integrator import INTEGRATOR
+from rodsweep.solve.cycle.transient.amplitude_equation import AMPLITUDE_EQUATION_SETTINGS
+from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh
+from rodsweep.solve.motion.integrator import INTEGRATOR_SETTINGS
 from rodsweep.solve.motion.leading_mode import leading_mode
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -50,7 +50,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
     rod = rod_of(60.0, *STRETCHABLE[:3])
-    beam = Beam(rod, motion_mesh(rod, MOTION_MESH.accuracy))
+    beam = Beam(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy))
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
@@ -63,7 +63,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
 def test_a_stored_motion_has_no_jumps():
     """It grows so slowly, by a few percent a period, that without being stored it would be scaled."""
     c = followed(27.6, amplitude=0.03, count=20_000)
-    assert c.linear_growth_rate * c.measures.period < AMPLITUDE_EQUATION.max_slow_growth / 2
+    assert c.linear_growth_rate * c.measures.period < AMPLITUDE_EQUATION_SETTINGS.max_slow_growth / 2
     period = 2 * np.pi / c.linear_frequency
     time, _, y, _ = c.transient
     inner = (np.abs(y[1:-1]) > np.abs(y[:-2])) & (np.abs(y[1:-1]) >= np.abs(y[2:]))
@@ -102,7 +102,7 @@ def test_a_rod_that_leaves_the_model_has_its_transient():
     c = followed(195.0, STRETCHABLE, 0.2)
     assert c.status.name == "left_the_model"
     assert np.isfinite(c.transient).all()
-    assert c.transient[0, -1] * c.linear_frequency / (2 * np.pi) > 1.5 * INTEGRATOR.relaxation_share
+    assert c.transient[0, -1] * c.linear_frequency / (2 * np.pi) > 1.5 * INTEGRATOR_SETTINGS.relaxation_share
 
 
 def test_a_rod_that_does_not_settle_in_time_has_its_transient():

@@ -18,7 +18,7 @@ from ..determinant import ArmDeterminant, BoundedPropagators
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain
 from .dominant_wave import slope_of_wave
-from .settings import ARM_COUNT
+from .settings import ARM_COUNT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +41,7 @@ class NearAxisSettings(CompiledSettings):
     ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance": (0.0, 1.0)}
 
 
-NEAR_AXIS = NearAxisSettings()
+NEAR_AXIS_SETTINGS = NearAxisSettings()
 
 
 def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
@@ -50,15 +50,19 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
 
     known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm.
     """
-    found = known[: NEAR_AXIS.max_modes]
-    height = NEAR_AXIS.first_height
+    found = known[: NEAR_AXIS_SETTINGS.max_modes]
+    height = NEAR_AXIS_SETTINGS.first_height
     while height < top:
-        W, propagators = determinant.level((1 + NEAR_AXIS.max_distance) * height, ARM_COUNT.max_level_ratio)
+        W, propagators = determinant.level(
+            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, ARM_COUNT_SETTINGS.max_level_ratio
+        )
         heights = [height]
-        while heights[-1] * NEAR_AXIS.height_ratio < min(top, W / (1 + NEAR_AXIS.max_distance)):
-            heights.append(heights[-1] * NEAR_AXIS.height_ratio)
+        while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
+            top, W / (1 + NEAR_AXIS_SETTINGS.max_distance)
+        ):
+            heights.append(heights[-1] * NEAR_AXIS_SETTINGS.height_ratio)
         found = _modes_from(np.array(heights), found, (W, propagators), determinant.gauss_samples)
-        height = heights[-1] * NEAR_AXIS.height_ratio
+        height = heights[-1] * NEAR_AXIS_SETTINGS.height_ratio
     return found
 
 
@@ -66,11 +70,11 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
 def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> Complex:
     """The known eigenvalues, (n,), followed by the eigenvalues that Newton's method finds from w = i height,
     for each of `heights`, (k,). level: (W, propagators)."""
-    found = np.empty(NEAR_AXIS.max_modes, np.complex128)
+    found = np.empty(NEAR_AXIS_SETTINGS.max_modes, np.complex128)
     n = len(known)
     found[:n] = known
     for height in heights:
-        while n < NEAR_AXIS.max_modes:
+        while n < NEAR_AXIS_SETTINGS.max_modes:
             w = _mode_near(complex(0.0, height), found[:n], level, samples)
             if math.isnan(w.real):
                 break
@@ -83,19 +87,19 @@ def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, sampl
 def _mode_near(start: complex, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> complex:
     """The eigenvalue close to `start` that is not in `known`, (n,); nan if no further eigenvalue is close."""
     w = start
-    for _ in range(NEAR_AXIS.max_steps):
+    for _ in range(NEAR_AXIS_SETTINGS.max_steps):
         value = determinant_along_chain(w, level[0], level[1])
         if value.D == 0:
             return w
         slope = value.D_w / value.D - slope_of_wave(w, samples)
         for k in range(len(known)):
             slope -= 1 / (w - known[k]) if w != known[k] else 0j
-        if not abs(slope) * NEAR_AXIS.max_distance * start.imag > 1:
+        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance * start.imag > 1:
             break
         step = 1 / slope
         w -= step
-        if not (w.imag > 0 and abs(w - start) < NEAR_AXIS.max_distance * start.imag):
+        if not (w.imag > 0 and abs(w - start) < NEAR_AXIS_SETTINGS.max_distance * start.imag):
             break
-        if abs(step) <= NEAR_AXIS.converged_step * abs(w):
+        if abs(step) <= NEAR_AXIS_SETTINGS.converged_step * abs(w):
             return w
     return complex(math.nan, math.nan)

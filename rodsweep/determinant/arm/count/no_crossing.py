@@ -11,9 +11,9 @@ divided out,
 
 h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm, is compared with f(w0, q)
 of the middle arm q. If |f(v, p) - f(w0, q)| < |f(w0, q)| on the circle, f has no zero in the disc, by the
-maximum principle. This is an estimate: f is evaluated at `ARM_COUNT.circle_points` points of the circle and
-at a few arms, with one safety factor for values between the points and one for the arms between these arms.
-"""
+maximum principle. This is an estimate: f is evaluated at `ARM_COUNT_SETTINGS.circle_points` points of the
+circle and at a few arms, with one safety factor for values between the points and one for the arms between
+these arms."""
 
 import cmath
 import math
@@ -33,7 +33,7 @@ from ..hull.region import Hull, PathHulls
 from ..local_waves import ArmSamples, scales_at
 from ..value import chain_value, determinant_along_chain
 from .dominant_wave import dominant_wave, slope_of_wave
-from .settings import ARM_COUNT, NO_CROSSING
+from .settings import ARM_COUNT_SETTINGS, NO_CROSSING_SETTINGS
 
 
 class ArmsOfInterval(NamedTuple):
@@ -68,9 +68,9 @@ class LineNode(NamedTuple):
 
 
 def sampled_points(first: int, last: int) -> list[int]:
-    """Indices of the `NO_CROSSING.arms` points, of the points `first` to `last`, at which D is evaluated: the
-    middle, the ends, and further points."""
-    steps = NO_CROSSING.arms - 1
+    """Indices of the `NO_CROSSING_SETTINGS.arms` points, of the points `first` to `last`, at which D is
+    evaluated: the middle, the ends, and further points."""
+    steps = NO_CROSSING_SETTINGS.arms - 1
     between = [first + (last - first) * k // steps for k in range(1, steps)]
     middle = between.pop(steps // 2 - 1)
     return [middle, first, last, *between]
@@ -95,14 +95,14 @@ def proves_no_crossing(
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.W, np.array(levels))
     unit = scales_at(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
-        line, 0.0, top, (ARM_COUNT.first_radius * unit, NO_CROSSING.min_radius * unit), arms
+        line, 0.0, top, (ARM_COUNT_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
     )
     if height < top and radius > 0:
         try:
-            arms = _with_larger_w(arms, rods, NO_CROSSING.headroom * abs(complex(line, top)))
+            arms = _with_larger_w(arms, rods, NO_CROSSING_SETTINGS.headroom * abs(complex(line, top)))
         except FloatingPointError:
             return False
-        height, _ = covered_height(line, height, top, (radius, NO_CROSSING.min_radius * unit), arms)
+        height, _ = covered_height(line, height, top, (radius, NO_CROSSING_SETTINGS.min_radius * unit), arms)
     return height >= top
 
 
@@ -134,15 +134,15 @@ def covered_height(
     radius, smallest = radii
     while height < top:
         fitting = (arms.W - abs(complex(line, height))) / 2
-        if fitting < NO_CROSSING.smallest_fitting * radius:
+        if fitting < NO_CROSSING_SETTINGS.smallest_fitting * radius:
             return height, radius
         radius = min(radius, fitting)
-        w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING.overlap * radius)
+        w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.overlap * radius)
         if _is_zero_free(w0, radius, arms):
-            height = w0.imag + NO_CROSSING.overlap * radius
-            radius *= NO_CROSSING.growth
+            height = w0.imag + NO_CROSSING_SETTINGS.overlap * radius
+            radius *= NO_CROSSING_SETTINGS.growth
         else:
-            radius /= NO_CROSSING.shrinkage
+            radius /= NO_CROSSING_SETTINGS.shrinkage
             if not radius > smallest:
                 return height, 0.0
     return height, radius
@@ -153,16 +153,16 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
     the module docstring."""
     value = determinant_along_chain(w0, arms.W, arms.propagators[0])
-    if not abs(value.D) > ARM_COUNT.rounding_over_noise * value.noise:
+    if not abs(value.D) > ARM_COUNT_SETTINGS.rounding_over_noise * value.noise:
         return False
-    divided = np.flatnonzero(np.abs(arms.known[0] - w0) < NO_CROSSING.divided_distance * radius)
+    divided = np.flatnonzero(np.abs(arms.known[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius)
     L = value.D_w / value.D
     for n in divided:
         if _is_close(w0, arms.known[0, n], arms.error[0, n]):
             return False
         L -= 1 / (w0 - arms.known[0, n])
     wave = (0j, 0j)
-    if radius <= ARM_COUNT.max_wave_radius * w0.imag:
+    if radius <= ARM_COUNT_SETTINGS.max_wave_radius * w0.imag:
         samples = ArmSamples(arms.squares[0], arms.weights)
         wave = (dominant_wave(w0, samples), slope_of_wave(w0, samples))
     node = LineNode(w0, value.D, value.S, L, divided, wave)
@@ -176,7 +176,9 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
 @compiled
 def _is_close(v: complex, w: complex, error: float) -> bool:
     """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
-    return not abs(v - w) > max(NO_CROSSING.min_known_distance * abs(v), NO_CROSSING.known_errors * error)
+    return not abs(v - w) > max(
+        NO_CROSSING_SETTINGS.min_known_distance * abs(v), NO_CROSSING_SETTINGS.known_errors * error
+    )
 
 
 @compiled
@@ -187,10 +189,10 @@ def _changes_little(node: LineNode, radius: float, arm: int, arms: ArmsOfInterva
     growth = 0.0
     if node.wave[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
-        above = complex(node.w.real, radius / ARM_COUNT.max_wave_radius)
+        above = complex(node.w.real, radius / ARM_COUNT_SETTINGS.max_wave_radius)
         of_middle = dominant_wave(above, ArmSamples(arms.squares[0], arms.weights))
         growth = (dominant_wave(above, samples) - of_middle).real
-    for direction in ARM_COUNT.directions:
+    for direction in ARM_COUNT_SETTINGS.directions:
         v = node.w + radius * direction
         D, S = chain_value(v, arms.W, arms.propagators[arm])
         h = (node.L - node.wave[1]) * (v - node.w) + growth
@@ -201,6 +203,6 @@ def _changes_little(node: LineNode, radius: float, arm: int, arms: ArmsOfInterva
             if _is_close(v, arms.known[arm, n], arms.error[arm, n]):
                 return False
             ratio *= (node.w - arms.known[0, n]) / (v - arms.known[arm, n])
-        if not abs(ratio - 1) <= NO_CROSSING.max_change:
+        if not abs(ratio - 1) <= NO_CROSSING_SETTINGS.max_change:
             return False
     return True

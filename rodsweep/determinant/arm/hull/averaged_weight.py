@@ -43,7 +43,7 @@ class AveragedWeightSettings(CompiledSettings):
         return 2 * len(self.factors) * len(self.half_widths)
 
 
-AVERAGED_WEIGHT = AveragedWeightSettings()
+AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
 
 
 class GridPositions(NamedTuple):
@@ -60,16 +60,16 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     u: points of an arm from clamp to tip, (points,), two at a jump. local: `LocalCoefficients` at the points,
     (6, points), with c2 > 0 and g > 0. F: force.
     """
-    regions = np.full((AVERAGED_WEIGHT.trial_count, 2), math.inf)
+    regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     row = 0
-    for h in AVERAGED_WEIGHT.half_widths:
+    for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
         points = _with_places_beside_jumps(u, h)
         places = _places(points, u)
         there = np.empty((6, len(points)))
         for k in range(6):
             there[k] = _interpolated(places, local[k])
         window = (_places(points - h, points), _places(points + h, points))
-        for f in AVERAGED_WEIGHT.factors:
+        for f in AVERAGED_WEIGHT_SETTINGS.factors:
             _fill(regions[row : row + 2], points, there, window, (F, f, h))
             row += 2
     return regions
@@ -84,9 +84,9 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
     count = len(u)
     points[:count] = u
     for i in range(len(u) - 1):
-        if u[i + 1] - u[i] < AVERAGED_WEIGHT.jump_distance:
+        if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.jump_distance:
             for side in (-h, h):
-                for at in (-AVERAGED_WEIGHT.point_distance, AVERAGED_WEIGHT.point_distance):
+                for at in (-AVERAGED_WEIGHT_SETTINGS.point_distance, AVERAGED_WEIGHT_SETTINGS.point_distance):
                     place = (u[i + 1] + u[i]) / 2 + side + at
                     if u[0] < place < u[-1]:
                         points[count] = place

@@ -19,9 +19,8 @@ a convex region bounded by a parabola. Of several alpha the one with the smalles
 = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
 `rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are evaluated at points between the breaks, and `HULL.margin` allows for the arm
-between these points.
-"""
+Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.margin` allows for the
+arm between these points."""
 
 from collections.abc import Sequence
 from functools import cache, lru_cache
@@ -34,8 +33,8 @@ from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ....model.material.build import Build
 from ....model.rod import Rod
-from .averaged_weight import AVERAGED_WEIGHT, averaged_regions
-from .region import HULL, NO_BOUND, Hull, PathHulls
+from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
+from .region import HULL_SETTINGS, NO_BOUND, Hull, PathHulls
 from .weights import clamp_integrals, constant_weights, least_squared_norm, varying_weight_norms
 
 
@@ -47,17 +46,17 @@ def hull_of(rod: Rod) -> Hull:
 def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
     """The hulls of all arms of a path between neighbouring values of p, (k,); rods: the arms at these values.
 
-    Extremes along the path are evaluated at these values only; `HULL.margin` allows for the arms between.
-    """
+    Extremes along the path are evaluated at these values only; `HULL_SETTINGS.margin` allows for the arms
+    between."""
     arms = _arms(rods)
     hulls = [_hull(_select_arms(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
 def _hull(arms: "SampledArms") -> Hull:
-    largest = 1 - HULL.min_remainder
+    largest = 1 - HULL_SETTINGS.min_remainder
     a, c = _smallest_region(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
-    return Hull((1 + HULL.margin) * a, c) if isfinite(a) else NO_BOUND
+    return Hull((1 + HULL_SETTINGS.margin) * a, c) if isfinite(a) else NO_BOUND
 
 
 class SampledArms(NamedTuple):
@@ -83,14 +82,14 @@ def _arms(rods: Sequence[Rod]) -> SampledArms:
     return SampledArms(F, lengths, local, averaged)
 
 
-@lru_cache(maxsize=HULL.max_builds)
+@lru_cache(maxsize=HULL_SETTINGS.max_builds)
 def _points_of(build: Build) -> tuple[Array, Array]:
     """(lengths of the intervals between breaks, (pieces,); Chebyshev points u of these intervals, (pieces,
     points))."""
-    x = (1 - 2 * HULL.end_distance) * _chebyshev().points
+    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev().points
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
-    return lengths * (1 - 2 * HULL.end_distance), u
+    return lengths * (1 - 2 * HULL_SETTINGS.end_distance), u
 
 
 def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
@@ -98,10 +97,10 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
     g > 0 everywhere. F, lengths, local: as in `SampledArms`.
     """
     starts = np.cumsum(lengths) - lengths
-    x = (1 - 2 * HULL.end_distance) * _chebyshev().points
+    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = local.reshape(6, len(F), -1)
-    regions = np.full((len(F), AVERAGED_WEIGHT.trial_count, 2), inf)
+    regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
     for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
         regions[i] = averaged_regions(u, np.ascontiguousarray(along[:, i]), float(F[i]))
     return regions
@@ -128,12 +127,12 @@ class ChebyshevMatrices(NamedTuple):
 
 @cache
 def _chebyshev() -> ChebyshevMatrices:
-    x = -np.cos(np.pi * np.arange(HULL.points) / (HULL.points - 1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL.points - 1))
+    x = -np.cos(np.pi * np.arange(HULL_SETTINGS.points) / (HULL_SETTINGS.points - 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
-    derivative = np.polynomial.chebyshev.chebvander(x, HULL.points - 2) @ slopes
-    integral = np.polynomial.chebyshev.chebvander(x, HULL.points) @ integrals
+    derivative = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 2) @ slopes
+    integral = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points) @ integrals
     return ChebyshevMatrices(x, np.ascontiguousarray(derivative), np.ascontiguousarray(integral))
 
 
@@ -161,13 +160,13 @@ def _smallest_region(
         for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):
             best = _smaller_region(best, (sqrt(square), 0.0), largest)
     for trial in range(averaged.shape[1]):
-        c = (1 + HULL.margin) * averaged[:, trial, 1].max()
+        c = (1 + HULL_SETTINGS.margin) * averaged[:, trial, 1].max()
         best = _smaller_region(best, (averaged[:, trial, 0].max(), c), largest)
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = clamp_integrals(alphas, F, lengths, local, chebyshev.integral)
     for k in range(len(alphas)):
-        c = (1 + HULL.margin) * sqrt(integrals[k]) / 2
+        c = (1 + HULL_SETTINGS.margin) * sqrt(integrals[k]) / 2
         best = _smaller_region(best, (sqrt(alphas[k] * push), c), largest)
     return best
 
@@ -176,12 +175,13 @@ def _smallest_region(
 def _smaller_region(
     best: tuple[float, float], other: tuple[float, float], largest: float
 ) -> tuple[float, float]:
-    """The smaller of the regions (a, c) `best` and `other`, by the measure a^2 (1 + (c/HULL.wide_c)^4).
+    """The smaller of the regions (a, c) `best` and `other`, by the measure a^2 (1 +
+    (c/HULL_SETTINGS.wide_c)^4).
 
     `best` is returned if `other` has c >= `largest`.
     """
     if not other[1] < largest:
         return best
-    here = best[0] ** 2 * (1 + (best[1] / HULL.wide_c) ** 4)
-    there = other[0] ** 2 * (1 + (other[1] / HULL.wide_c) ** 4)
+    here = best[0] ** 2 * (1 + (best[1] / HULL_SETTINGS.wide_c) ** 4)
+    there = other[0] ** 2 * (1 + (other[1] / HULL_SETTINGS.wide_c) ** 4)
     return other if there < here else best

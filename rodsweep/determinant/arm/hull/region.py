@@ -40,7 +40,7 @@ class HullSettings(CompiledSettings):
     """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
 
 
-HULL = HullSettings()
+HULL_SETTINGS = HullSettings()
 
 
 class Hull(NamedTuple):
@@ -81,9 +81,9 @@ def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
     b = 1 - c
     best = -inf
     normal = 1 + 0j
-    for k in range(HULL.supporting_lines):
+    for k in range(HULL_SETTINGS.supporting_lines):
         # Close to the imaginary axis the support function grows without bound.
-        T = (k / (HULL.supporting_lines - k)) ** 2
+        T = (k / (HULL_SETTINGS.supporting_lines - k)) ** 2
         if not c * T < b:
             break
         size = sqrt(1 + T * T)

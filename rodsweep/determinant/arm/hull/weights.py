@@ -9,7 +9,7 @@ import numpy as np
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from .averaged_weight import squared_norm
-from .region import HULL
+from .region import HULL_SETTINGS
 
 
 @compiled
@@ -36,38 +36,38 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
 
 @compiled
 def constant_weights(local: Array) -> Array:
-    """Constant weights alpha to try, (HULL.constant_weights + 1,): from the smallest to the largest |g/nu|
-    along the arms, and 1.
+    """Constant weights alpha to try, (HULL_SETTINGS.constant_weights + 1,): from the smallest to the largest
+    |g/nu| along the arms, and 1.
 
     local: coefficients, (6, n, pieces, points).
     """
     ratio = np.abs(local[5] / local[0])
-    start = log(max(ratio.min(), HULL.min_weight))
-    stop = log(max(ratio.max(), 2 * HULL.min_weight))
-    alphas = np.ones(HULL.constant_weights + 1)
-    for k in range(HULL.constant_weights):
-        alphas[k] = exp(start + (stop - start) * k / (HULL.constant_weights - 1))
+    start = log(max(ratio.min(), HULL_SETTINGS.min_weight))
+    stop = log(max(ratio.max(), 2 * HULL_SETTINGS.min_weight))
+    alphas = np.ones(HULL_SETTINGS.constant_weights + 1)
+    for k in range(HULL_SETTINGS.constant_weights):
+        alphas[k] = exp(start + (stop - start) * k / (HULL_SETTINGS.constant_weights - 1))
     return alphas
 
 
 @compiled
 def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Array) -> Array:
-    """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from `HULL.weight_factors`:
-    the largest squared norm of the hull's matrix along all arms, (factors,).
+    """a^2 of each weight alpha(u) = g/(nu + f |F| sqrt(c2 c3 gamma3/gamma2)), f from
+    `HULL_SETTINGS.weight_factors`: the largest squared norm of the hull's matrix along all arms, (factors,).
 
     F: (n,). lengths: (pieces,). local: coefficients, (6, n, pieces, points). derivative: (points, points),
     matrix of `ChebyshevMatrices`.
     """
-    found = np.zeros(len(HULL.weight_factors))
+    found = np.zeros(len(HULL_SETTINGS.weight_factors))
     points = local.shape[3]
     level = np.empty(points)
     log_alpha = np.empty(points)
-    for m in range(len(HULL.weight_factors)):
+    for m in range(len(HULL_SETTINGS.weight_factors)):
         for arm in range(len(F)):
             for piece in range(len(lengths)):
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]
-                    level[i] = HULL.weight_factors[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
+                    level[i] = HULL_SETTINGS.weight_factors[m] * abs(F[arm]) * sqrt(c2 * c3 * gamma3 / gamma2)
                     log_alpha[i] = log(g / (nu + level[i]))
                 for i in range(points):
                     nu, c2, c3, gamma2, gamma3, g = local[:, arm, piece, i]

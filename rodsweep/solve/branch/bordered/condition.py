@@ -11,7 +11,7 @@ import numpy as np
 from ....arrays import Array
 from ....watch import report
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import ORBIT_NEWTON, ConvergedOrbit, relative_change
+from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...point import Unsolvable
@@ -53,19 +53,23 @@ class BorderCondition:
         off = 0.0
         last = np.inf
         step = matrix.step(self.border, self.residual(orbit))
-        for _ in range(ORBIT_NEWTON.max_iterations):
+        for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-            if not change <= ORBIT_NEWTON.longest_step:
+            if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
                 raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
             orbit = moved_orbit(orbit, self.scale.name, step)
             off = off + change
             rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.
-            settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON.new_matrix_ratio
+            settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
             if (settled or change <= tolerance) and off <= distance:
                 return ConvergedOrbit(orbit, matrix, off)
-            if settled or change <= tolerance or (off > change and rate > ORBIT_NEWTON.new_matrix_ratio):
+            if (
+                settled
+                or change <= tolerance
+                or (off > change and rate > ORBIT_NEWTON_SETTINGS.new_matrix_ratio)
+            ):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 off = 0.0
                 step = matrix.step(self.border, self.residual(orbit))

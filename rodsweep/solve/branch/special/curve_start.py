@@ -13,9 +13,9 @@ from ...point import Unsolvable
 from ..arc import tangent_at
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale, deflection_of
-from ..branch_start import ALONG_DEFLECTION, BRANCH_START
+from ..branch_start import ALONG_DEFLECTION, BRANCH_START_SETTINGS
 from .family import CycleFamily
-from .on_curve import ALONG_BRANCH, CURVE_SECANT, SolvedPoint
+from .on_curve import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
 from .point import SpecialPoint
 
 
@@ -31,7 +31,7 @@ class CurveStartSettings:
     the special point was located."""
 
 
-CURVE_START = CurveStartSettings()
+CURVE_START_SETTINGS = CurveStartSettings()
 
 
 def first_point_of_curve(
@@ -49,12 +49,12 @@ def first_point_of_curve(
     mesh = mesh_of(orbit)
     rough = replace(
         mesh,
-        order=ceil(CURVE_START.order_share * mesh.order),
-        intervals=ceil(CURVE_START.interval_share * mesh.intervals),
-        stages=stages_for(CURVE_SECANT.accuracy),
+        order=ceil(CURVE_START_SETTINGS.order_share * mesh.order),
+        intervals=ceil(CURVE_START_SETTINGS.interval_share * mesh.intervals),
+        stages=stages_for(CURVE_SECANT_SETTINGS.accuracy),
     )
     orbit = rough.interpolate(orbit)
-    least = abs(deflection_of(orbit)) * BRANCH_START.min_deflection_amplitude / special.tip_y_max
+    least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
     scale = Scale.of(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))

@@ -20,7 +20,7 @@ from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import Scale
 from .augmented.functions import FoldFunction, TorusFunction
 from .on_curve import (
-    CURVE_SECANT,
+    CURVE_SECANT_SETTINGS,
     CurveErrors,
     NormalDerivatives,
     SearchLine,
@@ -52,7 +52,7 @@ class CycleFamily:
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
         """The family of the cycles near `point` of a curve of special points; the rest as in the class."""
-        small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT.small_fold_cycle
+        small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
         return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
@@ -81,10 +81,10 @@ class CycleFamily:
         is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
-        usable = derivatives and derivatives.direction @ line.direction >= CURVE_SECANT.min_cosine
+        usable = derivatives and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine
         known = derivatives if usable else None
         search = SecantSearch(self, start, row_coordinate, line, known, is_other_mesh)
-        for _ in range(CURVE_SECANT.max_secants):
+        for _ in range(CURVE_SECANT_SETTINGS.max_secants):
             found = search.next()
             if found is not None:
                 return found
@@ -107,10 +107,10 @@ class CycleFamily:
         last = self.correct(start, row_coordinate, line, derivatives)
         if previous and previous.errors and previous.errors.apply_at(last):
             return replace(last, errors=previous.errors.for_next_point)
-        for _ in range(CURVE_SECANT.max_finer_meshes):
+        for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(last.orbit)
-            longer = ceil(CURVE_SECANT.more_intervals * mesh.intervals)
-            finer = replace(mesh, order=mesh.order + CURVE_SECANT.more_orders, intervals=longer)
+            longer = ceil(CURVE_SECANT_SETTINGS.more_intervals * mesh.intervals)
+            finer = replace(mesh, order=mesh.order + CURVE_SECANT_SETTINGS.more_orders, intervals=longer)
             if not finer.allowed:
                 break
             known = last.normal_derivatives
@@ -120,8 +120,10 @@ class CycleFamily:
             # displacement from the error.
             along = line.slope * (fine.row_coordinate - last.row_coordinate)
             off = abs(fine.parameter - last.parameter - along)
-            error = CURVE_SECANT.error_factor * off + CURVE_SECANT.least_error * abs(fine.parameter)
-            if error <= CURVE_SECANT.accuracy * abs(fine.parameter):
+            error = CURVE_SECANT_SETTINGS.error_factor * off + CURVE_SECANT_SETTINGS.least_error * abs(
+                fine.parameter
+            )
+            if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine.parameter):
                 errors = CurveErrors(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
                 return replace(last, errors=errors)
             last = fine

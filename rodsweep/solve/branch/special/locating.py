@@ -24,7 +24,7 @@ from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import Scale
 from .augmented.functions import TorusFunction, correct_fully
 from .least_stretch import least_stretch
-from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
+from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .segment import BranchSegment
 
 
@@ -53,7 +53,7 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
     the solved time interval, (multipliers,). Raises Unsolvable for torus points if all multipliers are real.
     """
-    real = np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h)
+    real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
@@ -78,19 +78,19 @@ def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> f
 
 def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
     """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
-    and `SPECIAL_POINT.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. If the point
-    cannot be located, its message gives the reason, and its error is the parameter difference of the two
-    cycles."""
-    aim = min(accuracy, SPECIAL_POINT.accuracy)
+    and `SPECIAL_POINT_SETTINGS.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. If the
+    point cannot be located, its message gives the reason, and its error is the parameter difference of the
+    two cycles."""
+    aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.start_on(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
-        mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT.first_mesh_share * aim)
+        mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
-        for number in range(SPECIAL_POINT.max_mesh_pairs + 1):
+        for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
             segment.start_on(mesh)
             length, orbit, slope = _zero(kind, segment, length, slope)
             last = point
@@ -115,11 +115,13 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
-    growth = excess ** (1 / (SPECIAL_POINT.time_order_by_stages * mesh.stages))
-    growth = min(max(growth, SPECIAL_POINT.min_interval_ratio), SPECIAL_POINT.max_interval_ratio)
+    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_by_stages * mesh.stages))
+    growth = min(
+        max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
+    )
     more = min(
-        max(ceil(log(excess) / SPECIAL_POINT.space_decay), SPECIAL_POINT.min_more_orders),
-        SPECIAL_POINT.max_more_orders,
+        max(ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_more_orders),
+        SPECIAL_POINT_SETTINGS.max_more_orders,
     )
     return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
@@ -132,26 +134,26 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     the cycles before and after the point: for the error of the last secant step, and, except at a fold, for
     the error of the parameter.
     """
-    error = SPECIAL_POINT.error_factor * abs(point.at - last.at) + SPECIAL_POINT.rounding_error * abs(
-        point.at
-    )
-    share = SPECIAL_POINT.secant_error_at_fold
+    error = SPECIAL_POINT_SETTINGS.error_factor * abs(
+        point.at - last.at
+    ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.at)
+    share = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
         name = start.scale.name
         length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        moved = SPECIAL_POINT.slope_factor * error / length if length else 1.0
-        share = SPECIAL_POINT.secant_error + min(moved, 1.0)
+        moved = SPECIAL_POINT_SETTINGS.slope_factor * error / length if length else 1.0
+        share = SPECIAL_POINT_SETTINGS.secant_error + min(moved, 1.0)
     one = start.cycle.measures
     other = end.cycle.measures
-    factor = SPECIAL_POINT.error_factor
+    factor = SPECIAL_POINT_SETTINGS.error_factor
     period = factor * abs(point.period - last.period) + share * abs(one.period - other.period)
     size = factor * abs(point.tip_y_max - last.tip_y_max) + share * abs(one.tip_y_max - other.tip_y_max)
     return replace(
         point,
         error=error,
-        period_error=period / point.period + SPECIAL_POINT.rounding_error,
-        size_error=size / point.tip_y_max + SPECIAL_POINT.rounding_error,
+        period_error=period / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
+        size_error=size / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
     )
 
 
@@ -182,7 +184,7 @@ def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) ->
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         # The two cycles may have the same parameter value, as on the two sides of a fold.
-        error=max(abs(at - other), SPECIAL_POINT.accuracy * abs(at)),
+        error=max(abs(at - other), SPECIAL_POINT_SETTINGS.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
         size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
@@ -201,8 +203,8 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = SPECIAL_POINT.bracket_tolerance * min(map(abs, ends))
-    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT.bracket_tolerance)
+    least = SPECIAL_POINT_SETTINGS.bracket_tolerance * min(map(abs, ends))
+    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT_SETTINGS.bracket_tolerance)
     # Slope from the values at this zero and at the nearest other arc length.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
@@ -216,13 +218,15 @@ def _zero(
     function), by the secant method on `segment`; raises Unsolvable. slope: approximate slope, for the first
     step."""
     linear = (
-        SPECIAL_POINT.max_linear_step_at_fold if kind == SpecialKind.fold else SPECIAL_POINT.max_linear_step
+        SPECIAL_POINT_SETTINGS.max_linear_step_at_fold
+        if kind == SpecialKind.fold
+        else SPECIAL_POINT_SETTINGS.max_linear_step
     )
     enough = segment.length * linear
     at = guess
     step = np.inf
     before = None
-    for _ in range(SPECIAL_POINT.max_secants):
+    for _ in range(SPECIAL_POINT_SETTINGS.max_secants):
         f = test_function(kind, segment, segment.cycle_at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
@@ -231,7 +235,10 @@ def _zero(
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that is longer than half of the last step is rounding error.
-        if abs(step) <= enough or last / 2 < abs(step) <= SPECIAL_POINT.max_stalled_step * segment.length:
+        if (
+            abs(step) <= enough
+            or last / 2 < abs(step) <= SPECIAL_POINT_SETTINGS.max_stalled_step * segment.length
+        ):
             _, orbit, tangent = segment.last_solved_cycle
             change = step * tangent
             if kind == SpecialKind.fold:

@@ -65,7 +65,7 @@ class CurveSecantSettings:
     """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
 
 
-CURVE_SECANT = CurveSecantSettings()
+CURVE_SECANT_SETTINGS = CurveSecantSettings()
 
 
 class SearchLine(NamedTuple):
@@ -136,8 +136,8 @@ class CurveErrors:
     def apply_at(self, point: "SolvedPoint") -> bool:
         """Whether the measured error may be used at the later point `point` of the curve: the measurement is
         recent, the mesh is the same, and the scaled error is within the accuracy."""
-        recent = self.age < CURVE_SECANT.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
-        return recent and self.error_at(point) <= CURVE_SECANT.accuracy * abs(point.parameter)
+        recent = self.age < CURVE_SECANT_SETTINGS.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
+        return recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)
 
     @property
     def for_next_point(self) -> "CurveErrors":

@@ -81,7 +81,7 @@ class SpecialPointSettings:
     located."""
 
 
-SPECIAL_POINT = SpecialPointSettings()
+SPECIAL_POINT_SETTINGS = SpecialPointSettings()
 
 
 class SpecialKind(IntEnum):

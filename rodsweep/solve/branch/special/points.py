@@ -14,7 +14,7 @@ import numpy as np
 from ...point import Unsolvable
 from ..arc import ArcPoint, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
-from .point import SPECIAL_POINT, SpecialKind, SpecialPoint
+from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
 Step = Callable[[ArcPoint, float], ArcPoint]
 """Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises
@@ -46,16 +46,18 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
 def _beyond_minus_one(point: ArcPoint) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
     h = point.partial_multipliers
-    return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT.real_multiplier * np.abs(h))).sum())
+    return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h))).sum())
 
 
 def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.partial_multipliers - 1) < SPECIAL_POINT.unit_multiplier_distance).any())
+    return bool(
+        (np.abs(point.partial_multipliers - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance).any()
+    )
 
 
 def _has_pair(point: ArcPoint) -> bool:
     h = point.partial_multipliers
-    return bool((np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)).any())
+    return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)).any())
 
 
 def special_points(
@@ -75,7 +77,9 @@ def special_points(
     """
     kinds, explained = special_kinds_between(start, end)
     points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if explained else []
-    if depth < SPECIAL_POINT.max_halvings and (not explained or any(point.message for point in points)):
+    if depth < SPECIAL_POINT_SETTINGS.max_halvings and (
+        not explained or any(point.message for point in points)
+    ):
         try:
             # Halving separates special points whose changes of the number of multipliers cancel or add up.
             middle = step(start, arc_length_between(start, end) / 2)

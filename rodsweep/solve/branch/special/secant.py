@@ -23,7 +23,7 @@ from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.scale import Scale
 from .augmented.functions import AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
-from .on_curve import CURVE_SECANT, NormalDerivatives, SearchLine, SolvedPoint
+from .on_curve import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
 
 if TYPE_CHECKING:
     from .family import CycleFamily  # for annotations only: the module imports this one
@@ -63,7 +63,9 @@ class SecantSearch:
         self.length = float(family.border @ family.scale.components(start))
         self.is_carried = not is_other_mesh
         """Whether the derivatives come from the previous point of the curve."""
-        self.curvature = CURVE_SECANT.curvature_factor * derivatives.curvature if derivatives else inf
+        self.curvature = (
+            CURVE_SECANT_SETTINGS.curvature_factor * derivatives.curvature if derivatives else inf
+        )
         """Second derivative of the test function divided by the first; inf if unknown."""
         self.measured_curvature = derivatives.curvature if derivatives else inf
         self.slopes: list[tuple[float, float]] = []
@@ -82,17 +84,17 @@ class SecantSearch:
             span = own.span
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
-        step = -present.test / rates.test if rates else CURVE_SECANT.first_secant
-        if not abs(step) <= CURVE_SECANT.longest_secant:
+        step = -present.test / rates.test if rates else CURVE_SECANT_SETTINGS.first_secant
+        if not abs(step) <= CURVE_SECANT_SETTINGS.longest_secant:
             raise Unsolvable("the secant method leaves the curve")
         if rates:
             error = self._error_after(step, span)
             if self._is_enough(error):
                 known = replace(rates, contraction=self.nearby.contraction, curvature=self.measured_curvature)
                 return self._point(step, known, error)
-            if self.is_carried and abs(step) < CURVE_SECANT.min_cycle_distance:
+            if self.is_carried and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
                 # Between closer cycles no derivative can be measured.
-                step = math.copysign(2 * CURVE_SECANT.min_cycle_distance, step)
+                step = math.copysign(2 * CURVE_SECANT_SETTINGS.min_cycle_distance, step)
         if self.previous:  # the vectors are extrapolated along a line, like the cycle
             change = (present.vectors - self.previous.vectors) / (present.distance - self.previous.distance)
             self.nearby.predict(present.vectors + step * change)
@@ -111,10 +113,10 @@ class SecantSearch:
             # Remainder of linear interpolation through two values, extrapolated to their zero.
             return self.curvature * abs(step) * (abs(step) + span) / 2
         assert self.derivatives is not None
-        slope_error = CURVE_SECANT.slope_error + self.curvature * self.derivatives.span / 2
+        slope_error = CURVE_SECANT_SETTINGS.slope_error + self.curvature * self.derivatives.span / 2
         if self.is_carried:
             # Along the curve a derivative changes more where the curvature is large.
-            slope_error = CURVE_SECANT.carried_slope_error * max(1.0, self.curvature)
+            slope_error = CURVE_SECANT_SETTINGS.carried_slope_error * max(1.0, self.curvature)
         return min(slope_error, 1.0) * abs(step)
 
     def _is_enough(self, error: float) -> bool:
@@ -123,8 +125,8 @@ class SecantSearch:
         if error <= AUGMENTED_SETTINGS.tolerance:
             return True
         parameter = abs(getattr(self.orbit.form.rod, self.family.scale.name))
-        allowed = CURVE_SECANT.secant_share * CURVE_SECANT.accuracy * parameter
-        return error <= CURVE_SECANT.max_distance_error and self._parameter_error(error) <= allowed
+        allowed = CURVE_SECANT_SETTINGS.secant_share * CURVE_SECANT_SETTINGS.accuracy * parameter
+        return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
 
     def _solve_at_distance(self) -> _SecantIterate:
         """The cycle at the present distance across the curve, with its test function; raises Unsolvable."""
@@ -137,7 +139,7 @@ class SecantSearch:
         enough = (
             AUGMENTED_SETTINGS.tolerance
             if rates
-            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT.first_secant
+            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT_SETTINGS.first_secant
         )
         condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test = self.nearby.solve(self.orbit, condition, slope, enough)
@@ -149,7 +151,7 @@ class SecantSearch:
         before = self.previous
         if before is None or present.test == before.test:
             return None
-        if abs(present.distance - before.distance) < CURVE_SECANT.min_cycle_distance:
+        if abs(present.distance - before.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
             return None
         name = self.family.scale.name
         # The test function is nearly linear here, so that difference quotients are as good as derivatives.

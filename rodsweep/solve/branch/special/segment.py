@@ -8,7 +8,7 @@ from ..arc import ArcPoint, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import bordered_matrix_of
 from .augmented.functions import FoldFunction, correct_fully
-from .point import SPECIAL_POINT
+from .point import SPECIAL_POINT_SETTINGS
 
 
 class BranchSegment:
@@ -47,7 +47,7 @@ class BranchSegment:
         condition = self.start.condition(length)
         workspace = self.start.workspace
         found = condition.solve_cycle(
-            start, SPECIAL_POINT.cycle_tolerance, workspace, SPECIAL_POINT.matrix_distance
+            start, SPECIAL_POINT_SETTINGS.cycle_tolerance, workspace, SPECIAL_POINT_SETTINGS.matrix_distance
         )
         function = FoldFunction(bordered_matrix_of(found), self.start.ahead, False)
         correct_fully(function, found.orbit)

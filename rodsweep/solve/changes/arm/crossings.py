@@ -52,7 +52,7 @@ class ArmCrossingSettings:
     """Relative rounding error of the path variable: two units in the last place."""
 
 
-ARM_CROSSINGS = ArmCrossingSettings()
+ARM_CROSSING_SETTINGS = ArmCrossingSettings()
 
 
 class CrossingSearch:
@@ -76,7 +76,7 @@ class CrossingSearch:
         edge.
         """
         intervals = SearchedIntervals(edges)
-        beside = ARM_CROSSINGS.count_distance * intervals.length
+        beside = ARM_CROSSING_SETTINGS.count_distance * intervals.length
         self.places.beyond = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
         self.places.modes_at(edges[0])
         for a, b in intervals:
@@ -103,10 +103,10 @@ class CrossingSearch:
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
         """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
         likely to be full before b, where a count is expensive. length: length of the path."""
-        if b in self.places.known or b - a < ARM_CROSSINGS.smallest_first * length:
+        if b in self.places.known or b - a < ARM_CROSSING_SETTINGS.smallest_first * length:
             return False
         expected = self.problem.expected_growing(b)
-        return self.places.has_many_modes(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
+        return self.places.has_many_modes(b) and expected > ARM_CROSSING_SETTINGS.beyond_the_list * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
@@ -118,7 +118,7 @@ class CrossingSearch:
             share = next_count_position(left, right)
             if share == 0.0:
                 return
-            if b - a <= ARM_CROSSINGS.smallest_interval * intervals.length:
+            if b - a <= ARM_CROSSING_SETTINGS.smallest_interval * intervals.length:
                 self.gaps.append((a, b))
                 return
         else:
@@ -131,7 +131,7 @@ class CrossingSearch:
                 )
                 intervals.divide(*parts)
                 return
-            if b - a <= ARM_CROSSINGS.smallest_step * max(abs(a), abs(b)):
+            if b - a <= ARM_CROSSING_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(f"the crossing near {self.problem.path.text_at(a)} could not be located")
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
@@ -147,11 +147,11 @@ class CrossingSearch:
         """
         parts: list[tuple[float, float]] = []
         start = left.p
-        highest = ARM_CROSSINGS.higher * max(left.largest_modulus, right.largest_modulus)
+        highest = ARM_CROSSING_SETTINGS.higher * max(left.largest_modulus, right.largest_modulus)
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.at)
-            before = max(start, p - ARM_CROSSINGS.count_distance * length)
-            behind = min(right.p, p + ARM_CROSSINGS.count_distance * length)
+            before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
+            behind = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance * length)
             beside = None
             if self.places.has_many_modes(before):
                 beside = self.places.eigenvalues_near_axis(p, highest, np.array([1j * crossing.frequency]))
@@ -171,7 +171,7 @@ class CrossingSearch:
         change = (right.unstable - left.unstable) // 2
         many = self.places.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
-        if abs(change) > (ARM_CROSSINGS.most_at_once if many else 1):
+        if abs(change) > (ARM_CROSSING_SETTINGS.most_at_once if many else 1):
             return []
         if many:
             self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
@@ -198,7 +198,7 @@ class CrossingSearch:
         p = start.p
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
-        for _ in range(ARM_CROSSINGS.max_steps):
+        for _ in range(ARM_CROSSING_SETTINGS.max_steps):
             if slope.real == 0 or not math.isfinite(slope.real):
                 return None
             step = -w.real / slope.real
@@ -207,12 +207,12 @@ class CrossingSearch:
             if not ends[0] <= p <= ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
-            blur = error / abs(slope.real) + ARM_CROSSINGS.rounding * abs(p)
-            if abs(w.real / slope.real) <= ARM_CROSSINGS.converged * blur:
+            blur = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding * abs(p)
+            if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged * blur:
                 # With such an error no root of D is resolved.
-                unresolved = self.places.has_many_modes(p) and not blur <= ARM_CROSSINGS.count_distance * (
-                    ends[1] - ends[0]
-                )
+                unresolved = self.places.has_many_modes(
+                    p
+                ) and not blur <= ARM_CROSSING_SETTINGS.count_distance * (ends[1] - ends[0])
                 return None if unresolved else self._crossing(p, w, slope, blur, grows)
         return None
 
@@ -231,5 +231,7 @@ class CrossingSearch:
 
 def _same(one: Crossing, other: Crossing) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
-    apart = abs(one.at - other.at) <= ARM_CROSSINGS.same_errors * (one.error + other.error)
-    return apart and abs(one.frequency - other.frequency) <= ARM_CROSSINGS.same_frequency * one.frequency
+    apart = abs(one.at - other.at) <= ARM_CROSSING_SETTINGS.same_errors * (one.error + other.error)
+    return (
+        apart and abs(one.frequency - other.frequency) <= ARM_CROSSING_SETTINGS.same_frequency * one.frequency
+    )

@@ -53,7 +53,7 @@ class ArmPathSettings:
     the middle is less than this fraction of the interval's length."""
 
 
-ARM_PATH = ArmPathSettings()
+ARM_PATH_SETTINGS = ArmPathSettings()
 
 
 class ArmPath(PathProblem):
@@ -77,14 +77,18 @@ class ArmPath(PathProblem):
     def _family(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
         made = next((one for one in self._families if one.low <= p <= one.high), None)
-        if made is None and self._followed is not None and self.expected_growing(p) <= ARM_PATH.most_growing:
+        if (
+            made is None
+            and self._followed is not None
+            and self.expected_growing(p) <= ARM_PATH_SETTINGS.most_growing
+        ):
             return self._followed.family(p)
         return made
 
     def make_family(self, low: float, high: float, highest: float) -> None:
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if possible
         and if no stored family suffices."""
-        W = ARM_PATH.headroom * highest
+        W = ARM_PATH_SETTINGS.headroom * highest
         if any(one.low <= low and high <= one.high and highest * 2 <= one.W for one in self._families):
             return
         with suppress(ValueError, FloatingPointError):
@@ -92,12 +96,15 @@ class ArmPath(PathProblem):
             self._families += [family] if family is not None else []
 
     def edges(self, low: float, high: float) -> list[float]:
-        edges = np.linspace(low, high, ARM_PATH.edges + 1)
-        edges[1:-1] -= ARM_PATH.edge_shift * (high - low) / ARM_PATH.edges
+        edges = np.linspace(low, high, ARM_PATH_SETTINGS.edges + 1)
+        edges[1:-1] -= ARM_PATH_SETTINGS.edge_shift * (high - low) / ARM_PATH_SETTINGS.edges
         if self._followed is None and low < high:
-            steps = np.arange(ARM_PATH.edges * ARM_PATH.points_between + 1) / ARM_PATH.points_between
+            steps = (
+                np.arange(ARM_PATH_SETTINGS.edges * ARM_PATH_SETTINGS.points_between + 1)
+                / ARM_PATH_SETTINGS.points_between
+            )
             points = np.interp(steps, np.arange(len(edges)), edges)
-            self._followed = FollowedArms(self.path, points, ARM_PATH.followed_modes)
+            self._followed = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_modes)
         return edges.tolist()
 
     def expected_growing(self, p: float) -> float:
@@ -106,7 +113,7 @@ class ArmPath(PathProblem):
 
     def followed(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
-        if self._followed is None or self.expected_growing(p) > ARM_PATH.most_growing:
+        if self._followed is None or self.expected_growing(p) > ARM_PATH_SETTINGS.most_growing:
             return None
         found = self._followed.spectrum(p, modes)
         if found is not None:
@@ -132,7 +139,7 @@ class ArmPath(PathProblem):
         earlier = self._solutions.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
         if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
-            spare = ARM_PATH.spare_pair if request.modes > ARM_PATH.followed_modes else 0
+            spare = ARM_PATH_SETTINGS.spare_pair if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
             earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
             # The additional modes may be harder to solve; they must not spoil the requested modes.
             if spare and earlier.status != SpectrumStatus.ok:
@@ -145,7 +152,9 @@ class ArmPath(PathProblem):
         )
 
     def counted_amid(self, low: float, high: float) -> int | None:
-        places = [p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.amid * (high - low)]
+        places = [
+            p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.amid * (high - low)
+        ]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._counts[nearest]
 
@@ -157,7 +166,7 @@ class ArmPath(PathProblem):
         return self._along.double_eigenvalue(x, p, reach)
 
     def count(self, line: float, p: float) -> EigenvalueCount:
-        found = self.followed(p, ARM_PATH.followed_modes)
+        found = self.followed(p, ARM_PATH_SETTINGS.followed_modes)
         if found is not None:
             w = found.eigenvalues
             error = found.error_estimate
@@ -165,7 +174,7 @@ class ArmPath(PathProblem):
             # The followed modes are complete down to the last of them, so counting them is a proof.
             if clear and w[-1].real < line <= 0:
                 return EigenvalueCount(int((w.real > line).sum()), 0)
-            if clear and line == 0 and found.unstable_count < ARM_PATH.followed_modes:
+            if clear and line == 0 and found.unstable_count < ARM_PATH_SETTINGS.followed_modes:
                 return EigenvalueCount(found.unstable_count, 0)
         known = self._followed.roots(p) if self._followed is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, known)

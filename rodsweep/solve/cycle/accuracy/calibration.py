@@ -15,7 +15,7 @@ from ....arrays import Array
 from ....determinant.exponents import EXPONENT_SETTINGS
 from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
+from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
 from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION
@@ -127,11 +127,12 @@ class Calibration:
         """The cheapest mesh on which the convergence rates predict the relative accuracy `accuracy`; the next
         finer mesh if no allowed mesh suffices."""
         present = self.mesh
-        lowest = max(ORBIT_MESH.min_order, present.order - CALIBRATION.max_fewer_orders)
+        allowed = ORBIT_MESH_SETTINGS
+        lowest = max(allowed.min_order, present.order - CALIBRATION.max_fewer_orders)
         highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION.max_more_orders)
         orders = np.arange(lowest, highest + 1)
-        fewest = max(ORBIT_MESH.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
-        most = min(CALIBRATION.max_interval_ratio * present.intervals, ORBIT_MESH.max_intervals)
+        fewest = max(allowed.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
+        most = min(CALIBRATION.max_interval_ratio * present.intervals, allowed.max_intervals)
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
         # than the distance of the tip's paths, and errors in time with the smallest order.
@@ -166,11 +167,9 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
         np.maximum(whole[WORST_EXTREMUM], CALIBRATION.min_extrema_error_share * apart),
         whole[MULTIPLIER],
     ]
-    least: Array = np.maximum(
-        np.array(stated),
-        max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error),
-    )
-    return least
+    least = max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
+    errors: Array = np.maximum(np.array(stated), least)
+    return errors
 
 
 def _tails(orbit: Orbit) -> Array:

@@ -16,7 +16,7 @@ from ....arrays import Array
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import multiplier_change, newton
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import ORBIT_MESH, OrbitMesh
+from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
 from .calibration import Calibration, calibration_of
@@ -52,7 +52,7 @@ class CoarserMeshSettings:
     order."""
 
 
-COARSER_MESHES = CoarserMeshSettings()
+COARSER_MESH_SETTINGS = CoarserMeshSettings()
 
 
 class CoarserMeshes:
@@ -63,9 +63,11 @@ class CoarserMeshes:
         """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. near: an orbit near
         the cycle, on any mesh. accuracy: requested relative accuracy."""
         fewer = _fewer_orders(near)
-        order = max(mesh.order - fewer, ORBIT_MESH.min_order - COARSER_MESHES.min_fewer_orders)
-        self._highest_order = order + fewer + COARSER_MESHES.max_more_orders
-        intervals = round(mesh.full_intervals / (1 + COARSER_MESHES.more_intervals)) + 1
+        order = max(
+            mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_fewer_orders
+        )
+        self._highest_order = order + fewer + COARSER_MESH_SETTINGS.max_more_orders
+        intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.more_intervals)) + 1
         self.mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
         self._workspace = workspace
@@ -77,7 +79,7 @@ class CoarserMeshes:
         mesh, and its order and its number of time intervals are not too large."""
         near = (
             mesh.order <= self._highest_order
-            and self._refined_in_time(mesh) <= COARSER_MESHES.max_interval_ratio
+            and self._refined_in_time(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
         )
         return near and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
 
@@ -124,11 +126,11 @@ class CoarserMeshes:
 
 def _fall(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
-    slowest = COARSER_MESHES.slowest_decay_ratio * tails_of(orbit).decay
+    slowest = COARSER_MESH_SETTINGS.slowest_decay_ratio * tails_of(orbit).decay
     return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
 
 
 def _fewer_orders(near: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
-    needed = ceil(COARSER_MESHES.min_space_decay / _fall(near))
-    return min(max(needed, COARSER_MESHES.min_fewer_orders), COARSER_MESHES.max_fewer_orders)
+    needed = ceil(COARSER_MESH_SETTINGS.min_space_decay / _fall(near))
+    return min(max(needed, COARSER_MESH_SETTINGS.min_fewer_orders), COARSER_MESH_SETTINGS.max_fewer_orders)

@@ -32,7 +32,7 @@ class MinimalPeriodSettings:
     this: the error estimate applies to the tip, and the bending strain may have a larger error."""
 
 
-MINIMAL_PERIOD = MinimalPeriodSettings()
+MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
 def common_divisor(path: CyclePath, present: float) -> int:
@@ -60,13 +60,17 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
     error: relative error of the extrema.
     """
     return common_divisor(
-        path, max(MINIMAL_PERIOD.certain_harmonic_ratio * error, MINIMAL_PERIOD.min_certain_harmonic)
+        path,
+        max(
+            MINIMAL_PERIOD_SETTINGS.certain_harmonic_ratio * error,
+            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic,
+        ),
     )
 
 
 def over_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the minimal period that its large harmonics show, as a start for Newton's method."""
-    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD.min_harmonic)
+    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic)
     if g == 1:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)

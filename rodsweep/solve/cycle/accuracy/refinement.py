@@ -13,7 +13,14 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, measures_of
-from ...orbit.newton import ORBIT_NEWTON, ConvergedOrbit, at_orbit, multipliers_of, newton, newton_step
+from ...orbit.newton import (
+    ORBIT_NEWTON_SETTINGS,
+    ConvergedOrbit,
+    at_orbit,
+    multipliers_of,
+    newton,
+    newton_step,
+)
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
@@ -21,8 +28,8 @@ from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
 from .finer_meshes import measured_calibration
-from .minimal_period import MINIMAL_PERIOD, common_divisor, over_minimal_period
-from .refinement_settings import REFINEMENT
+from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_divisor, over_minimal_period
+from .refinement_settings import REFINEMENT_SETTINGS
 
 
 def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
@@ -33,7 +40,7 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
-    by_matrix = REFINEMENT.multiplier_error_factor * largest * (found.distance + trivial_error)
+    by_matrix = REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.distance + trivial_error)
     by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
@@ -63,17 +70,19 @@ def refined_at_period(
     Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
     are then tried.
     """
-    aim = max(accuracy, REFINEMENT.first_accuracy)
+    aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
     start = orbit
     while True:
         try:
-            rough = require_similar_size(newton(start, REFINEMENT.nearby_tolerance, workspace), orbit.size)
+            rough = require_similar_size(
+                newton(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace), orbit.size
+            )
             near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
-                first = wanted_mesh(near, REFINEMENT.first_mesh_accuracy * aim, stages)
+                first = wanted_mesh(near, REFINEMENT_SETTINGS.first_mesh_accuracy * aim, stages)
                 first = replace(
-                    first, intervals=max(first.intervals, REFINEMENT.min_intervals_for_prediction)
+                    first, intervals=max(first.intervals, REFINEMENT_SETTINGS.min_intervals_for_prediction)
                 )
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
@@ -81,11 +90,11 @@ def refined_at_period(
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
-            if aim <= REFINEMENT.finest_accuracy or not orbit.symmetric:
+            if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.symmetric:
                 raise
-            aim = max(REFINEMENT.retry_accuracy_factor * aim, REFINEMENT.finest_accuracy)
+            aim = max(REFINEMENT_SETTINGS.retry_accuracy_factor * aim, REFINEMENT_SETTINGS.finest_accuracy)
             mesh = wanted_mesh(orbit, aim, orbit.stages)
-            if mesh.intervals * mesh.unknowns**3 > REFINEMENT.max_retry_work:
+            if mesh.intervals * mesh.unknowns**3 > REFINEMENT_SETTINGS.max_retry_work:
                 raise
             start = mesh.interpolate(orbit)
 
@@ -103,7 +112,7 @@ def _predicted_cycle(
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
     orbit, known = best = coarser.predicted(mesh)
-    for _ in range(REFINEMENT.max_meshes):
+    for _ in range(REFINEMENT_SETTINGS.max_meshes):
         error = known.errors(accuracy).largest
         if error < best[1].errors(accuracy).largest:
             best = orbit, known
@@ -113,7 +122,7 @@ def _predicted_cycle(
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, known.cheapest_mesh(accuracy))
-        last = REFINEMENT.max_error_increase * error
+        last = REFINEMENT_SETTINGS.max_error_increase * error
         if not mesh.allowed:
             break
         if not coarser.can_predict(mesh):
@@ -122,11 +131,11 @@ def _predicted_cycle(
     orbit, known = best
     found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
     if found.distance > max(
-        REFINEMENT.max_prediction_distance * accuracy, REFINEMENT.min_prediction_distance
+        REFINEMENT_SETTINGS.max_prediction_distance * accuracy, REFINEMENT_SETTINGS.min_prediction_distance
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return with_calibrated_errors(
-        known, at_orbit(found, min(accuracy, REFINEMENT.max_matrix_distance)), accuracy
+        known, at_orbit(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)), accuracy
     )
 
 
@@ -141,14 +150,14 @@ def calibrated_cycle(
     """
     best = None
     last = inf
-    for _ in range(REFINEMENT.max_meshes):
+    for _ in range(REFINEMENT_SETTINGS.max_meshes):
         before = measured_calibration(found, accuracy, before)
         cycle = with_calibrated_errors(before, found, accuracy)
         if best is None or cycle.errors.largest < best.errors.largest:
             best = cycle
         if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        last = REFINEMENT.max_error_increase * cycle.errors.largest
+        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest
         finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
         if not finer.allowed:
             break
@@ -163,14 +172,18 @@ def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str 
     multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
-    last = (newton_tolerance(accuracy) / ORBIT_NEWTON.quadratic_error) ** 0.5
+    last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error) ** 0.5
     solution = newton(mesh.interpolate(found.orbit), last, found.workspace)
     return newton_step(require_similar_size(solution, found.orbit.size), parameter)
 
 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
-    if not REFINEMENT.min_size_ratio * size < found.orbit.size < REFINEMENT.max_size_ratio * size:
+    if (
+        not REFINEMENT_SETTINGS.min_size_ratio * size
+        < found.orbit.size
+        < REFINEMENT_SETTINGS.max_size_ratio * size
+    ):
         raise Unsolvable("the orbit found by Newton's method is far larger or smaller than its start")
     return found
 
@@ -185,13 +198,15 @@ def refined_cycle(
     accuracy.
     """
     found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_divisor(found.path, MINIMAL_PERIOD.min_harmonic) > 1:
+    if common_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic) > 1:
         found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
     # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
     if found.stable is None:
         found = refined_at_period(
             found.orbit,
-            max(accuracy / REFINEMENT.undecided_accuracy_divisor, REFINEMENT.finest_accuracy),
+            max(
+                accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.finest_accuracy
+            ),
             workspace,
             parameter,
         )
@@ -200,13 +215,15 @@ def refined_cycle(
 
 def newton_tolerance(accuracy: float) -> float:
     """Relative tolerance of Newton's method for a cycle of a given relative accuracy."""
-    return max(REFINEMENT.newton_tolerance_share * accuracy, REFINEMENT.min_newton_tolerance)
+    return max(
+        REFINEMENT_SETTINGS.newton_tolerance_share * accuracy, REFINEMENT_SETTINGS.min_newton_tolerance
+    )
 
 
 def matrix_distance(accuracy: float) -> float:
     """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
     for multipliers and tangent of the relative accuracy `accuracy`."""
     return min(
-        max(REFINEMENT.matrix_distance_share * accuracy, REFINEMENT.min_matrix_distance),
-        REFINEMENT.max_matrix_distance,
+        max(REFINEMENT_SETTINGS.matrix_distance_share * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
+        REFINEMENT_SETTINGS.max_matrix_distance,
     )

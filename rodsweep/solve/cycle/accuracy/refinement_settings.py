@@ -65,4 +65,4 @@ class RefinementSettings:
     """Maximum number of meshes tried for one cycle."""
 
 
-REFINEMENT = RefinementSettings()
+REFINEMENT_SETTINGS = RefinementSettings()

@@ -39,7 +39,7 @@ class AmplitudeEquationSettings:
     fraction from the decay rate and the period of the leading mode."""
 
 
-AMPLITUDE_EQUATION = AmplitudeEquationSettings()
+AMPLITUDE_EQUATION_SETTINGS = AmplitudeEquationSettings()
 
 
 class AmplitudeEquation:
@@ -76,14 +76,14 @@ class AmplitudeEquation:
         states: (k, unknowns)."""
         return max(
             map(abs, self.growth(times, states))
-        ) <= AMPLITUDE_EQUATION.max_slow_growth and self._has_period_of_mode(times)
+        ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_as_linear(self, times: Array, states: Array) -> bool:
         """Whether a motion decays with the linear rate and the period of the leading mode. times: (k,);
         states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
-        margin = AMPLITUDE_EQUATION.linear_tolerance * abs(linear)
+        margin = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
         falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
         alike = bool(falls.all()) and abs(growth - linear) < margin
         # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
@@ -95,7 +95,7 @@ class AmplitudeEquation:
         cycle is near. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
         known = self.coefficient > 0 and self.is_slow_mode(times, states)
-        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION.max_slow_growth) + (
+        return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
             self.noise if known else 0
         )
 
@@ -113,30 +113,34 @@ class AmplitudeEquation:
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
         measured = (linear - growth) / size**2
         if abs(linear - growth) > self.noise * (
-            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION.min_significant_growth
+            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
         ):
             self.coefficient = measured
         coefficient = measured if isnan(self.coefficient) else self.coefficient
         if isnan(self.coefficient) and linear > 0:
-            factor = AMPLITUDE_EQUATION.max_jump_factor  # c is within the noise at this small amplitude
+            factor = (
+                AMPLITUDE_EQUATION_SETTINGS.max_jump_factor
+            )  # c is within the noise at this small amplitude
         elif linear > 0 and coefficient > 0:
             factor = float(
                 np.clip(
                     # The amplitude at which linear = c |z|^2.
                     np.sqrt(linear / coefficient) / size,
-                    1 / AMPLITUDE_EQUATION.max_jump_factor,
-                    AMPLITUDE_EQUATION.max_jump_factor,
+                    1 / AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
+                    AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
                 )
             )
         elif linear > 0 or (coefficient < 0 and growth > self.noise):
-            factor = 1 / AMPLITUDE_EQUATION.decay_factor  # the growth increases with the amplitude
+            factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decay_factor  # the growth increases with the amplitude
         elif coefficient > 0 or growth < -self.noise:
-            factor = AMPLITUDE_EQUATION.decay_factor
+            factor = AMPLITUDE_EQUATION_SETTINGS.decay_factor
         else:
             return None
-        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION.max_amplitude_distance else None
+        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.max_amplitude_distance else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
         """Whether the last return took as long as a period of the leading mode, within `linear_tolerance`.
         times: (k,)."""
-        return bool(abs((times[-1] - times[-2]) / self.period - 1) < AMPLITUDE_EQUATION.linear_tolerance)
+        return bool(
+            abs((times[-1] - times[-2]) / self.period - 1) < AMPLITUDE_EQUATION_SETTINGS.linear_tolerance
+        )

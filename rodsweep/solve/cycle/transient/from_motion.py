@@ -27,7 +27,7 @@ class NewtonFromMotionSettings:
     """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this."""
 
 
-FROM_MOTION = NewtonFromMotionSettings()
+NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()
 
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
@@ -41,16 +41,25 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
-    times = begin + period * np.arange(FROM_MOTION.peak_search_times) / FROM_MOTION.peak_search_times
+    times = (
+        begin
+        + period
+        * np.arange(NEWTON_FROM_MOTION_SETTINGS.peak_search_times)
+        / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
+    )
     whole = spline(times)
     top = float(times[int(np.argmax(beam.tip(whole)[1]))])
-    symmetry = REFLECTION if relative_asymmetry(beam, whole) < FROM_MOTION.max_asymmetry else NO_SYMMETRY
-    intervals = FROM_MOTION.intervals * turns // symmetry.parts
+    symmetry = (
+        REFLECTION
+        if relative_asymmetry(beam, whole) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
+        else NO_SYMMETRY
+    )
+    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals * turns // symmetry.parts
     duration = period / symmetry.parts
-    at = top + duration * node_times(intervals, FROM_MOTION.stages)
+    at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     at = np.where(at > run.times[-1], at - period, at)
     states = form_states(beam, form, spline(at))
-    return Orbit.of(form, symmetry, period, states, FROM_MOTION.stages)
+    return Orbit.of(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 
 def relative_asymmetry(beam: Beam, states: Array) -> float:

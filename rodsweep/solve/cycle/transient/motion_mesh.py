@@ -50,53 +50,58 @@ class MotionMeshSettings:
     1e-6 or less."""
 
 
-MOTION_MESH = MotionMeshSettings()
+MOTION_MESH_SETTINGS = MotionMeshSettings()
 
 
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
-    by_force = MOTION_MESH.waves_per_root_force * abs(rod.F) ** 0.5
+    by_force = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
     if not rod.standard:
-        modal = arm_mesh(rod, MOTION_MESH.expected_modes, accuracy)
+        modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         bent = arm_elements(rod, by_force, accuracy)
         finest = max(modal, bent, key=lambda each: each.nodes)
         return mesh_on(finest.edges, finest.order)
-    wave = max(expected_wave_number(MOTION_MESH.expected_modes, most_amplified_wave(rod)[1]), by_force)
+    wave = max(
+        expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), by_force
+    )
     resolution = resolution_for(wave, accuracy)
     return mesh(resolution.elements, resolution.order)
 
 
 def motion_meshes(rod: Rod) -> Iterator[Mesh]:
     """Yields the first mesh for the integration of the motion of `rod`, and then finer meshes."""
-    grid = motion_mesh(rod, MOTION_MESH.accuracy)
+    grid = motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy)
     yield grid
-    for _ in range(MOTION_MESH.max_refinements):
-        order = ceil(MOTION_MESH.refinement * grid.order)
+    for _ in range(MOTION_MESH_SETTINGS.max_refinements):
+        order = ceil(MOTION_MESH_SETTINGS.refinement * grid.order)
         edges = grid.edges
         if order > RESOLUTION_SETTINGS.max_order:
             edges = halve_elements(edges)
             order = ceil(order / 2)
         grid = mesh_on(edges, order)
-        if grid.nodes > MOTION_MESH.max_refined_nodes:
+        if grid.nodes > MOTION_MESH_SETTINGS.max_refined_nodes:
             return
         yield grid
 
 
 def coarse_mesh(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
-    wave_number = MOTION_MESH.waves_per_root_force * abs(rod.F) ** 0.5
+    wave_number = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
     if rod.standard:
-        return mesh(1, max(MOTION_MESH.min_order, int(MOTION_MESH.order_per_wave * wave_number)))
-    elements = arm_elements(rod, wave_number, MOTION_MESH.coarse_accuracy)
+        return mesh(
+            1, max(MOTION_MESH_SETTINGS.min_order, int(MOTION_MESH_SETTINGS.order_per_wave * wave_number))
+        )
+    elements = arm_elements(rod, wave_number, MOTION_MESH_SETTINGS.coarse_accuracy)
     return mesh_on(elements.edges, elements.order)
 
 
 def integrable_rod(rod: Rod) -> Rod:
-    """The rod with k1 and k2 of at most MOTION_MESH.max_stiffness and gamma3 of at least
-    MOTION_MESH.min_drag; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
+    """The rod with k1 and k2 of at most MOTION_MESH_SETTINGS.max_stiffness and gamma3 of at least
+    MOTION_MESH_SETTINGS.min_drag; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in
+    time."""
     return replace(
         rod,
-        k1=min(rod.k1, MOTION_MESH.max_stiffness),
-        k2=min(rod.k2, MOTION_MESH.max_stiffness),
-        gamma3=max(rod.gamma3, MOTION_MESH.min_drag),
+        k1=min(rod.k1, MOTION_MESH_SETTINGS.max_stiffness),
+        k2=min(rod.k2, MOTION_MESH_SETTINGS.max_stiffness),
+        gamma3=max(rod.gamma3, MOTION_MESH_SETTINGS.min_drag),
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...motion.time_scheme import TimeScheme
-from .amplitude_equation import AMPLITUDE_EQUATION
+from .amplitude_equation import AMPLITUDE_EQUATION_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,7 +82,7 @@ def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
         )
     first = (
         TIME_SCHEME_SETTINGS.fast_growth_scheme
-        if growth > AMPLITUDE_EQUATION.max_slow_growth
+        if growth > AMPLITUDE_EQUATION_SETTINGS.max_slow_growth
         else TIME_SCHEME_SETTINGS.default_scheme
     )
     return TransientSchemes(

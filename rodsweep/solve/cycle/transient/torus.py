@@ -6,7 +6,7 @@ curve by the same angle on average. The bending moments at the k-th return are t
 times this angle. The series is fitted to the earlier returns and must predict the later returns, which
 excludes growing, decaying and irregular motions. The earlier returns must fill the closed curve: a periodic
 motion that closes after several returns leaves gaps, as does a short motion. A motion that closes after
-`TORUS_TEST.min_returns_around` or more returns cannot be distinguished from a torus.
+`TORUS_TEST_SETTINGS.min_returns_around` or more returns cannot be distinguished from a torus.
 """
 
 from collections.abc import Iterator
@@ -53,7 +53,7 @@ class TorusTestSettings:
     difference is 0 at the torus point."""
 
 
-TORUS_TEST = TorusTestSettings()
+TORUS_TEST_SETTINGS = TorusTestSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,20 +72,23 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         return end
     # Only the last returns are stored, so some or all of the returns to skip may be missing already.
     skipped = max(
-        0, int(TORUS_TEST.skipped_fraction * transient.waited) - (transient.waited - len(transient.past))
+        0,
+        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.waited)
+        - (transient.waited - len(transient.past)),
     )
     past = list(transient.past)[skipped:]
-    if len(past) < 2 * TORUS_TEST.min_returns_around:
+    if len(past) < 2 * TORUS_TEST_SETTINGS.min_returns_around:
         return end
     times = np.array([time for time, _ in past])
     moments = np.array([moment for _, moment in past])
     for cycle in _unstable_cycles(transient):
         near = (
-            abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1) <= TORUS_TEST.max_period_difference
+            abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1)
+            <= TORUS_TEST_SETTINGS.max_period_difference
         )
         angle = unstable_pair_angle(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
-        if modulation and modulation.prediction_error <= TORUS_TEST.max_prediction_error:
+        if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
             message = (
                 f"the motion is modulated at {modulation.angle / (2 * np.pi):.3f} times the return rate; "
                 f"the cycle inside the torus has a multiplier of modulus {cycle.largest_multiplier:.3g}"
@@ -130,9 +133,12 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     later = returns[half:]
     best = fitted_angle(fitted, angle)
     size = float(np.linalg.norm(later - later.mean(axis=0)))
-    if size == 0 or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST.min_returns_around:
+    if (
+        size == 0
+        or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST_SETTINGS.min_returns_around
+    ):
         return None
-    basis = fourier_basis(best * numbers, TORUS_TEST.harmonics)
+    basis = fourier_basis(best * numbers, TORUS_TEST_SETTINGS.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], fitted, rcond=None)[0]
     return Modulation(best, float(np.linalg.norm(later - basis[half:] @ series)) / size)
@@ -151,12 +157,13 @@ def fitted_angle(returns: Array, angle: float) -> float:
 
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
     tried = np.linspace(
-        angle - TORUS_TEST.max_angle_difference,
-        angle + TORUS_TEST.max_angle_difference,
-        int(TORUS_TEST.trials_per_width * TORUS_TEST.max_angle_difference * len(returns)) + 1,
+        angle - TORUS_TEST_SETTINGS.max_angle_difference,
+        angle + TORUS_TEST_SETTINGS.max_angle_difference,
+        int(TORUS_TEST_SETTINGS.trials_per_width * TORUS_TEST_SETTINGS.max_angle_difference * len(returns))
+        + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
-    for harmonics in range(1, TORUS_TEST.harmonics + 1):
+    for harmonics in range(1, TORUS_TEST_SETTINGS.harmonics + 1):
         reach = np.pi / (len(returns) * harmonics)
         bounds = (best - reach, best + reach)
         found = minimize_scalar(
@@ -164,7 +171,7 @@ def fitted_angle(returns: Array, angle: float) -> float:
             bounds=bounds,
             args=(harmonics,),
             method="bounded",
-            options={"xatol": TORUS_TEST.angle_tolerance_share * reach},
+            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_share * reach},
         )
         best = float(found.x)
     return best

@@ -18,7 +18,7 @@ from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
 from ....watch import SolvePosition, report
 from ....wording import counted
-from ...motion.integrator import INTEGRATOR, RunEnding, Trajectory, integrator, relax_fast_components
+from ...motion.integrator import INTEGRATOR_SETTINGS, RunEnding, Trajectory, integrator, relax_fast_components
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import Unsolvable
@@ -181,7 +181,7 @@ class Transient:
         record of the motion, if any, begins at z."""
         after = relax_fast_components(self.beam, z, self.mode.period)
         if self.trace:
-            self.clock = INTEGRATOR.relaxation_share * self.mode.period
+            self.clock = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
             self.trace.begin(z, after, self.clock)
         return after
 

@@ -17,9 +17,9 @@ from ....determinant.arm.completeness import (
     proves_completeness,
     remainder_of_sum,
 )
-from ....determinant.arm.family import ARM_FAMILY, ArmFamily, propagators_at
+from ....determinant.arm.family import ARM_FAMILY_SETTINGS, ArmFamily, propagators_at
 from ....determinant.arm.hull.region import Hull, PathHulls, hull_at
-from ....determinant.arm.value import ARM_VALUE, chain_along, determinant_along_chain
+from ....determinant.arm.value import ARM_VALUE_SETTINGS, chain_along, determinant_along_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
@@ -44,7 +44,7 @@ variable p); both arrays: (elements, terms, PADDED)."""
 def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real."""
     D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
-    return newton_step(w, D, D_w, D_p, ARM_VALUE.root_noise * noise)
+    return newton_step(w, D, D_w, D_p, ARM_VALUE_SETTINGS.root_noise * noise)
 
 
 @compiled
@@ -104,8 +104,9 @@ def _correct_all(
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _settled(first, curvature_estimate(w, k), rank <= modes, level)
-            # Interpolation changes D as relative changes of w and p by `ARM_FAMILY.converged_tail` would.
-            error[k] += ARM_FAMILY.converged_tail * (abs(last.w) + abs(p * last.slope))
+            # Interpolation changes D as relative changes of w and p by `ARM_FAMILY_SETTINGS.converged_tail`
+            # would.
+            error[k] += ARM_FAMILY_SETTINGS.converged_tail * (abs(last.w) + abs(p * last.slope))
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)

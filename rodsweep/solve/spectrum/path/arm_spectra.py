@@ -12,7 +12,7 @@ from ....determinant.parameter_path import Path
 from ..spectrum import FollowedPoints, SpectrumRequest
 from .arm_count import count_at
 from .arm_stretch import ArmInterval, follow_interval
-from .arm_stretch_settings import ARM_STRETCH
+from .arm_stretch_settings import ARM_STRETCH_SETTINGS
 from .carried_arm_count import carry_counts
 from .carried_count import assess_points, leading_eigenvalues
 from .prediction import slice_track
@@ -24,7 +24,7 @@ def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
     found = follow_interval(path, p, request, counts_follow=True)
     if found is None:
         return None
-    if (found.proved_modes < request.modes).sum() >= ARM_STRETCH.min_unproved_points:
+    if (found.proved_modes < request.modes).sum() >= ARM_STRETCH_SETTINGS.min_unproved_points:
         found = _with_finer_hulls(path, found)
     carry_counts(path, found, request.modes)
     for i in np.flatnonzero(found.proved_modes < request.modes).tolist():
@@ -36,5 +36,5 @@ def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
 
 def _with_finer_hulls(path: Path, found: ArmInterval) -> ArmInterval:
     """The interval `found` with hulls at more arms, hence closer to the hull of each arm."""
-    places = np.linspace(found.family.low, found.family.high, ARM_STRETCH.hull_arms_for_unproved)
+    places = np.linspace(found.family.low, found.family.high, ARM_STRETCH_SETTINGS.hull_arms_for_unproved)
     return found._replace(hulls=hulls_along([path.rod_at(x) for x in places.tolist()], places))

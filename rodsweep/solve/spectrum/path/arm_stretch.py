@@ -32,7 +32,7 @@ from ..candidates import line_for_proof
 from ..search import Search
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
-from .arm_stretch_settings import ARM_STRETCH
+from .arm_stretch_settings import ARM_STRETCH_SETTINGS
 from .prediction import Track, slice_track, start_track
 
 
@@ -72,18 +72,24 @@ def follow_interval(
     """
     best: ArmInterval | None = None
     for further in (
-        number for number in ARM_STRETCH.further_modes if before is None or number >= before.further_modes
+        number
+        for number in ARM_STRETCH_SETTINGS.further_modes
+        if before is None or number >= before.further_modes
     ):
         if best is not None and not (
             _too_few(best) or (not counts_follow and _proves_more(path, best, request, further))
         ):
             break
-        found = _follow_with(path, p, request, further, before) if len(p) >= ARM_STRETCH.min_points else None
+        found = (
+            _follow_with(path, p, request, further, before)
+            if len(p) >= ARM_STRETCH_SETTINGS.min_points
+            else None
+        )
         if found is not None and (best is None or _is_better(found, best, request.modes)):
             best = found
         enough = best is not None and best.proved_points(
             request.modes
-        ) >= ARM_STRETCH.min_proved_fraction * len(best.p)
+        ) >= ARM_STRETCH_SETTINGS.min_proved_fraction * len(best.p)
         if best is not None and enough and not _too_few(best):
             break
     return best
@@ -92,7 +98,7 @@ def follow_interval(
 def _too_few(found: ArmInterval) -> bool:
     """Whether too few modes are followed to prove all growing modes complete at every point."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
-    return bool(growing + ARM_STRETCH.modes_beyond_growing > found.track.w.shape[1])
+    return bool(growing + ARM_STRETCH_SETTINGS.modes_beyond_growing > found.track.w.shape[1])
 
 
 def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
@@ -138,14 +144,17 @@ def _follow_with(
     if first is not None and before is not None:
         inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
         if (
-            inside >= ARM_STRETCH.min_points
-            and ARM_STRETCH.reused_headroom * np.abs(first).max() <= before.family.W
+            inside >= ARM_STRETCH_SETTINGS.min_points
+            and ARM_STRETCH_SETTINGS.reused_headroom * np.abs(first).max() <= before.family.W
         ):
             made = (before.family, before.hulls)
             n = inside
         else:
-            n = min(n, max(ARM_STRETCH.max_points_growth * len(before.p), ARM_STRETCH.min_points))
-    while first is not None and made is None and n >= ARM_STRETCH.min_points:
+            n = min(
+                n,
+                max(ARM_STRETCH_SETTINGS.max_points_growth * len(before.p), ARM_STRETCH_SETTINGS.min_points),
+            )
+    while first is not None and made is None and n >= ARM_STRETCH_SETTINGS.min_points:
         made = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
         n = n if made is not None else n // 2
@@ -176,17 +185,17 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     try:
         if not is_smooth(path, low, high):
             return None
-        places = np.linspace(low, high, ARM_STRETCH.hull_arms)
+        places = np.linspace(low, high, ARM_STRETCH_SETTINGS.hull_arms)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
-        W = ARM_STRETCH.headroom * float(np.abs(first).max())
-        line = min(ARM_STRETCH.headroom * float(first[modes - 1].real), 0.0)
+        W = ARM_STRETCH_SETTINGS.headroom * float(np.abs(first).max())
+        line = min(ARM_STRETCH_SETTINGS.headroom * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
             for k in COMPLETENESS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
-        near = [end for end in ends if end <= ARM_STRETCH.headroom * W]
+        near = [end for end in ends if end <= ARM_STRETCH_SETTINGS.headroom * W]
         family = interpolated_family(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None

@@ -43,4 +43,4 @@ class ArmStretchSettings:
     interpolated."""
 
 
-ARM_STRETCH = ArmStretchSettings()
+ARM_STRETCH_SETTINGS = ArmStretchSettings()

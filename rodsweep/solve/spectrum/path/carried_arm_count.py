@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
-from ....determinant.arm.count.settings import NO_CROSSING
+from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.parameter_path import Path
 from .arm_count import confirmed_line
 from .arm_stretch import ArmInterval
@@ -29,7 +29,7 @@ class CarriedArmCountSettings:
     grows, divided by |w|."""
 
 
-CARRIED_ARM_COUNT = CarriedArmCountSettings()
+CARRIED_ARM_COUNT_SETTINGS = CarriedArmCountSettings()
 
 
 class Eigenvalues(NamedTuple):
@@ -59,7 +59,7 @@ def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
     """
     w, error = leading_eigenvalues(found.track, found.track.w.shape[1])
     last = w[:, modes - 1]
-    lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT.line_distance * np.abs(last)
+    lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(last)
     followed = Eigenvalues(w, error, lines)
     # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
     left = np.flatnonzero((found.proved_modes < modes) & (w[:, -1].real <= 0))
@@ -67,7 +67,7 @@ def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
         first = int(run[0]) if len(run) else 0
         end = first + len(run)
         patience = 1
-        while end - first >= NO_CROSSING.arms:
+        while end - first >= NO_CROSSING_SETTINGS.arms:
             chain = _chain(path, found, followed, (first, end - 1), modes)
             if not chain.lines:
                 # Further points often fail, too, so every further failure skips twice as many points.
@@ -85,7 +85,7 @@ def _chain(path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[in
     """The longest chain of points found from the first to the last index in `ends`; without lines if no count
     can be carried from the first point."""
     here, last = ends
-    shortest = NO_CROSSING.arms - 1
+    shortest = NO_CROSSING_SETTINGS.arms - 1
     chain = Chain([here], [])
     counted = None
     ahead = last - here

@@ -38,7 +38,7 @@ class CarriedCountSettings(CompiledSettings):
     """No line is drawn in a gap whose relative half-width, as in `wide_gap`, is less than this."""
 
 
-CARRIED_COUNT = CarriedCountSettings()
+CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 
 
 @compiled
@@ -52,7 +52,7 @@ def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
-    return line, min((right - line) / -line, CARRIED_COUNT.wide_gap)
+    return line, min((right - line) / -line, CARRIED_COUNT_SETTINGS.wide_gap)
 
 
 @compiled
@@ -62,7 +62,7 @@ def widest_gap(track: Track, i: int, modes: int) -> int:
     The gap lies to the left of the leading `modes` and of the imaginary axis.
     """
     best = 0
-    widest = CARRIED_COUNT.min_gap
+    widest = CARRIED_COUNT_SETTINGS.min_gap
     for gap in range(modes, track.w.shape[1]):
         width = line_in_gap(track, i, gap)[1]
         if width >= widest:
@@ -99,7 +99,7 @@ def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p:
     The number is at least `modes` and at most `known`.
     """
     best = 0
-    widest = CARRIED_COUNT.min_gap
+    widest = CARRIED_COUNT_SETTINGS.min_gap
     for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
         here, wide = line_in_gap(track, ends[0], gap)
         there, wide_there = line_in_gap(track, ends[1], gap)
@@ -135,7 +135,9 @@ def carry_count(
         if gap > 0:
             first = _end(track, i, gap, p, coefficients)
             end = _end(track, j, gap, p, coefficients)
-            most = CARRIED_COUNT.base_rectangles + CARRIED_COUNT.rectangles_per_point * (j - i)
+            most = CARRIED_COUNT_SETTINGS.base_rectangles + CARRIED_COUNT_SETTINGS.rectangles_per_point * (
+                j - i
+            )
             proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
             # The number of eigenvalues to the right of this gap is proved, even if `known` was larger before.

@@ -14,7 +14,7 @@ from ..status import SpectrumStatus
 from .arm_count import count_at
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_stretch import ArmInterval, follow_interval
-from .arm_stretch_settings import ARM_STRETCH
+from .arm_stretch_settings import ARM_STRETCH_SETTINGS
 from .carried_count import assess_points, leading_eigenvalues
 from .prediction import KnownRoots, Track, slice_track, start_track
 
@@ -32,7 +32,7 @@ class FollowedArms:
         complete at each point.
         """
         self.path = path
-        self.request = SpectrumRequest(modes, ARM_STRETCH.accuracy, certify=True)
+        self.request = SpectrumRequest(modes, ARM_STRETCH_SETTINGS.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
         self._judged: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
@@ -101,7 +101,7 @@ class FollowedArms:
             growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
             # More modes may grow at p than at the nearest point.
             while requested < (
-                needed := min(max(modes, growing + ARM_STRETCH.modes_beyond_growing), followed)
+                needed := min(max(modes, growing + ARM_STRETCH_SETTINGS.modes_beyond_growing), followed)
             ):
                 requested = needed
                 here, known = self._from_nearest(one, p, requested)
@@ -125,7 +125,7 @@ class FollowedArms:
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
             return slice_track(one.track, i, i + 1), int(one.proved_modes[i])
-        for steps in ARM_STRETCH.steps_from_nearest:
+        for steps in ARM_STRETCH_SETTINGS.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)

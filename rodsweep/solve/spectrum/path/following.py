@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.exponents import ROUND_OFF
 from ....determinant.parameter_path import determinant_along
-from ....determinant.roots.newton import ROOT_NEWTON
+from ....determinant.roots.newton import ROOT_NEWTON_SETTINGS
 from ....determinant.roots.roots import sort_descending, two_roots
 from ....determinant.roots.settings import ROOT_SETTINGS
 from ....determinant.value import DETERMINANT_SETTINGS
@@ -123,7 +123,7 @@ def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalu
     w[k] = last.w
     slope[k] = last.slope
     if mate >= 0:
-        if not w[k].imag > ROOT_NEWTON.real_tolerance * abs(w[k]):
+        if not w[k].imag > ROOT_NEWTON_SETTINGS.real_tolerance * abs(w[k]):
             return False
         w[mate] = w[k].conjugate()
         slope[mate] = slope[k].conjugate()

@@ -31,7 +31,7 @@ class EigenvaluePredictionSettings(CompiledSettings):
     determinant D is evaluated to find whether the two eigenvalues are real or complex."""
 
 
-EIGENVALUE_PREDICTION = EigenvaluePredictionSettings()
+EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
 
 
 class Track(NamedTuple):
@@ -92,7 +92,7 @@ def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
     of p.
     """
     while True:
-        soonest = EIGENVALUE_PREDICTION.max_steps_to_meeting
+        soonest = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
         a = -1
         b = -1
         for k in range(len(w)):
@@ -159,7 +159,7 @@ def _predict_pair(
     else:
         middle = middle + m1 * steps[1]
         square = square + s1 * steps[1]
-    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION.undecided_fraction * abs(before):
+    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION_SETTINGS.undecided_fraction * abs(before):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
     return middle + root, middle - root, False

@@ -17,7 +17,7 @@ from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import deflection_of
-from ..point import SPECIAL_POINT
+from ..point import SPECIAL_POINT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,7 +155,7 @@ def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
         before = value
         value = function.value(orbit)
         change = abs(value - before)
-        if change <= SPECIAL_POINT.function_tolerance or (
+        if change <= SPECIAL_POINT_SETTINGS.function_tolerance or (
             change > last / 2 and change <= AUGMENTED_SETTINGS.rounding_correction
         ):
             return
@@ -174,5 +174,5 @@ def pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over the solved time interval of the orbit of `matrix`;
     None if all multipliers are real."""
     h = matrix.partial_multipliers
-    pairs = h[np.abs(h.imag) > SPECIAL_POINT.real_multiplier * np.abs(h)]
+    pairs = h[np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

@@ -6,7 +6,7 @@ from typing import Protocol
 from .....arrays import Array
 from .....watch import report
 from ....orbit.matrix.workspace import NewtonWorkspace
-from ....orbit.newton import ORBIT_NEWTON, relative_change
+from ....orbit.newton import ORBIT_NEWTON_SETTINGS, relative_change
 from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
@@ -104,7 +104,7 @@ class NearbyCycleSolver:
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-        if not change <= ORBIT_NEWTON.longest_step:
+        if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
             raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
         self.distance += change
         return moved_orbit(orbit, self.scale.name, step), change
