@@ -117,11 +117,11 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         coarse = fine
         fine = normal_form_on(more, rod, w, accuracy)
         change = abs(fine.c - coarse.c) / abs(fine.c)
-        rounding = _rounding(fine)
+        rounding = _landau_rounding_error(fine)
         if change <= max(accuracy, rounding):
             break
     # The slope of the root of D has no error of a mesh.
-    slope, bend = _slope(rod, w)
+    slope, bend = _eigenvalue_derivatives(rod, w)
     if rod.standard:
         off = abs(fine.slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
@@ -132,10 +132,12 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     moved = HOPF_COEFFICIENT_SETTINGS.sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
-    return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
+    return _coefficients_with_errors(
+        replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
+    )
 
 
-def _with_errors(
+def _coefficients_with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
     """The coefficients of `normal`, with errors from three relative errors: `landau_error` of c,
@@ -164,7 +166,7 @@ def _with_errors(
     )
 
 
-def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
+def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
     step = HOPF_COEFFICIENT_SETTINGS.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
@@ -173,7 +175,7 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
     return complex(slope), abs(slope - before) / step
 
 
-def _rounding(normal: NormalForm) -> float:
+def _landau_rounding_error(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
     sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
     return HOPF_COEFFICIENT_SETTINGS.rounding * sizes / abs(normal.w)

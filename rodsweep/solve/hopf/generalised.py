@@ -68,19 +68,19 @@ class CurveCriticality:
     """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve.
 
     criticality: sign of Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,).
-    points: generalised Hopf points. unlocated: number of sign changes without a located point.
+    points: generalised Hopf points. unlocated_count: number of sign changes without a located point.
     """
 
     criticality: Array
     points: tuple[GeneralisedHopfPoint, ...]
-    unlocated: int
+    unlocated_count: int
 
 
 @dataclass(frozen=True, slots=True)
 class _HopfNormalForm:
     """A Hopf point in the plane of two parameters, with its normal form coefficients."""
 
-    there: BoundarySolution
+    boundary_point: BoundarySolution
     coefficients: HopfCoefficients
 
     @property
@@ -184,7 +184,7 @@ class HopfCurve:
         after: index of the curve's stored point before this point. moved: position error along the chord,
         (3,).
         """
-        there = here.there
+        there = here.boundary_point
         axes = self.boundary.plane.axes
         tangent = there.tangent
         # The error along the curve is the error along the chord over the cosine of their angle.

@@ -56,10 +56,13 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
-    nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
-    for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
+    above = [one for one in crossings if one.at > rod.F]
+    below = [one for one in crossings if one.at <= rod.F]
+    nearest = above[:1] + below[-1:]
+    for hopf in sorted(nearest, key=lambda one: abs(one.at - rod.F)):
         found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF.accuracy)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
+        # A positive criticality means subcritical.
         if found.criticality > 0 and y <= SUBCRITICAL_HOPF.largest_y:
             return SubcriticalHopf(hopf.at, y)
     return None

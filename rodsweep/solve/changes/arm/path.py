@@ -144,7 +144,7 @@ class ArmPath(PathProblem):
             error_estimate=earlier.error_estimate[: request.modes],
         )
 
-    def counted_amid(self, low: float, high: float) -> int | None:
+    def known_count_amid(self, low: float, high: float) -> int | None:
         places = [p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.amid * (high - low)]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._counts[nearest]
@@ -153,7 +153,7 @@ class ArmPath(PathProblem):
         known = self._followed.slope(guess, p) if self._followed is not None else None
         return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
-    def double(self, x: float, p: float, reach: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         return self._along.double_eigenvalue(x, p, reach)
 
     def count(self, line: float, p: float) -> EigenvalueCount:
