@@ -21,15 +21,15 @@ from .path import ArmPath
 class ArmCrossingSettings:
     """Settings of the search for crossings along a path of arms."""
 
-    beyond_the_list: float = 2.0
-    smallest_first: float = 1e-3
+    full_list_ratio: float = 2.0
+    min_halved_interval: float = 1e-3
     """An interval is halved before its search if the number of pairs expected to grow at its right end
-    exceeds `beyond_the_list` times the maximum number of crossings, unless the interval is shorter than
-    `smallest_first` times the path."""
-    most_at_once: int = 6
+    exceeds `full_list_ratio` times the maximum number of crossings, unless the interval is shorter than
+    `min_halved_interval` times the path."""
+    max_pairs_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
-    higher: float = 4.0
+    max_frequency_ratio: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest known
     |w|."""
     same_errors: float = 10.0
@@ -103,10 +103,10 @@ class CrossingSearch:
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
         """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
         likely to be full before b, where a count is expensive. length: length of the path."""
-        if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSINGS.smallest_first * length:
+        if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSINGS.min_halved_interval * length:
             return False
         expected = self.problem.expected_growing(b)
-        return self.axis_modes.has_many_modes(b) and expected > ARM_CROSSINGS.beyond_the_list * 2 * most
+        return self.axis_modes.has_many_modes(b) and expected > ARM_CROSSINGS.full_list_ratio * 2 * most
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
@@ -151,7 +151,7 @@ class CrossingSearch:
         """
         parts: list[tuple[float, float]] = []
         start = left.p
-        highest = ARM_CROSSINGS.higher * max(left.largest_modulus, right.largest_modulus)
+        highest = ARM_CROSSINGS.max_frequency_ratio * max(left.largest_modulus, right.largest_modulus)
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.at)
             before = max(start, p - ARM_CROSSINGS.count_distance * length)
@@ -178,7 +178,7 @@ class CrossingSearch:
         change = (right.unstable - left.unstable) // 2
         many = self.axis_modes.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
-        if abs(change) > (ARM_CROSSINGS.most_at_once if many else 1):
+        if abs(change) > (ARM_CROSSINGS.max_pairs_at_once if many else 1):
             return []
         if many:
             self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))

@@ -42,13 +42,13 @@ class ArmPathSettings:
     spare_pair: int = 2
     """Number of modes solved for in addition to the requested modes, if more than `followed_modes` modes are
     requested."""
-    most_growing: float = 16.0
+    max_growing_modes: float = 16.0
     """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
     followed."""
     headroom: float = 4.0
     """Largest |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
-    amid: float = 0.25
+    max_count_offset: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
     the middle is less than this fraction of the interval's length."""
 
@@ -77,7 +77,11 @@ class ArmPath(PathProblem):
     def _family(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
         made = next((one for one in self._families if one.low <= p <= one.high), None)
-        if made is None and self._followed is not None and self.expected_growing(p) <= ARM_PATH.most_growing:
+        if (
+            made is None
+            and self._followed is not None
+            and self.expected_growing(p) <= ARM_PATH.max_growing_modes
+        ):
             return self._followed.family(p)
         return made
 
@@ -106,7 +110,7 @@ class ArmPath(PathProblem):
 
     def followed(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
-        if self._followed is None or self.expected_growing(p) > ARM_PATH.most_growing:
+        if self._followed is None or self.expected_growing(p) > ARM_PATH.max_growing_modes:
             return None
         found = self._followed.spectrum(p, modes)
         if found is not None:
@@ -145,7 +149,9 @@ class ArmPath(PathProblem):
         )
 
     def known_count_amid(self, low: float, high: float) -> int | None:
-        places = [p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.amid * (high - low)]
+        places = [
+            p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH.max_count_offset * (high - low)
+        ]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._counts[nearest]
 

@@ -34,7 +34,7 @@ class BoundaryAssignmentSettings:
     |eigenvalue|) are closer than this, because curves do not cross."""
     change_distance: float = 1e-7
     """A threshold closer to a curve than this lies on the curve; both axes have length 1."""
-    beside: float = 0.1
+    chord_overhang: float = 0.1
     """A chord of a curve is searched for a threshold only if the threshold lies at most this far beyond the
     chord's ends along the first axis, which has length 1; continuation steps are shorter than this."""
 
@@ -132,7 +132,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
         a = points[i]
         b = points[i + 1]
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
-        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.beside:
+        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.chord_overhang:
             continue
         there = _point_at_height(Boundary(plane, curve.sign), a, b, y)
         if (

@@ -145,8 +145,12 @@ def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint,
 def _tangent_error(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
     if not boundary.plane.standard:
-        return BOUNDARY_CURVE_SETTINGS.arm_tangent
-    return BOUNDARY_CURVE_SETTINGS.double_tangent if boundary.sign else BOUNDARY_CURVE_SETTINGS.hopf_tangent
+        return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
+    return (
+        BOUNDARY_CURVE_SETTINGS.double_tangent_error
+        if boundary.sign
+        else BOUNDARY_CURVE_SETTINGS.hopf_tangent_error
+    )
 
 
 def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
