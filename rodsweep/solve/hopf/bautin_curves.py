@@ -96,7 +96,7 @@ class BautinSpace:
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
-        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF.coarsest))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF.coarsest_accuracy))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
@@ -145,7 +145,7 @@ class BautinSpace:
 
     def margins(self, point: _CurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
-        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.on_edge
+        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.edge_tolerance
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
@@ -208,10 +208,10 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
 
 
 def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether `point`, at a requested third parameter, equals a point of `curve` (`BAUTIN.same_point`)."""
+    """Whether `point`, at a requested third parameter, equals a point of `curve`."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
-    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point for other in others)
+    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
 
 
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
@@ -243,7 +243,7 @@ def _requested_points_between(space: BautinSpace, here: _CurvePoint, there: _Cur
     inner = [z for z in map(space.axes[2].coordinate, space.requested_values) if min(a, b) < z < max(a, b)]
     found = []
     for z in sorted(inner, reverse=bool(a > b)):
-        if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point:
+        if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:
             guess = here.v + (z - a) / (b - a) * (there.v - here.v)
             guess[2] = z
             found.append(space.solve_point(guess, 2))

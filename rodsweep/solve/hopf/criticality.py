@@ -119,7 +119,7 @@ def warm_up() -> None:
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
-@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.searches_kept)
+@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
 def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
     return pair_crossings(path, 0.0, end, certify, most)
 

@@ -28,7 +28,7 @@ from .coefficient_errors import HopfCoefficients, hopf_coefficients
 class GeneralisedHopfSettings:
     """Settings for the location of generalised Hopf points on a Hopf curve."""
 
-    coarsest: float = 1e-10
+    coarsest_accuracy: float = 1e-10
     """Coarsest relative accuracy of c for locating generalised Hopf points, whose relative accuracy is
     1e-9."""
     first_sign_accuracy: float = 1e-5
@@ -92,10 +92,12 @@ class _HopfNormalForm:
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
     """The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
 
-    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF.coarsest` if larger. If the normal form
-    fails at a point, the sign is NaN at this point only.
+    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF.coarsest_accuracy` if larger. If the normal
+    form fails at a point, the sign is NaN at this point only.
     """
-    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF.coarsest))
+    hopf = HopfCurve(
+        Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF.coarsest_accuracy)
+    )
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points = []
     unlocated = 0

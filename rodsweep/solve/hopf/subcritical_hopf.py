@@ -18,12 +18,12 @@ from .coefficient_errors import hopf_coefficients
 class SubcriticalHopfSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
-    farthest_force: float = 1.5
-    """Hopf points are searched at forces from F/`farthest_force` to F times `farthest_force`, where F is the
-    force of the rod."""
+    max_force_ratio: float = 1.5
+    """Hopf points are searched at forces from F/`max_force_ratio` to F times `max_force_ratio`, where F is
+    the force of the rod."""
     accuracy: float = 1e-3
     """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
-    largest_y: float = 0.5
+    max_unstable_y: float = 0.5
     """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this number: the
     normal form is too inaccurate."""
 
@@ -48,11 +48,11 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     the force is not positive.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
-    y of the unstable cycle is at most `SUBCRITICAL_HOPF.largest_y`. The straight rod must be stable. Raises
-    Unsolvable if the search for Hopf points or a coefficient fails.
+    y of the unstable cycle is at most `SUBCRITICAL_HOPF.max_unstable_y`. The straight rod must be stable.
+    Raises Unsolvable if the search for Hopf points or a coefficient fails.
     """
-    low = rod.F / SUBCRITICAL_HOPF.farthest_force
-    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF.farthest_force)
+    low = rod.F / SUBCRITICAL_HOPF.max_force_ratio
+    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF.max_force_ratio)
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
@@ -63,6 +63,6 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
         found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF.accuracy)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
         # A positive criticality means subcritical.
-        if found.criticality > 0 and y <= SUBCRITICAL_HOPF.largest_y:
+        if found.criticality > 0 and y <= SUBCRITICAL_HOPF.max_unstable_y:
             return SubcriticalHopf(hopf.at, y)
     return None
