@@ -47,7 +47,7 @@ from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
-from rodsweep.solve.changes.diagram.boundary_curves import trace
+from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.by_integration import solve_by_integration
@@ -159,12 +159,12 @@ def hopf_curve() -> tuple[Plane, Any]:
     axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
     plane = Plane(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), axes)
     start = tuple(axis.coordinate(value) for axis, value in zip(axes, GENERALISED_HOPF_AT[:2], strict=True))
-    return plane, trace(0.0, plane, start, GENERALISED_HOPF_AT[2])
+    return plane, trace_boundary(0.0, plane, start, GENERALISED_HOPF_AT[2])
 
 
 def generalised_hopf(accuracy: float) -> Answer:
     found = curve_criticality(*hopf_curve(), accuracy)
-    if found.unlocated or len(found.points) != 1:
+    if found.unlocated_count or len(found.points) != 1:
         return None
     (point,) = found.points
     return {name: (point.values[i], point.errors[i]) for i, name in enumerate(("F", "k1"))}

@@ -22,14 +22,14 @@ def blas() -> str:
     for library in threadpool_info():
         if library["user_api"] == "blas":
             words = (library["internal_api"], library["version"], library.get("architecture"))
-            found[_owner(library["filepath"])].add(" ".join(str(word) for word in words if word))
+            found[_package_of_library(library["filepath"])].add(" ".join(str(word) for word in words if word))
     petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
         return petscs or UNKNOWN_LIBRARY
     return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
 
 
-def _owner(path: str) -> str:
+def _package_of_library(path: str) -> str:
     """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a library of the
     system)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}

@@ -54,16 +54,17 @@ class ArcPoint:
 
     cycle: RefinedCycle
     derivatives: BranchDerivatives
-    length: float
+    next_arc_length: float
     """Arc length of the step to the next cycle."""
     calibration: BranchCalibration
     """Errors of the mesh, measured or interpolated at this cycle, or measured at an earlier cycle; the errors
     of this cycle are estimated from these errors."""
-    unmeasured: int = 0
+    steps_since_measured: int = 0
     """Number of steps since the last cycle with measured errors; 0 if the errors of this cycle are measured
     or interpolated."""
     arc_since_measured: float = 0.0
-    """Arc length of the branch since the last cycle with measured errors; 0 if `unmeasured` is 0."""
+    """Arc length of the branch since the last cycle with measured errors; 0 if `steps_since_measured` is
+    0."""
     before: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
 
@@ -78,9 +79,9 @@ class ArcPoint:
         return self.derivatives.tangent
 
     @property
-    def ahead(self) -> Array:
+    def unit_tangent(self) -> Array:
         """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
-        return self.derivatives.ahead
+        return self.derivatives.unit_tangent
 
     @property
     def orbit(self) -> Orbit:
@@ -117,7 +118,7 @@ class ArcPoint:
 
     def condition(self, length: float) -> BorderCondition:
         """The condition that the next cycle has the arc length `length` from this cycle."""
-        return BorderCondition.at_arc_length(self.scale, self.ahead, self.orbit, length)
+        return BorderCondition.at_arc_length(self.scale, self.unit_tangent, self.orbit, length)
 
     def predicted(self, length: float) -> Orbit:
         """Predicted orbit at the arc length `length` ahead, on the cubic through this cycle and the previous
@@ -137,8 +138,8 @@ class ArcPoint:
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
-        step = float(self.ahead @ (self.scale.components(self.orbit) - self.scale.components(last)))
-        rate = float(self.ahead @ self.scale.directional_derivative(last, slope))
+        step = float(self.unit_tangent @ (self.scale.components(self.orbit) - self.scale.components(last)))
+        rate = float(self.unit_tangent @ self.scale.directional_derivative(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
@@ -173,9 +174,11 @@ def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) 
 def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
     """The next cycle of a branch after `start`, to a relative accuracy; raises Unsolvable if the shortest
     step fails."""
-    end, length = advance(partial(_step_to_length, start, accuracy), start.length, ARC_STEPS)
+    end, length = advance(partial(_step_to_length, start, accuracy), start.next_arc_length, ARC_STEPS)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
-    return replace(end.solution, length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order))
+    return replace(
+        end.solution, next_arc_length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order)
+    )
 
 
 def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
@@ -198,9 +201,9 @@ def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResu
         off = (
             ARC_STEPS.target_error
         )  # the error of the tangent predictor does not predict the error of the cubic
-    tangent = tangent_at(found.orbit, start.scale, start.ahead, bordered_matrix_of(found))
+    tangent = tangent_at(found.orbit, start.scale, start.unit_tangent, bordered_matrix_of(found))
     cosine = float(
-        start.scale.directional_derivative(found.orbit, tangent) @ start.ahead
+        start.scale.directional_derivative(found.orbit, tangent) @ start.unit_tangent
     )  # both have unit length
     return StepResult(
         cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy), off, cosine
@@ -209,7 +212,9 @@ def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResu
 
 def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
     """Arc length from the cycle `start` to the cycle `end`, measured along the tangent at `start`."""
-    return float(start.ahead @ (start.scale.components(end.orbit) - start.scale.components(start.orbit)))
+    return float(
+        start.unit_tangent @ (start.scale.components(end.orbit) - start.scale.components(start.orbit))
+    )
 
 
 def cycle_with_calibrated_errors(
@@ -228,9 +233,9 @@ def cycle_with_calibrated_errors(
     return ArcPoint(
         cycle=cycle,
         derivatives=replace(derivatives, curvature=curvature, multiplier_rate=changed),
-        length=ahead,
+        next_arc_length=ahead,
         calibration=start.calibration,
-        unmeasured=start.unmeasured + 1,
+        steps_since_measured=start.steps_since_measured + 1,
         arc_since_measured=start.arc_since_measured + length,
         before=PreviousCycle(start.orbit, start.tangent),
     )

@@ -39,7 +39,7 @@ class BranchPoint:
         cycle = point.cycle
         sizes = np.abs(cycle.multipliers)
         beyond = sizes - 1
-        undecided = bool((np.abs(beyond) <= _margin(point)).any())
+        undecided = bool((np.abs(beyond) <= _multiplier_modulus_error(point)).any())
         return cls(
             at=getattr(point.orbit.form.rod, point.scale.name),
             at_error=point.calibration.parameter_error(accuracy),
@@ -56,7 +56,7 @@ class BranchPoint:
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
-def _margin(point: ArcPoint) -> float:
+def _multiplier_modulus_error(point: ArcPoint) -> float:
     """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle

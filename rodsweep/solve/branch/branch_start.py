@@ -169,13 +169,13 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
         for share in BRANCH_START_SETTINGS.first_amplitudes:
             amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_share * a)
             try:
-                return _cycle_of(hopf, amplitude, aim, finer, accuracy, workspace)
+                return _cycle_of_amplitude(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
                 why = error
     raise Unsolvable(f"no cycle is found near the Hopf point: {why}") from why
 
 
-def _cycle_of(
+def _cycle_of_amplitude(
     hopf: HopfBranchStart,
     amplitude: float,
     aim: float,

@@ -108,7 +108,7 @@ def solve_branches(
     memory = workspace or NewtonWorkspace()
     try:
         return outcome_or_failure(
-            lambda: _solve(rod, request, memory),
+            lambda: _solve_or_raise(rod, request, memory),
             lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
         )
     finally:
@@ -123,8 +123,8 @@ def warm_up() -> None:
     )
 
 
-def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
-    low, high, crushed = _range(rod, request)
+def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
+    low, high, crushed = _uncrushed_range(rod, request)
     if not low < high:
         why = "the force crushes the rod everywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
@@ -143,7 +143,7 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
         ends = ends[::-1]
         reasons = reasons[::-1]
     limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
-    curves = _followed(limits, request.along)
+    curves = _follow_all_branches(limits, request.along)
     status, message = _status_and_message(found, curves, failures, request)
     return BranchesOfRod(
         status=status,
@@ -155,7 +155,7 @@ def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> Bran
     )
 
 
-def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
+def _uncrushed_range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     """(smallest and largest value of the parameter in the requested range without crushing, index of the
     range end at which the rod is crushed: 0, 1, or -1 if the rod is crushed at neither end)."""
     low = request.start
@@ -186,7 +186,7 @@ def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
     return high
 
 
-def _followed(limits: BranchLimits, name: str) -> list[BranchCurve]:
+def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
     """Branches from all Hopf points, then from all symmetry breakings. A branch between two Hopf points, or
     between two symmetry breakings, is followed only once. name: continuation parameter."""
     curves: list[BranchCurve] = []
@@ -247,4 +247,4 @@ def _status_and_message(
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
-    return status, "; ".join(filter(None, [*failures, *messages, found.why_not]))
+    return status, "; ".join(filter(None, [*failures, *messages, found.doubts]))

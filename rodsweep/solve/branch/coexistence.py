@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.rod import Rod
 from ...wording import counted
-from ..changes.diagram.rows import DiagramRow, Motion, RowRequest, solve_row
+from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, solve_row
 from ..changes.thresholds import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..status import PointStatus
@@ -23,7 +23,7 @@ from .branches import BRANCH_SETTINGS, BranchesOfRod, BranchRequest, BranchStatu
 from .special.point import EndReason, SpecialPoint
 
 
-def _shared_status(status: ThresholdStatus) -> tuple[int, str, bool]:
+def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:
     """(value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` with the same
     name is made."""
     return int(status), status.sentence, status.succeeded
@@ -33,13 +33,13 @@ class CoexistenceStatus(PointStatus):
     """Outcome of a row with cycles: the status of the search for thresholds of the straight rod if this
     search has a problem, otherwise the status of the branches."""
 
-    ok = _shared_status(ThresholdStatus.ok)
-    not_certified = _shared_status(ThresholdStatus.not_certified)
-    window_open = _shared_status(ThresholdStatus.window_open)
-    accuracy_not_reached = _shared_status(ThresholdStatus.accuracy_not_reached)
-    list_full = _shared_status(ThresholdStatus.list_full)
-    failed = _shared_status(ThresholdStatus.failed)
-    ended_early = _shared_status(ThresholdStatus.ended_early)
+    ok = _status_as_in_thresholds(ThresholdStatus.ok)
+    not_certified = _status_as_in_thresholds(ThresholdStatus.not_certified)
+    window_open = _status_as_in_thresholds(ThresholdStatus.window_open)
+    accuracy_not_reached = _status_as_in_thresholds(ThresholdStatus.accuracy_not_reached)
+    list_full = _status_as_in_thresholds(ThresholdStatus.list_full)
+    failed = _status_as_in_thresholds(ThresholdStatus.failed)
+    ended_early = _status_as_in_thresholds(ThresholdStatus.ended_early)
     branches_stopped = (
         6,
         "the thresholds of the straight rod are found, but a branch of cycles is incomplete or a Hopf point "
@@ -100,15 +100,15 @@ def solve_coexistence(
     forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
-    states = stable_states(row.motion, cycles)
-    undecided = request.values[(states == StableStates.undecided) & (row.motion != Motion.undecided)]
-    status, message = _judged(row, branches, special, undecided)
+    states = stable_states(row.rod_class, cycles)
+    undecided = request.values[(states == StableStates.undecided) & (row.rod_class != RodClass.undecided)]
+    status, message = _status_and_message_of_row(row, branches, special, undecided)
     return CoexistenceRow(
         row=row,
         stable_states=states,
         special=special_points_of(branches),
         status=status,
-        message="; ".join(filter(None, [message, _undecided(request.name, undecided)])),
+        message="; ".join(filter(None, [message, _undecided_values_text(request.name, undecided)])),
         seconds=row.seconds + branches.seconds,
     )
 
@@ -135,7 +135,7 @@ def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
     return tuple(point for curve in branches.curves for point in curve.special)
 
 
-def _undecided(name: str, values: Array) -> str:
+def _undecided_values_text(name: str, values: Array) -> str:
     """Message about the `values` of the parameter `name`, (n,), at which the stable states are undecided
     because of the cycles; empty for n = 0."""
     if not len(values):
@@ -144,7 +144,7 @@ def _undecided(name: str, values: Array) -> str:
     return f"the stable states are undecided at {count} of {name}, from {values[0]:.9g} to {values[-1]:.9g}"
 
 
-def _judged(
+def _status_and_message_of_row(
     row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
     """(status, message) of a row: status of the search for thresholds if this search has a problem,
@@ -223,13 +223,13 @@ def _end_error_sign(point: SpecialPoint) -> int:
 def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
     """`StableStates` at each parameter value, (values,).
 
-    motion: `Motion` of the straight rod, (values,). cycles: existence of a stable cycle as in
+    motion: `RodClass` of the straight rod, (values,). cycles: existence of a stable cycle as in
     `stable_cycles_at`, (values,).
     """
-    straight = (motion == Motion.monotone) | (motion == Motion.oscillatory)
+    straight = (motion == RodClass.monotone) | (motion == RodClass.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.
     states[cycles > 0] += StableStates.cycle
-    states[(cycles < 0) | (motion == Motion.undecided)] = StableStates.undecided
-    states[motion == Motion.crushed] = StableStates.crushed
+    states[(cycles < 0) | (motion == RodClass.undecided)] = StableStates.undecided
+    states[motion == RodClass.crushed] = StableStates.crushed
     return states

@@ -65,7 +65,7 @@ class BranchDerivatives:
     tangent: Array
     """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
     coordinate."""
-    ahead: Array
+    unit_tangent: Array
     """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
     curvature: float
     """Second derivative of the scaled parameter coordinate with respect to arc length."""
@@ -75,7 +75,7 @@ class BranchDerivatives:
     @property
     def parameter_slope(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length; 0 at a fold."""
-        return float(self.ahead[2])
+        return float(self.unit_tangent[2])
 
     def arc_length_for_change(self, off: float) -> float:
         """Arc length over which the scaled parameter coordinate changes by `off`. Near a fold the parameter
@@ -123,11 +123,11 @@ class BranchCalibration:
         return self._limiting.errors(accuracy).largest
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh expected to reach a relative accuracy of the cycle."""
+        """The cheapest mesh for a relative accuracy of the cycle; the next finer mesh if none suffices."""
         return self._limiting.cheapest_mesh(accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh expected to reach a relative accuracy of the parameter at equal deflection."""
+        """Like `cheapest_mesh`, for a relative accuracy of the parameter at equal deflection."""
         return self._parameter_only.cheapest_mesh(accuracy)
 
     @cached_property
@@ -156,9 +156,9 @@ class BranchCalibration:
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. share: fraction of the arc length from the first measured cycle
         to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the interpolated
-        cycle. See `_interpolated` for the formula."""
+        cycle. See `_interpolated_errors` for the formula."""
         mean = [
-            _interpolated(one, another, share)
+            _interpolated_errors(one, another, share)
             for one, another in (
                 (self.at_parameter.space, other.at_parameter.space),
                 (self.at_parameter.time, other.at_parameter.time),
@@ -169,7 +169,7 @@ class BranchCalibration:
         return BranchCalibration(known, mean[2], sensitivity)
 
 
-def _interpolated(one: Array, other: Array, share: float) -> Array:
+def _interpolated_errors(one: Array, other: Array, share: float) -> Array:
     """Geometric interpolation between the errors `one` and `other`, arrays of equal shape, at the fraction
     `share` of the distance from `one`; times `interpolation_factor`, but at most the larger of the two
     errors."""
@@ -190,7 +190,7 @@ def measured_errors(
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
-    condition = BorderCondition.at_arc_length(derivatives.scale, derivatives.ahead, orbit)
+    condition = BorderCondition.at_arc_length(derivatives.scale, derivatives.unit_tangent, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
@@ -201,14 +201,14 @@ def measured_errors(
             BRANCH_ERROR_SETTINGS.newton_tolerance_share * accuracy,
             FINER_MESH_SETTINGS.matrix_distance,
         )
-        part[:] = _difference(rough, multipliers, fine, derivatives)
+        part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
     return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, derivatives))
 
 
-def _difference(
+def _differences_between_meshes(
     rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
 ) -> Array:
     """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five,
@@ -226,10 +226,10 @@ def _difference(
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
         length * derivatives.multiplier_rate
     )
-    by_deflection = abs(derivatives.ahead[0])
+    by_deflection = abs(derivatives.unit_tangent[0])
     by_parameter = abs(derivatives.parameter_slope)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(off * derivatives.ahead[0] - deflection * derivatives.parameter_slope)
+    apart = abs(off * derivatives.unit_tangent[0] - deflection * derivatives.parameter_slope)
     own = apart / max(by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_share * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 

@@ -82,7 +82,7 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
     except Unsolvable as why:
         curve.end(BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False))
         return curve
-    outside = _passed_range_end(start, limits)
+    outside = _index_of_passed_range_end(start, limits)
     if outside >= 0:
         curve.end(BranchEnd(_end_without_cycle(curve, limits.reasons[outside]), complete=True))
         return curve
@@ -94,17 +94,17 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
     trail = BranchRecord(curve, limits.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
-        report(partial(_place_on, curve, going, limits))
+        report(partial(_branch_progress, curve, going, limits))
         going = _append_next_cycle(trail, going, limits)
     trail.end(going)
     return curve
 
 
-def _place_on(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
+def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
     name = start.scale.name
     # The end of the range towards which the parameter moves at present.
-    aim = limits.ends[1 if start.ahead[-1] > 0 else 0]
+    aim = limits.ends[1 if start.unit_tangent[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.coordinate)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
@@ -127,7 +127,7 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
     )
 
 
-def _passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
+def _index_of_passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
     """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
     low, high = limits.ends
     if point.coordinate < low:
@@ -147,11 +147,11 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
-        outside = _passed_range_end(end, limits)
+        outside = _index_of_passed_range_end(end, limits)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
-        if range_end is not None and _hides_corner(start, end):
+        if range_end is not None and _step_hides_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
@@ -187,7 +187,7 @@ def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
-def _hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
+def _step_hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
     """Whether the largest tip y has a corner on the last step, and the step is too long for a figure of the
     corner.
 
@@ -216,11 +216,11 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
             raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
-        return replace(start, length=shorter)
+        return replace(start, next_arc_length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    share = start.deflection / (2 * start.ahead[0] * start.scale.deflection_unit)
+    share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     at = start.coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
@@ -241,7 +241,7 @@ def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> Ar
     near), or `start` with half the step, if `start` is too asymmetric to extrapolate. Raises Unsolvable."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
-        return replace(start, length=arc_length_between(start, end) / 2)
+        return replace(start, next_arc_length=arc_length_between(start, end) / 2)
     if which >= 0:
         breaking = limits.breakings[which]
         special = replace(breaking.point, message="", orbit=None)

@@ -71,7 +71,10 @@ def first_measured_cycle(
     cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
     return solve_on_sufficient_mesh(
         ArcPoint(
-            cycle=cycle, derivatives=derivatives, length=ARC_STEPS.first_length, calibration=calibration
+            cycle=cycle,
+            derivatives=derivatives,
+            next_arc_length=ARC_STEPS.first_length,
+            calibration=calibration,
         ),
         accuracy,
     )
@@ -82,7 +85,7 @@ def measurement_due(point: ArcPoint) -> bool:
     errors have grown too much since that cycle."""
     growth = float(point.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max())
     return (
-        point.unmeasured >= BRANCH_MESH_SETTINGS.max_unmeasured
+        point.steps_since_measured >= BRANCH_MESH_SETTINGS.max_unmeasured
         or growth > BRANCH_MESH_SETTINGS.remeasure_growth
     )
 
@@ -100,7 +103,9 @@ def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: 
     """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
     interpolated at this cycle. In the result the number of unmeasured steps is 0."""
     cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
-    return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, arc_since_measured=0.0)
+    return replace(
+        point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
+    )
 
 
 def solve_on_sufficient_mesh(
@@ -112,7 +117,7 @@ def solve_on_sufficient_mesh(
     condition = condition or point.condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
-        if point.unmeasured:
+        if point.steps_since_measured:
             point = with_measured_errors(point, accuracy)
         known = point.calibration
         enough = known.largest(accuracy) <= accuracy
@@ -136,7 +141,7 @@ def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition,
     found = condition.on_mesh(
         mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy)
     )
-    tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered_matrix_of(found))
+    tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))
     known = point.derivatives
     derivatives = replace(
         branch_derivatives(found, point.scale, tangent),
@@ -147,7 +152,7 @@ def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition,
         point,
         cycle=with_calibrated_errors(point.calibration.at_parameter, found, accuracy),
         derivatives=derivatives,
-        unmeasured=1,
+        steps_since_measured=1,
     )
 
 
@@ -165,28 +170,28 @@ def with_errors_in_accuracy(
     whole = end.arc_since_measured
     end = with_measured_errors(end, accuracy)
     known = [
-        _with_errors_between(last, point, end, point.arc_since_measured / whole, accuracy)
+        _with_interpolated_errors(last, point, end, point.arc_since_measured / whole, accuracy)
         for point in between
     ]
     # Only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
     again = [
-        point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
+        point if point.calibration.largest(accuracy) <= accuracy else _cycle_on_mesh_of(end, point, accuracy)
         for point in known
     ]
     return [*again, end]
 
 
-def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
+def _cycle_on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
     sufficient mesh if these errors are too large; raises Unsolvable."""
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
     # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
-    solved = _with_errors_between(end, solved, end, 1.0, accuracy)
+    solved = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
     return solve_on_sufficient_mesh(solved, accuracy)
 
 
-def _with_errors_between(
+def _with_interpolated_errors(
     last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float
 ) -> ArcPoint:
     """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the

@@ -37,5 +37,5 @@ def cycle_at_range_end(
     tolerance = newton_tolerance(accuracy)
     predicted = segment.predicted(length)
     found = range_end.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
-    tangent = tangent_at(found.orbit, scale, start.ahead, bordered_matrix_of(found))
+    tangent = tangent_at(found.orbit, scale, start.unit_tangent, bordered_matrix_of(found))
     return cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)

@@ -126,10 +126,10 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
 def asymmetry(orbit: Orbit) -> Array:
     """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
     for a symmetric orbit."""
-    return _moments(orbit.start, orbit) + _moments(orbit.states_at(np.array([0.5]))[0], orbit)
+    return _bending_moments(orbit.start, orbit) + _bending_moments(orbit.states_at(np.array([0.5]))[0], orbit)
 
 
-def _moments(states: Array, orbit: Orbit) -> Array:
+def _bending_moments(states: Array, orbit: Orbit) -> Array:
     """Bending moments, (..., nodes), of states, (..., n), at the nodes of an orbit's mesh."""
     return orbit.form.layout.field(states, "m3")
 
@@ -153,13 +153,13 @@ def first_asymmetric_cycle(
             # The two signs give mirror images. The cycle with the larger y is followed, so that the result
             # does not depend on the sign of the null vector.
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
-            return _first_cycle(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
+            return _first_cycle_near(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
 
 
-def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
+def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
 
     whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
@@ -196,14 +196,14 @@ def reaches_symmetric_cycle(
     return (
         start.parameter_rate * end.parameter_rate < 0
         and _nearly_symmetric(start)
-        and _nearest(start, known, accuracy) >= 0
+        and _nearest_symmetry_breaking(start, known, accuracy) >= 0
     )
 
 
 def _relative_asymmetry(start: ArcPoint) -> float:
     """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
-    return float(np.abs(asymmetry(orbit)).max() / np.abs(_moments(orbit.points, orbit)).max())
+    return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.points, orbit)).max())
 
 
 def _nearly_symmetric(start: ArcPoint) -> bool:
@@ -216,7 +216,7 @@ def symmetry_breaking_between(
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
     does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
     needed. Raises Unsolvable if no shorter step is allowed."""
-    which = _nearest(start, known, accuracy) if _nearly_symmetric(start) else -1
+    which = _nearest_symmetry_breaking(start, known, accuracy) if _nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
         return which
     if arc_length_between(start, end) / 2 < ARC_STEPS.min_length:
@@ -224,7 +224,7 @@ def symmetry_breaking_between(
     return None
 
 
-def _nearest(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
+def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
     """Index of the symmetry breaking in `known` with the parameter and period at which the extrapolated
     asymmetry of the branch vanishes; -1 if no symmetry breaking in `known` agrees within the tolerances."""
     orbit = start.orbit

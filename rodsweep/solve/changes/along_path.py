@@ -45,7 +45,7 @@ class Transitions:
     searched: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
-    """Whether the searched interval is shorter than the requested interval; the reason is in `why_not`."""
+    """Whether the searched interval is shorter than the requested interval; the reason is in `doubts`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
     """Smallest interval that contains all possible further crossings; (nan, nan) without such crossings."""
     unstable_at_start: int = -1
@@ -59,7 +59,7 @@ class Transitions:
     """Number of evaluations of the determinant D in the covering."""
     solves: int = 0
     """Number of solved eigenvalue problems."""
-    why_not: str = ""
+    doubts: str = ""
     """Reasons why the list is not proved or the search ended early."""
 
     @property
@@ -71,28 +71,28 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. reach: end of the search. boxes: number of evaluations of the determinant D in the covering."""
+    crossings. end: end of the search. boxes: number of evaluations of the determinant D in the covering."""
 
     path: Path
     crossings: list[Crossing]
     gaps: list[tuple[float, float]]
-    reach: SearchEnd
+    end: SearchEnd
     boxes: int = 0
 
     def up_to(self, reach: SearchEnd) -> "AxisCrossings":
         """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
         end."""
-        if reach.p == self.reach.p:
+        if reach.p == self.end.p:
             return self
         crossings = [c for c in self.crossings if self.path.coordinate(c.at) <= reach.p]
         gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= reach.p]
-        return replace(self, crossings=crossings, gaps=gaps, reach=reach)
+        return replace(self, crossings=crossings, gaps=gaps, end=reach)
 
-    def searched(self, start: float, stop: float) -> tuple[float, float]:
+    def searched_interval(self, start: float, stop: float) -> tuple[float, float]:
         """The searched part (low, high) of the requested parameter interval from `start` to `stop`."""
-        if not self.reach.reason:
+        if not self.end.reason:
             return start, stop
-        end = self.path.parameter.value(self.reach.p)
+        end = self.path.parameter.value(self.end.p)
         return (end, stop) if self.path.is_compliance else (start, end)
 
 
@@ -112,15 +112,15 @@ def transitions(
     edges = problem.edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
-        changes, reach = tracer.changes([*(p for p in edges if p < found.reach.p), found.reach.p])
+        changes, reach = tracer.changes([*(p for p in edges if p < found.end.p), found.end.p])
         found = found.up_to(reach) if reach.reason else found
-        ends = found.searched(start, stop)
+        ends = found.searched_interval(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
         oscillates = tracer.anchor(path.coordinate(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.at)
-        crossings, at_end = counts.along(ordered, ends, unstable)
+        crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
         missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
         if not missed:
             break
@@ -128,10 +128,10 @@ def transitions(
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
         counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
-    if certify and not tracer.proved:
+    if certify and not tracer.leaders_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _counted(counts, unstable, crossings, at_end)
-    counted = _with_range(counted, found, (start, stop))
+    counted = _with_searched(counted, found, (start, stop))
     return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
 
 
@@ -148,11 +148,11 @@ def pair_crossings(
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
     counts = ModeCounter(problem, found.gaps, certify)
-    ends = found.searched(start, stop)
+    ends = found.searched_interval(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
-    crossings, at_end = counts.along(ordered, ends, unstable)
-    return _with_range(_counted(counts, unstable, crossings, at_end), found, (start, stop))
+    crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
+    return _with_searched(_counted(counts, unstable, crossings, at_end), found, (start, stop))
 
 
 def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
@@ -161,26 +161,26 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
-        open_range=_range_of(counts.gaps),
+        open_range=_hull_of_gaps(counts.gaps),
         unstable_at_start=unstable,
         unstable_at_end=at_end,
         proved=counts.certify and not counts.gaps and not counts.doubts and known,
-        why_not="; ".join(counts.doubts),
+        doubts="; ".join(counts.doubts),
     )
 
 
-def _with_range(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
+def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
-    searched = found.searched(*asked)
-    reason = found.reach.reason
-    end = found.path.parameter.value(found.reach.p)
+    searched = found.searched_interval(*asked)
+    reason = found.end.reason
+    end = found.path.parameter.value(found.end.p)
     early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
     return replace(
         counted,
         searched=searched,
         ended_early=bool(reason),
         boxes=found.boxes,
-        why_not="; ".join(filter(None, (early, counted.why_not))),
+        doubts="; ".join(filter(None, (early, counted.doubts))),
     )
 
 
@@ -188,7 +188,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
     """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, which
     `certify` proves. most: number of crossings after which the search of a nonuniform arm ends."""
     if not isinstance(problem, ArmPath):
-        return _covered(problem.path, *ends)
+        return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
     found, reach = search.crossings(problem.edges(*ends), most)
     value = problem.path.parameter.value
@@ -196,18 +196,18 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
     return AxisCrossings(problem.path, found, gaps, reach)
 
 
-def _covered(path: Path, low: float, high: float) -> AxisCrossings:
+def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings:
     """Crossings between the path variables `low` and `high`, by the covering; Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
     zeros, left, examined = cover_with_boxes(boxes, path.origin, path.direction)
     within = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
-    hopfs = [_hopf(path, zero) for zero in within]
-    return AxisCrossings(path, hopfs, _gaps(path, left), SearchEnd(high), examined)
+    hopfs = [_hopf_crossing(path, zero) for zero in within]
+    return AxisCrossings(path, hopfs, _undecided_intervals(path, left), SearchEnd(high), examined)
 
 
-def _range_of(gaps: list[tuple[float, float]]) -> tuple[float, float]:
+def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
     """The smallest interval that contains all `gaps`; (nan, nan) if there are no gaps."""
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
@@ -228,7 +228,7 @@ def _pairs_missed_as_leaders(
     return missed
 
 
-def _hopf(path: Path, zero: LocatedZero) -> Crossing:
+def _hopf_crossing(path: Path, zero: LocatedZero) -> Crossing:
     """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
@@ -239,7 +239,7 @@ def _hopf(path: Path, zero: LocatedZero) -> Crossing:
     return Crossing(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
 
-def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
+def _undecided_intervals(path: Path, left: list[Box]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter covered by the undecided boxes `left`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in left):

@@ -85,7 +85,7 @@ class Tracer:
         self.path = problem.path
         self.certify = certify
         self.anchors: dict[float, Anchor] = {}
-        self.proved = certify
+        self.leaders_proved = certify
         """Whether all anchors are certified, no undecided interval is left, and counts prove at each exchange
         that no further eigenvalue lies to the right."""
 
@@ -100,7 +100,7 @@ class Tracer:
         request = SpectrumRequest(ANCHOR_MODES, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
-        self.proved &= found.certified or found.status == SpectrumStatus.undecided
+        self.leaders_proved &= found.certified or found.status == SpectrumStatus.undecided
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
@@ -128,7 +128,7 @@ class Tracer:
                 found += self._search(a, b, intervals)
             except Unsolvable as why:
                 intervals.end_within((a, b), str(why))
-        return found, intervals.reach
+        return found, intervals.end
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
         """The exchange between the anchors at a and b, in a list; an empty list if there is no exchange, or
@@ -148,10 +148,10 @@ class Tracer:
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
-                self.proved = False
+                self.leaders_proved = False
                 return []
         else:
-            change = self._between(left, right)
+            change = self._exchange_between(left, right)
             if change is not None:
                 return [change]
             if b - a <= LEADING_EIGENVALUE_SETTINGS.smallest_step * max(abs(a), abs(b)):
@@ -163,7 +163,7 @@ class Tracer:
         intervals.divide((a, middle), (middle, b))
         return []
 
-    def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
+    def _exchange_between(self, left: Anchor, right: Anchor) -> Crossing | None:
         """The exchange between an anchor with a leading pair and an anchor with a real leading eigenvalue.
         None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
@@ -174,7 +174,7 @@ class Tracer:
         else:
             double = ChangeKind.real_again
             single = ChangeKind.real_leads
-        for find, kind, meeting in ((self._double, double, 2), (self._overtaking, single, 3)):
+        for find, kind, meeting in ((self._double_eigenvalue, double, 2), (self._overtaking, single, 3)):
             found = find(pair, real)
             if found is None or not left.p <= found.p <= right.p:
                 continue
@@ -184,12 +184,12 @@ class Tracer:
             # A different count means that other eigenvalues lead; an undecided count leaves the exchange
             # unproved.
             if count.number in (meeting, None):
-                self.proved = self.proved and count.number == meeting
+                self.leaders_proved = self.leaders_proved and count.number == meeting
                 at, error = self.path.value(found.p, found.error)
                 return Crossing(at, kind, found.frequency, found.growth_rate, error)
         return None
 
-    def _double(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
+    def _double_eigenvalue(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
         """The double eigenvalue between an anchor `pair` with a leading pair and an anchor `real` with two
         real leading eigenvalues; None if Newton's method does not find it.
         """
@@ -202,7 +202,7 @@ class Tracer:
         share = above[0] / (above[0] - below[0])
         p = real.p + share * (pair.p - real.p)
         x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
-        x, p, _, error = self.problem.double(x, p, width)
+        x, p, _, error = self.problem.double_eigenvalue(x, p, width)
         return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
     def _overtaking(self, pair: Anchor, real: Anchor) -> LeaderExchange | None:
@@ -214,8 +214,8 @@ class Tracer:
         p = (pair.p + real.p) / 2
         ends = sorted((pair.p, real.p))
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
-        w_real = self._carried(complex(real.w[0]), real.p, p)
-        w_pair = self._carried(complex(pair.w[0]), pair.p, p)
+        w_real = self._follow_eigenvalue(complex(real.w[0]), real.p, p)
+        w_pair = self._follow_eigenvalue(complex(pair.w[0]), pair.p, p)
         for _ in range(LEADING_EIGENVALUE_SETTINGS.max_overtaking_steps):
             w_real, s_real, e_real = self.problem.eigenvalue(w_real, p)
             w_pair, s_pair, e_pair = self.problem.eigenvalue(w_pair, p)
@@ -236,7 +236,7 @@ class Tracer:
                 w_real = complex(w_real.real, 0.0)
         return None
 
-    def _carried(self, w: complex, start: float, stop: float) -> complex:
+    def _follow_eigenvalue(self, w: complex, start: float, stop: float) -> complex:
         """The eigenvalue at p = `stop` that continues the eigenvalue w at p = `start`, followed in small
         steps by Newton's method on D."""
         p = start

@@ -37,7 +37,7 @@ class PathProblem(ABC):
         """Returns (eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
 
     @abstractmethod
-    def double(self, x: float, p: float, reach: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         """The double real eigenvalue near w = x at a path variable within `reach` of p; its path variable is
         nan if no double eigenvalue is found."""
 
@@ -45,7 +45,7 @@ class PathProblem(ABC):
     def count(self, line: float, p: float) -> EigenvalueCount:
         """Number of eigenvalues with Re w > `line` of the rod at p."""
 
-    def counted_amid(self, low: float, high: float) -> int | None:
+    def known_count_amid(self, low: float, high: float) -> int | None:
         """Number of unstable modes already proved at a path variable near the middle between `low` and
         `high`; None if no such number is known.
         """
@@ -68,7 +68,7 @@ class UniformPath(PathProblem):
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         return eigenvalue_newton(guess, coefficients, self.path.direction)
 
-    def double(self, x: float, p: float, reach: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         return double_newton(x, p, self.path.origin, self.path.direction, reach)
 
     def count(self, line: float, p: float) -> EigenvalueCount:

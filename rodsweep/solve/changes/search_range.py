@@ -34,14 +34,14 @@ class SearchEnd(NamedTuple):
 class SearchedIntervals:
     """Queue of the intervals of the path variable that are still to be searched, leftmost first.
 
-    reach: end of the search. When the queue is empty, the range from the first of `edges` to `reach.p` has
+    end: end of the search. When the queue is empty, the range from the first of `edges` to `end.p` has
     been searched.
     """
 
     def __init__(self, edges: list[float]):
         self.first = edges[0]
         self.length = edges[-1] - edges[0]
-        self.reach = SearchEnd(edges[-1])
+        self.end = SearchEnd(edges[-1])
         self._left = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
         self._unsolvable = edges[-1]
         self._halvings = 0
@@ -50,16 +50,16 @@ class SearchedIntervals:
         """Yields the intervals of the queue; raises Unsolvable if no interval could be searched."""
         while True:
             # The left part of an interval whose search failed can often be searched.
-            if not self._left and self.reach.reason and self._halvings < SEARCH_RANGE_SETTINGS.last_halvings:
+            if not self._left and self.end.reason and self._halvings < SEARCH_RANGE_SETTINGS.last_halvings:
                 self._halvings += 1
-                middle = (self.reach.p + self._unsolvable) / 2
-                self._left.append((self.reach.p, middle))
-                self.reach = SearchEnd(middle, self.reach.reason)
+                middle = (self.end.p + self._unsolvable) / 2
+                self._left.append((self.end.p, middle))
+                self.end = SearchEnd(middle, self.end.reason)
             if not self._left:
                 break
             yield self._left.pop()
-        if self.reach.reason and self.reach.p <= self.first:
-            raise Unsolvable(self.reach.reason)
+        if self.end.reason and self.end.p <= self.first:
+            raise Unsolvable(self.end.reason)
 
     def divide(self, *intervals: tuple[float, float]) -> None:
         """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
@@ -70,11 +70,11 @@ class SearchedIntervals:
         ends."""
         self._left.clear()
         self._halvings = SEARCH_RANGE_SETTINGS.last_halvings
-        self.reach = SearchEnd(p, reason)
+        self.end = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
         """Ends the search at the start of the present `interval`, whose search failed; `__iter__` may still
         yield its left half. reason: why the search failed."""
         self._left.clear()
         self._unsolvable = interval[1]
-        self.reach = SearchEnd(interval[0], reason)
+        self.end = SearchEnd(interval[0], reason)

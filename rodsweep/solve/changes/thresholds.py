@@ -107,7 +107,7 @@ def thresholds_with_status(found: Transitions, accuracy: float, certify: bool, m
         status = ThresholdStatus.accuracy_not_reached
     elif certify and not found.proved:
         status = ThresholdStatus.not_certified
-    return Thresholds(status=status, transitions=found, end=found.searched[1], message=found.why_not)
+    return Thresholds(status=status, transitions=found, end=found.searched[1], message=found.doubts)
 
 
 @cache

@@ -113,7 +113,7 @@ class ModeCounter:
     def count_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, known already or by
         the winding number; -1 if the count is undecided at all positions tried."""
-        known = self.problem.counted_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
+        known = self.problem.known_count_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
         if known is not None:
             return known
         for share in UNSTABLE_MODE_COUNT_SETTINGS.places:
@@ -129,7 +129,7 @@ class ModeCounter:
         until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, until)
 
-    def along(
+    def crossings_with_counts(
         self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
     ) -> tuple[tuple[Crossing, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
@@ -144,16 +144,16 @@ class ModeCounter:
         for crossing in ordered:
             kind = crossing.kind
             if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
-                unstable = self._between(start, crossing.at, unstable)
+                unstable = self._count_before(start, crossing.at, unstable)
                 start = crossing.at
                 if unstable >= 0:
                     unstable += 2 if kind == ChangeKind.hopf else -2
                 if kind == ChangeKind.hopf_reverse and unstable == 0:
                     kind = ChangeKind.restabilization
             out.append(replace(crossing, kind=kind, unstable_after=unstable))
-        return tuple(out), self._between(start, ends[1], unstable)
+        return tuple(out), self._count_before(start, ends[1], unstable)
 
-    def _between(self, a: float, b: float, unstable: int) -> int:
+    def _count_before(self, a: float, b: float, unstable: int) -> int:
         """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count
         between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and b, the
         result is the number counted behind the gap, or -1 if undecided."""

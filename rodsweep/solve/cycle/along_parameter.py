@@ -170,12 +170,12 @@ def orbit_near_prediction(
     relative tolerance; raises Unsolvable if the orbit is farther from `predicted` than
     CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
-    if _distance(predicted, found) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
+    if _prediction_error(predicted, found) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its prediction")
     return found
 
 
-def _distance(predicted: Orbit, found: ConvergedOrbit) -> float:
+def _prediction_error(predicted: Orbit, found: ConvergedOrbit) -> float:
     """Relative distance of a solved orbit from its prediction."""
     return relative_change(predicted, found.orbit.values - predicted.values)
 
@@ -199,7 +199,7 @@ def orbit_in_steps(
         between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
         predicted = predictor.at(between, name)
         found = orbit_near_prediction(predicted, tolerance, workspace, name)
-        return StepResult(found, _distance(predicted, found), 1.0)
+        return StepResult(found, _prediction_error(predicted, found), 1.0)
 
     for _ in range(PARAMETER_STEPS.max_solutions):
         try:

@@ -87,7 +87,7 @@ class _MarchedMotion:
         self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
-        self.waited = 0
+        self.returns = 0
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
@@ -95,12 +95,12 @@ class _MarchedMotion:
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
             z = relax_fast_components(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
-            settled = self._settled(z)
+            settled = self._integrate_until_settled(z)
             path = self._path(settled)
             in_limit = self.rod != self.limit
             enough = self.request.accuracy * (MARCHING.pair_error_share_in_limit if in_limit else 1.0)
             for _ in range(MARCHING.max_comparisons):
-                settled = self._refined(settled)
+                settled = self._settled_on_finer_mesh(settled)
                 before = path
                 path = self._path(settled)
                 errors = errors_of_pair(before, path, MARCHING.settled_distance * self.request.accuracy)
@@ -109,22 +109,22 @@ class _MarchedMotion:
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
         except _NoCycle as end:
-            return replace(straight, status=end.status, message=end.message, periods=self.waited)
-        return self._measured(straight, path, errors)
+            return replace(straight, status=end.status, message=end.message, periods=self.returns)
+        return self._with_measures(straight, path, errors)
 
     def _beam(self) -> Beam:
         return Beam(self.rod, self.mesh)
 
-    def _refined(self, settled: _SettledMotion) -> _SettledMotion:
+    def _settled_on_finer_mesh(self, settled: _SettledMotion) -> _SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
         self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
         self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
         self.beam = self._beam()
         z = self.beam.state_of_stresses(before.stresses_on(self.beam.mesh, settled.z))
-        return self._settled(relax_fast_components(self.beam, z, self.mode.period))
+        return self._integrate_until_settled(relax_fast_components(self.beam, z, self.mode.period))
 
-    def _settled(self, z: Array) -> _SettledMotion:
+    def _integrate_until_settled(self, z: Array) -> _SettledMotion:
         """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
@@ -132,8 +132,8 @@ class _MarchedMotion:
         last = nan
         rate = 0.0
         most = self.request.most_periods
-        while self.waited < most:
-            report(lambda: SolvePosition(f"{self.waited} of at most {most} returns of the tip"))
+        while self.returns < most:
+            report(lambda: SolvePosition(f"{self.returns} of at most {most} returns of the tip"))
             run = self._run(
                 z,
                 MARCHING.max_run_duration * MARCHING.returns_per_test * self.mode.period,
@@ -145,7 +145,7 @@ class _MarchedMotion:
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
-            self.waited += max(len(states), 1)
+            self.returns += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING.returns_per_test:
@@ -161,7 +161,7 @@ class _MarchedMotion:
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
                 return _SettledMotion(z, turns, step)
-        raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.waited, len(past), last))
+        raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.returns, len(past), last))
 
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -169,7 +169,7 @@ class _MarchedMotion:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises _NoCycle
         if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
-        if end := early_end(self.beam, run, self.waited):
+        if end := early_end(self.beam, run, self.returns):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
             raise _NoCycle(status, end.message)
         return run
@@ -203,7 +203,7 @@ class _MarchedMotion:
         )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
-            raise _NoCycle(MarchedStatus.not_settled, f"the tip stops returning after {self.waited} returns")
+            raise _NoCycle(MarchedStatus.not_settled, f"the tip stops returning after {self.returns} returns")
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
         states = spline(
@@ -227,7 +227,7 @@ class _MarchedMotion:
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relax_fast_components(self.beam, settled.z, self.mode.period)
-        more = errors_of_pair(path, self._path(self._settled(z)), 0.0)
+        more = errors_of_pair(path, self._path(self._integrate_until_settled(z)), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,
             errors.amplitude_error + more.amplitude_error,
@@ -235,7 +235,7 @@ class _MarchedMotion:
             nan,
         )
 
-    def _measured(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
+    def _with_measures(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
         """The outcome `straight` with the status, measures and errors of the settled cycle of `path`."""
         enough = errors.largest <= self.request.accuracy
         cycle = replace(
@@ -244,6 +244,6 @@ class _MarchedMotion:
             message=""
             if enough
             else f"the cycle's errors, up to {errors.largest:.1e}, exceed the requested accuracy",
-            periods=self.waited,
+            periods=self.returns,
         )
         return with_measures(cycle, self.request, path, measures_of(path), errors)

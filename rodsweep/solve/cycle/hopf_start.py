@@ -105,13 +105,13 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
         lower = F * (1 - HOPF_START.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
-            return _crossing(rod, (lower, below), (F, above))
+            return _hopf_point_between(rod, (lower, below), (F, above))
         F = lower
         above = below
     return None
 
 
-def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> HopfPointBelow:
+def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> HopfPointBelow:
     """The Hopf point between `low` and `high`, (force, leading eigenvalue) each; raises Unsolvable.
 
     Newton's method on the characteristic determinant, started by linear interpolation, finds a candidate. If
@@ -121,7 +121,7 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     (a, below), (b, above) = low, high
     while b - a > HOPF_START.hopf_tolerance * b:
         share = below.real / (below.real - above.real)
-        found = _on_the_axis(problem, a + share * (b - a), below + share * (above - below), (a, b))
+        found = _newton_hopf_point(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
             # The eigenvalue on the axis must lead; otherwise another mode is already unstable.
             w = leading_eigenvalue(replace(rod, F=found.F))
@@ -139,7 +139,7 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     raise Unsolvable(f"the mode that becomes unstable at F = {a:g} does not oscillate there")
 
 
-def _on_the_axis(
+def _newton_hopf_point(
     problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]
 ) -> HopfPointBelow | None:
     """The Hopf point with a force between `ends`, by Newton's method from the force `F` and the eigenvalue

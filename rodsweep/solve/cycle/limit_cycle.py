@@ -78,13 +78,13 @@ def solve_cycle(
 
     def solve() -> Cycle:
         stability = straight_rod(rod, start.eigenvalues if start else None)
-        cycle = _solve(rod, request, stability, start, along, memory)
+        cycle = _solve_or_raise(rod, request, stability, start, along, memory)
         return _with_second_state(rod, _checked_by_spectrum(cycle, stability), stability)
 
     return outcome_or_failure(solve, failed)
 
 
-def _solve(
+def _solve_or_raise(
     rod: Rod,
     request: CycleRequest,
     stability: StraightRod,
@@ -95,7 +95,7 @@ def _solve(
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
     if request.start == "hopf":
-        return _from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
+        return _cycle_from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
     found = None
     if neighbour is not None and along is not None:
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
@@ -104,7 +104,7 @@ def _solve(
     elif neighbour is None and not request.is_traced:
         found = stable_cycle_near_hopf(_form_of_motion(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
-        cycle = _with_numbers(replace(straight, status=CycleStatus.cycle), found, request)
+        cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), found, request)
         return _with_chain_state(cycle, found, neighbour, along, request.accuracy, stability)
     by_mode = neighbour is None and request.tip is None
     decays = reason_for_decay(rod, w, request.amplitude) if by_mode else ""
@@ -114,16 +114,16 @@ def _solve(
     for mesh in motion_meshes(rod):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
         transient = Transient(StressForm(rod, mesh), stability, request, along, unstable, workspace)
-        end = _from_motion(transient, request, neighbour)
-        if not transient.unsolved:
+        end = _cycle_from_motion(transient, request, neighbour)
+        if not transient.unsolved_message:
             break
-    cycle = _after_motion(straight, transient, end, request)
+    cycle = _with_motion_data(straight, transient, end, request)
     if decays:
         return replace(cycle, message=decays)
     cycle = replace(cycle, status=end.status, message=end.message)
     if end.cycle is None:
         return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
-    cycle = _with_numbers(cycle, end.cycle, request)
+    cycle = _with_cycle_quantities(cycle, end.cycle, request)
     return _with_chain_state(cycle, end.cycle, None, along, request.accuracy, stability)
 
 
@@ -132,7 +132,7 @@ def _form_of_motion(rod: Rod) -> StressForm:
     return StressForm(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy))
 
 
-def _after_motion(
+def _with_motion_data(
     straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
     """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of the
@@ -144,13 +144,13 @@ def _after_motion(
         elements=transient.form.mesh.elements,
         order=transient.form.mesh.order,
         transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
-        motion=_motion(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
+        motion=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
     )
 
 
-def _motion(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
+def _recorded_shapes(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
     """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
-    returns = [time for time, _ in transient.past]
+    returns = [time for time, _ in transient.past_returns]
     return trace.motion(returns, transient.mode.period, request.frames, request.nodes)
 
 
@@ -188,7 +188,7 @@ def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
 
-def _from_hopf(
+def _cycle_from_hopf(
     form: StressForm,
     request: CycleRequest,
     straight: Cycle,
@@ -209,10 +209,10 @@ def _from_hopf(
     except Unsolvable as why:
         return replace(straight, status=CycleStatus.not_settled, message=str(why))
     status, message = found.verdict(request.accuracy)
-    return _with_numbers(replace(straight, status=status, message=message), found, request)
+    return _with_cycle_quantities(replace(straight, status=status, message=message), found, request)
 
 
-def _from_motion(
+def _cycle_from_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
@@ -228,7 +228,7 @@ def _from_motion(
     return classify_quasiperiodic(transient.follow(start), transient)
 
 
-def _with_numbers(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
+def _with_cycle_quantities(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
     """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
     `found`."""
     cycle = with_measures(cycle, request, found.path, found.measures, found.errors)

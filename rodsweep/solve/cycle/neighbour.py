@@ -87,7 +87,7 @@ class Neighbour:
         the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as in
         `Neighbour`."""
         branch = predictor_from(found.converged, before.predictor if before else None, name)
-        return cls(branch, *_next_mesh(found, before, name, accuracy), eigenvalues)
+        return cls(branch, *_next_mesh_and_calibration(found, before, name, accuracy), eigenvalues)
 
     def arrays(self) -> Arrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
@@ -123,7 +123,7 @@ class Neighbour:
         return cls(branch, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex))
 
 
-def _next_mesh(
+def _next_mesh_and_calibration(
     found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
     """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
@@ -135,14 +135,14 @@ def _next_mesh(
     if known.reach and not fits:
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
         return present, known.rates_only
-    share = inf if not fits else _share_of_cost(found, before, name)
+    share = inf if not fits else _max_cost_ratio(found, before, name)
     planned = known.cheapest_mesh(accuracy) if share else present
     if share and planned.cost <= share * present.cost:
         return planned, known.rates_only
     return present, known
 
 
-def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
+def _max_cost_ratio(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
     """Largest cost of a new mesh divided by the cost of the present, sufficient mesh; 0 if the present mesh
     remains in use. before: data of the previous rod, or None. name: varied parameter."""
     if before is None:
@@ -169,7 +169,7 @@ def cycle_from_neighbour(
         raise Unsolvable(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
-    found = _converged(neighbour, form, name, accuracy, workspace)
+    found = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.scaled_on_chain(
         found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     )
@@ -180,7 +180,7 @@ def cycle_from_neighbour(
     return calibrated_cycle(found, known, accuracy, name)
 
 
-def _converged(
+def _cycle_on_next_mesh(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
     """The cycle of the rod in `form` on the neighbour's `next_mesh`, with a matrix for multipliers and for

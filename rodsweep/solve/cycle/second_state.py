@@ -44,10 +44,10 @@ def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[Se
         return SecondState.not_known, nan, ""
     if beside is None:
         return SecondState.none_known, nan, ""
-    return SecondState.cycle_possible, beside.F, _sentence(beside)
+    return SecondState.cycle_possible, beside.F, _second_state_sentence(beside)
 
 
-def _sentence(beside: SubcriticalHopf) -> str:
+def _second_state_sentence(beside: SubcriticalHopf) -> str:
     return (
         f"the Hopf point at F = {beside.F:.9g} is subcritical: an unstable cycle exists, with a largest y of "
         f"about {beside.unstable_y:.2g} L by the normal form, and from a start at larger y the rod may reach "

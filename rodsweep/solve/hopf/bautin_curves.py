@@ -74,12 +74,12 @@ class _CurvePoint:
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
     """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
-    values of the fixed parameters. asked: values of the third parameter at which points are added, (m,).
+    values of the fixed parameters. requested_values: values of the third parameter of further points, (m,).
     accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
-    asked: Array
+    requested_values: Array
     accuracy: float
     side: float = 1.0
 
@@ -88,7 +88,7 @@ class BautinSpace:
         places = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
-    def solved(self, guess: Array, held: int) -> _CurvePoint:
+    def solve_point(self, guess: Array, held: int) -> _CurvePoint:
         """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index `held`
         fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
@@ -96,7 +96,9 @@ class BautinSpace:
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
-        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest))
+        hopf = HopfCurve(
+            boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
+        )
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
@@ -120,14 +122,14 @@ class BautinSpace:
             # Step lengths are shares of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
-            there, on_edge = self._within(here, length * tangent)
+            there, on_edge = self._within_ranges(here, length * tangent)
         except ValueError as why:
             raise Unsolvable(f"the step leaves the allowed range of the parameters: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
-    def _within(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
+    def _within_ranges(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
         """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
@@ -137,20 +139,20 @@ class BautinSpace:
         shares = (beyond - here[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
         # The parameter that changes most is fixed: at a fold in another parameter the point is unique.
         if np.isnan(shares).all():
-            return self.solved(here + change, int(np.argmax(np.abs(change[:3])))), False
+            return self.solve_point(here + change, int(np.argmax(np.abs(change[:3])))), False
         which = int(np.nanargmin(shares))
         guess = here + shares[which] * change
         guess[which] = beyond[which]
-        return self.solved(guess, which), True
+        return self.solve_point(guess, which), True
 
     def margins(self, point: _CurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
-        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.on_edge
+        return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.edge_tolerance
 
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
-        """The point `outer` itself: `_within` has already shortened the step to end on the end of a range."""
+        """The point `outer` itself: `_within_ranges` has already shortened the step to the end of a range."""
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
@@ -189,10 +191,10 @@ class BautinSpace:
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
     here = _CurvePoint(space.scaled(start.values, start.frequency), start)
-    back, first = _followed(replace(space, side=-1.0), here)
+    back, first = _follow_in_direction(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
         return BautinCurve(tuple(point.point for point in back), (first, first))
-    on, last = _followed(space, here)
+    on, last = _follow_in_direction(space, here)
     # Both lists begin with the start, which is taken once.
     return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
 
@@ -208,22 +210,22 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
 
 
 def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether `point`, at a requested third parameter, equals a point of `curve` (`BAUTIN.same_point`)."""
+    """Whether `point`, at a requested third parameter, equals a point of `curve`."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
-    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point for other in others)
+    return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
 
 
-def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
+def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """(points from `start` in the direction `space.side` of the third parameter, including points at its
     requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
-    curve = follow_curve(space, start, BAUTIN_STEPS, _report)
+    curve = follow_curve(space, start, BAUTIN_STEPS, _report_point_count)
     places = curve.solutions[:1]
     for here, there in pairwise(curve.solutions):
         try:
-            places += [*_asked_between(space, here, there), there]
+            places += [*_requested_points_between(space, here, there), there]
         except (*FAILURES, ValueError):
             return places, BautinEnd.not_found
     if curve.end is CurveStop.margin:
@@ -231,20 +233,20 @@ def _followed(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint]
     return places, END_OTHERWISE[curve.end]
 
 
-def _report(places: Sequence[_CurvePoint]) -> None:
+def _report_point_count(places: Sequence[_CurvePoint]) -> None:
     """Reports the number of points of the curve as progress."""
     report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(places)} points"))
 
 
-def _asked_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
+def _requested_points_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
     """Points at the requested third parameters between `here` and `there`; raises Unsolvable, ValueError."""
     a = here.v[2]
     b = there.v[2]
-    inner = [z for z in map(space.axes[2].coordinate, space.asked) if min(a, b) < z < max(a, b)]
+    inner = [z for z in map(space.axes[2].coordinate, space.requested_values) if min(a, b) < z < max(a, b)]
     found = []
     for z in sorted(inner, reverse=bool(a > b)):
-        if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point:
+        if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:
             guess = here.v + (z - a) / (b - a) * (there.v - here.v)
             guess[2] = z
-            found.append(space.solved(guess, 2))
+            found.append(space.solve_point(guess, 2))
     return found

@@ -30,12 +30,12 @@ class BautinSettings:
     tolerance: float = 1e-12
     """The secant method stops when the step is at most this number, or at most the error caused by the error
     of c; each parameter's range has length 1."""
-    on_edge: float = 1e-12
+    edge_tolerance: float = 1e-12
     """A point lies on an end of a range if its distance from the end, as a fraction of the range, is below
     this number."""
     min_loop_points: int = 5
     """A curve can be recognised as closed only if it has more than this number of points."""
-    same_point: float = 1e-6
+    same_point_distance: float = 1e-6
     """Two points are identical if all their coordinates (scaled parameters, log frequency) differ by less
     than this number."""
 

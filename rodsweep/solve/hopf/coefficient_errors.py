@@ -30,18 +30,18 @@ class HopfCoefficientSettings:
     factor of 10 to 10^4."""
     max_refinements: int = 4
     """Maximum number of meshes after the first."""
-    coarsest: float = 1e-2
+    coarsest_accuracy: float = 1e-2
     """Coarsest relative accuracy for which the first mesh is chosen: the eigenvalue must still be identified
     on this mesh."""
-    rounding: float = 1.5e-14
+    landau_rounding: float = 1.5e-14
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
-    sensitivity: float = 20.0
+    max_force_sensitivity: float = 20.0
     """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
     high modes of rods soft in shear; where a flutter window closes the value is 1."""
     force_step: float = 1e-5
     """Relative force step of the difference quotient for the second derivative of w(F)."""
-    searches_kept: int = 8
+    cached_searches: int = 8
     """Number of searches for Hopf points in the cache; rods that differ only in gamma1 share a search."""
 
 
@@ -102,9 +102,11 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
     start = elements_for(
-        rod, w, min(accuracy / NORMAL_FORM_SETTINGS.accuracy_share, HOPF_COEFFICIENT_SETTINGS.coarsest)
+        rod,
+        w,
+        min(accuracy / NORMAL_FORM_SETTINGS.accuracy_share, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
     )
-    fine = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest)
+    fine = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy)
     change = math.inf
     rounding = 0.0
     for number in range(HOPF_COEFFICIENT_SETTINGS.max_refinements):
@@ -117,11 +119,11 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         coarse = fine
         fine = normal_form_on(more, rod, w, accuracy)
         change = abs(fine.c - coarse.c) / abs(fine.c)
-        rounding = _rounding(fine)
+        rounding = _landau_rounding_error(fine)
         if change <= max(accuracy, rounding):
             break
     # The slope of the root of D has no error of a mesh.
-    slope, bend = _slope(rod, w)
+    slope, bend = _eigenvalue_derivatives(rod, w)
     if rod.standard:
         off = abs(fine.slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
@@ -129,13 +131,15 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         off = abs(fine.slope - coarse.slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
     unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
-    moved = HOPF_COEFFICIENT_SETTINGS.sensitivity * hopf.error * unit
+    moved = HOPF_COEFFICIENT_SETTINGS.max_force_sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
-    return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
+    return _coefficients_with_errors(
+        replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
+    )
 
 
-def _with_errors(
+def _coefficients_with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
     """The coefficients of `normal`, with errors from three relative errors: `landau_error` of c,
@@ -164,7 +168,7 @@ def _with_errors(
     )
 
 
-def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
+def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
     step = HOPF_COEFFICIENT_SETTINGS.force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
@@ -173,7 +177,7 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
     return complex(slope), abs(slope - before) / step
 
 
-def _rounding(normal: NormalForm) -> float:
+def _landau_rounding_error(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
     sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
-    return HOPF_COEFFICIENT_SETTINGS.rounding * sizes / abs(normal.w)
+    return HOPF_COEFFICIENT_SETTINGS.landau_rounding * sizes / abs(normal.w)

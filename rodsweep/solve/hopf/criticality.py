@@ -101,7 +101,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
         coefficients = tuple(
             _coefficients(rod, hopf, request) for hopf in found.crossings[: request.crossings]
         )
-        status, message = _judged(found, coefficients, request)
+        status, message = _status_and_message(found, coefficients, request)
         return Criticality(
             status=status,
             transitions=found,
@@ -110,7 +110,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             message=message,
         )
 
-    return outcome_or_failure(search, lambda cause: _nothing(end, cause))
+    return outcome_or_failure(search, lambda cause: _empty_criticality(end, cause))
 
 
 @cache
@@ -119,7 +119,7 @@ def warm_up() -> None:
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
-@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.searches_kept)
+@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
 def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
     return pair_crossings(path, 0.0, end, certify, most)
 
@@ -133,7 +133,7 @@ def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> Hopf
         return HopfCoefficients(message=f"Hopf point at F = {hopf.at:.12g}: {cause_of(error)}")
 
 
-def _nothing(end: float, cause: str) -> Criticality:
+def _empty_criticality(end: float, cause: str) -> Criticality:
     return Criticality(
         status=CriticalityStatus.failed,
         transitions=Transitions(proved=False),
@@ -143,7 +143,7 @@ def _nothing(end: float, cause: str) -> Criticality:
     )
 
 
-def _judged(
+def _status_and_message(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
@@ -164,4 +164,4 @@ def _judged(
         CriticalityStatus.not_certified: request.certify and not found.proved,
     }
     status = next((status for status, holds in verdicts.items() if holds), CriticalityStatus.ok)
-    return status, "; ".join(filter(None, (failures, found.why_not)))
+    return status, "; ".join(filter(None, (failures, found.doubts)))

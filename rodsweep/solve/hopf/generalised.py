@@ -28,7 +28,7 @@ from .coefficient_errors import HopfCoefficients, hopf_coefficients
 class GeneralisedHopfSettings:
     """Settings for the location of generalised Hopf points on a Hopf curve."""
 
-    coarsest: float = 1e-10
+    coarsest_accuracy: float = 1e-10
     """Coarsest relative accuracy of c for locating generalised Hopf points, whose relative accuracy is
     1e-9."""
     first_sign_accuracy: float = 1e-5
@@ -68,19 +68,19 @@ class CurveCriticality:
     """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve.
 
     criticality: sign of Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,).
-    points: generalised Hopf points. unlocated: number of sign changes without a located point.
+    points: generalised Hopf points. unlocated_count: number of sign changes without a located point.
     """
 
     criticality: Array
     points: tuple[GeneralisedHopfPoint, ...]
-    unlocated: int
+    unlocated_count: int
 
 
 @dataclass(frozen=True, slots=True)
 class _HopfNormalForm:
     """A Hopf point in the plane of two parameters, with its normal form coefficients."""
 
-    there: BoundarySolution
+    boundary_point: BoundarySolution
     coefficients: HopfCoefficients
 
     @property
@@ -90,12 +90,14 @@ class _HopfNormalForm:
 
 
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
-    """The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
+    
+"""The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
 
-    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest` if larger. If the normal
-    form fails at a point, the sign is NaN at this point only."""
+    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If the normal
+    form fails at a point, the sign is NaN at this point only.
+    """
     hopf = HopfCurve(
-        Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest)
+        Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
     )
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points = []
@@ -194,7 +196,7 @@ class HopfCurve:
         after: index of the curve's stored point before this point. moved: position error along the chord,
         (3,).
         """
-        there = here.there
+        there = here.boundary_point
         axes = self.boundary.plane.axes
         tangent = there.tangent
         # The error along the curve is the error along the chord over the cosine of their angle.

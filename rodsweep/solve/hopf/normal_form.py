@@ -133,7 +133,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     Raises Unsolvable if the eigenvalue is real or the inverse iteration does not converge.
     """
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
-    w, q, p = _modes(transverse, guess)
+    w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
     h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
     h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
@@ -202,7 +202,9 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     return normal
 
 
-def _modes(elements: StraightElements | WholeMatrices, guess: complex) -> tuple[complex, Complex, Complex]:
+def _eigenvalue_and_modes(
+    elements: StraightElements | WholeMatrices, guess: complex
+) -> tuple[complex, Complex, Complex]:
     """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
     docstring.
 

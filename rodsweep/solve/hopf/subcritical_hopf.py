@@ -18,12 +18,12 @@ from .coefficient_errors import hopf_coefficients
 class SubcriticalHopfSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
-    farthest_force: float = 1.5
-    """Hopf points are searched at forces from F/`farthest_force` to F times `farthest_force`, where F is the
-    force of the rod."""
+    max_force_ratio: float = 1.5
+    """Hopf points are searched at forces from F/`max_force_ratio` to F times `max_force_ratio`, where F is
+    the force of the rod."""
     accuracy: float = 1e-3
     """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
-    largest_y: float = 0.5
+    max_unstable_y: float = 0.5
     """Hopf points are ignored if the largest tip y of their unstable cycle, in L, exceeds this number: the
     normal form is too inaccurate."""
 
@@ -44,21 +44,26 @@ class SubcriticalHopf:
 
 
 def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
-    """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical, or if
+    
+"""The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical, or if
     the force is not positive.
 
     The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
-    y of the unstable cycle is at most `SUBCRITICAL_HOPF_SETTINGS.largest_y`. The straight rod must be stable.
-    Raises Unsolvable if the search for Hopf points or a coefficient fails."""
-    low = rod.F / SUBCRITICAL_HOPF_SETTINGS.farthest_force
-    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.farthest_force)
+    y of the unstable cycle is at most `SUBCRITICAL_HOPF_SETTINGS.max_unstable_y`. The straight rod must be stable.
+    Raises Unsolvable if the search for Hopf points or a coefficient fails.
+    """
+    low = rod.F / SUBCRITICAL_HOPF_SETTINGS.max_force_ratio
+    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
-    nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
-    for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
+    above = [one for one in crossings if one.at > rod.F]
+    below = [one for one in crossings if one.at <= rod.F]
+    nearest = above[:1] + below[-1:]
+    for hopf in sorted(nearest, key=lambda one: abs(one.at - rod.F)):
         found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
-        if found.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.largest_y:
+        # A positive criticality means subcritical.
+        if found.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
             return SubcriticalHopf(hopf.at, y)
     return None

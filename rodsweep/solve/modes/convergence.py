@@ -68,7 +68,7 @@ def converged_vectors(
         if mesh.unknowns > MODE_MESH_SETTINGS.max_unknowns:
             break
         fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
-        result = _compared(coarse, fine, gaps)
+        result = _with_errors_from_coarse(coarse, fine, gaps)
         error = max(result.errors().values())
         # If a finer mesh does not halve the error, rounding errors dominate.
         improved = error < least / 2
@@ -81,7 +81,7 @@ def converged_vectors(
     return best
 
 
-def _compared(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
+def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
     """The modes `fine` with their differences from the modes `coarse` as errors; a rounding error is added to
     the errors of the condition numbers. gaps: distance from each eigenvalue to the nearest other eigenvalue,
     (modes,)."""

@@ -72,7 +72,7 @@ class ModeVectors:
 def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> ModeVectors:
     """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,)."""
     form = dense_form(rod, pencil)
-    X, Z, rounding = _vectors(form, eigenvalues)
+    X, Z, rounding = _eigenvectors(form, eigenvalues)
     evaluation = form.mesh.evaluation(points)
     B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
@@ -106,7 +106,7 @@ def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVect
     )
 
 
-def _vectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
+def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """Returns (right eigenvectors, left eigenvectors, rounding errors of `eigenvalues`), (unknowns, modes),
     (unknowns, modes) and (modes,). The eigenvectors have the tip deflection 1."""
     A = form.A
@@ -136,10 +136,10 @@ def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
     A: (unknowns, unknowns). B: (unknowns,)."""
     # The matrix is singular to rounding, but the error of the inverse lies along the null vector.
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
-    return _iterated(inverse, B), _iterated(inverse.T, B)
+    return _null_vector(inverse, B), _null_vector(inverse.T, B)
 
 
-def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
+def _null_vector(inverse: NDArray, B: NDArray) -> NDArray:
     """Null vector of a nearly singular matrix by inverse iteration, (unknowns,), with largest entry 1.
     inverse: inverse of the matrix, (unknowns, unknowns). B: as in `null_vectors`.
 

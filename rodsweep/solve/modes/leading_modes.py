@@ -90,7 +90,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     if not np.isfinite(spectrum.eigenvalues).all():
         return outcome
     found = outcome_or_failure(
-        lambda: _solve(rod, request, outcome),
+        lambda: _with_modes(rod, request, outcome),
         lambda cause: replace(outcome, status=SpectrumStatus.failed, message=cause),
     )
     return replace(found, seconds=spectrum.seconds + found.seconds)
@@ -117,7 +117,7 @@ def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
     )
 
 
-def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
+def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     """`outcome` with modes and, if requested, transient growth. The status changes if no mesh small enough
     resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum

@@ -58,9 +58,9 @@ def largest_norm(
     count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM_SETTINGS.start_ratio))) + 1)
     times = np.geomspace(low, high, count, dtype=np.float64)
     times[[0, -1]] = span
-    squares, bends = _squares(propagator, times)
+    squares, bends = _squared_norms_and_bends(propagator, times)
     i = int(squares.argmax())
-    best = _peak(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
+    best = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
     t = times[:-1]
     h = np.diff(times)
     left = squares[:-1]
@@ -68,7 +68,7 @@ def largest_norm(
     bend = bends[:-1]
     ceiling = best[0]
     for halving in range(NORM_MAXIMUM_SETTINGS.max_halvings + 1):
-        bound = np.sqrt(_bound(h, left, right, bend, abscissa))
+        bound = np.sqrt(_squared_norm_bound(h, left, right, bend, abscissa))
         enough = max(best[0], floor) * (1 + tolerance)
         open_ = bound > enough
         given_up = (
@@ -80,10 +80,10 @@ def largest_norm(
             break
         # Only intervals in which a larger norm may hide are halved.
         t, h, left, right, bend = (x[open_] for x in (t, h / 2, left, right, bend))
-        middle, new_bend = _squares(propagator, t + h)
+        middle, new_bend = _squared_norms_and_bends(propagator, t + h)
         i = int(middle.argmax())
         if middle[i] > best[0] ** 2:
-            best = max(best, _peak(propagator, t[i], t[i] + 2 * h[i]))
+            best = max(best, _local_maximum(propagator, t[i], t[i] + 2 * h[i]))
         t = np.concatenate([t, t + h])
         h = np.concatenate([h, h])
         left = np.concatenate([left, middle])
@@ -92,7 +92,7 @@ def largest_norm(
     return best, max(ceiling, best[0])
 
 
-def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
+def _squared_norms_and_bends(propagator: Propagator, times: Array) -> tuple[Array, Array]:
     """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, evaluated in batches to
     limit the memory."""
     parts = [
@@ -102,7 +102,7 @@ def _squares(propagator: Propagator, times: Array) -> tuple[Array, Array]:
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
-def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
+def _squared_norm_bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
     """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at the `left` and `right` ends
     and the curvature bound c (`bend`) at the left ends; all (intervals,). abscissa: as in `largest_norm`."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
@@ -110,7 +110,7 @@ def _bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) ->
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
 
 
-def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
+def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """Returns (|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by
     the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between."""
     at_low, rate_low = propagator.norm(low)

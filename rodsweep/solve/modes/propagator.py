@@ -82,8 +82,8 @@ class Propagator:
         # A complex pair must not be split, or the basis would not be real.
         if self.w[k - 1].imag > 0:
             k += 1
-        Q = _orthonormal(self.right[:, :k], self.w[:k])
-        Z = _orthonormal(self.left[:, :k], self.w[:k])
+        Q = _orthonormal_basis(self.right[:, :k], self.w[:k])
+        Z = _orthonormal_basis(self.left[:, :k], self.w[:k])
         # In the basis of nested invariant subspaces G is block triangular: entries below are rounding errors.
         inside = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
         self.generator = np.linalg.inv(np.where(inside, Q.T @ self.G @ Q, 0.0))
@@ -120,7 +120,7 @@ class Propagator:
         return float(np.linalg.norm(E, 2))
 
 
-def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
+def _orthonormal_basis(vectors: NDArray, w: NDArray) -> Array:
     """Real orthonormal basis, (n, k), of the invariant subspace of the eigenvalues w, (k,), with eigenvectors
     `vectors`, (n, k); the first columns span the subspaces of the first eigenvalues."""
     columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])

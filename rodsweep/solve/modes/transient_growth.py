@@ -155,7 +155,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
         if not stop:
-            stop, tail = _end(fine, first, patience)
+            stop, tail = _end_of_growth(fine, first, patience)
         if stop > first and fine.norm(first)[0] >= 1:
             peak, bound = largest_norm(fine, (first, stop), abscissa, best[0], tolerance)
             best = max(best, peak)
@@ -176,7 +176,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
 
 
-def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
+def _end_of_growth(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
     relative amount by which a later norm may nevertheless exceed these values. first: earliest end, in tau2.
     patience: the other modes are negligible once they are exp(-patience) times the leading modes.

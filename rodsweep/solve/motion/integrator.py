@@ -207,7 +207,7 @@ class Integrator:
             held.destroy()
 
 
-_kept: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(
+_integrators: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(
     lambda key: Integrator(*key), INTEGRATOR_SETTINGS.kept
 )
 
@@ -216,14 +216,14 @@ def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
     """The pooled integrator for `mesh` and `scheme`; replaced by a new integrator after an error inside
     PETSc."""
     key = mesh, scheme
-    if _kept.get(key).broken:
-        _kept.drop(key)
-    return _kept.get(key)
+    if _integrators.get(key).broken:
+        _integrators.drop(key)
+    return _integrators.get(key)
 
 
 def forget_integrators() -> None:
     """Destroys all pooled integrators, after an error or a change of PETSc options."""
-    _kept.clear()
+    _integrators.clear()
 
 
 def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:

@@ -149,7 +149,8 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
 @compiled
 def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores it in
-    the context record `c`. at: address for outputs. snes: handle of the stage's solver. X: handle of a vector
+    the context record `c`. at: address of scratch memory, into which PETSc writes
+    the addresses of three arrays. snes: handle of the stage's solver. X: handle of a vector
     with any value of x.
 
     In every time scheme the slope dx/dt is affine in x. The residual without f at any x and the shift, which
@@ -191,7 +192,8 @@ def norm(x: Array) -> float:
 @compiled
 def newton_step(c: Any, at: int, X: int) -> float:
     """Makes one Newton step from the stage X and writes the result to X; returns the 2-norm of the step. c:
-    context record. at: address for outputs. X: handle of the stage's vector."""
+    context record. at: address of scratch memory, into which PETSc writes the addresses of three arrays. X:
+    handle of the stage's vector."""
     n = c.unknowns
     outputs = integers(at, 3)
     constant = floats(c.constant, n)

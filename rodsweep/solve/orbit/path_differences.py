@@ -31,12 +31,12 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 def rod_difference(one: Orbit, other: Orbit) -> float:
     """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
     orbit `other`."""
-    a, b = (_numbers(orbit.form.rod) for orbit in (one, other))
+    a, b = (_rod_coordinates(orbit.form.rod) for orbit in (one, other))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 
 
-def _numbers(rod: Rod) -> Array:
+def _rod_coordinates(rod: Rod) -> Array:
     """Coefficients of the equations of a uniform linear rod, or coordinates of all parameters of any other
     rod, (n,)."""
     if rod.standard:

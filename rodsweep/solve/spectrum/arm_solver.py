@@ -48,9 +48,9 @@ class ArmSolver(ShiftInvertSolver):
         return fields_of_vectors(vectors, self.matrices.scale)
 
 
-_kept = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers)
+_arm_solvers = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers)
 
 
 def arm_solver(mesh: ArmMesh) -> ArmSolver:
     """The Krylov-Schur solver for `mesh`; the solver is stored and reused for later arms on this mesh."""
-    return _kept.get(mesh)
+    return _arm_solvers.get(mesh)

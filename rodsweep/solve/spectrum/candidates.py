@@ -130,13 +130,13 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
     line = line_for_proof(w[modes - 1], errors[modes - 1])
     complete, evaluations = problem.prove_complete(line, found)
     if complete:
-        here, clear = _right_of(line, w, errors)
+        here, clear = _count_right_of(line, w, errors)
         return CountComparison(EigenvalueCount(here, evaluations), here, clear)
     for line in lines_for_count(w, modes):
         count = problem.count(line, found)
         if count.number is not None:
             break
-    return CountComparison(count, *_right_of(line, w, errors))
+    return CountComparison(count, *_count_right_of(line, w, errors))
 
 
 def line_for_proof(last: complex, error: float) -> float:
@@ -153,7 +153,7 @@ def line_for_proof(last: complex, error: float) -> float:
     )
 
 
-def _right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
+def _count_right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
     """Returns (number, clear). number: number of eigenvalues w to the right of `line`. clear: whether the
     distance of each w from the line is more than twice its error. errors: absolute errors of w."""
     clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))

@@ -40,7 +40,7 @@ class UniformSolver(ShiftInvertSolver):
         self.inertia: Array = np.ones(self.pencil.unknowns)
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        rod, deflection_ratio = _as_filament(rod)
+        rod, deflection_ratio = _equivalent_filament(rod)
         shift *= deflection_ratio**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
@@ -66,7 +66,7 @@ class UniformSolver(ShiftInvertSolver):
         return fields_of_vectors(vectors, self.pencil.scale(rod))
 
 
-def _as_filament(rod: Rod) -> tuple[Rod, float]:
+def _equivalent_filament(rod: Rod) -> tuple[Rod, float]:
     """Returns (equivalent rod, deflection_ratio). Eigenvalues of `rod` = eigenvalues of the equivalent rod /
     deflection_ratio^2; y of `rod` = y of the equivalent rod * deflection_ratio.
 
@@ -79,9 +79,9 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-_kept = LruPool(UniformSolver, KRYLOV_SETTINGS.max_uniform_solvers)
+_uniform_solvers = LruPool(UniformSolver, KRYLOV_SETTINGS.max_uniform_solvers)
 
 
 def uniform_solver(resolution: Resolution) -> UniformSolver:
     """The Krylov-Schur solver for a mesh `resolution`; the solver is stored and reused for later rods."""
-    return _kept.get(resolution)
+    return _uniform_solvers.get(resolution)

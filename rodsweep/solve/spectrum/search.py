@@ -76,16 +76,16 @@ class Search:
         self.modes = request.modes
         self.with_vectors = request.vector_nodes > 0
         bounded = self.problem.has_bound
-        self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
-        self.mesh = self.problem.mesh_for(request.modes, self.aim)
+        self.accuracy = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
+        self.mesh = self.problem.mesh_for(request.modes, self.accuracy)
         self.requested = request.modes + self.problem.spare_eigenvalues if requested is None else requested
         self.best: CheckedCandidates | None = None
-        self.stalled = self.failures = 0
+        self.stalled_refinements = self.failures = 0
         self.disagreement: CountComparison | None = None
         """The comparison of the last count that disagrees with the eigenvalues found."""
         self.unresolved = False
         """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
-        self.why = (
+        self.failure_reason = (
             f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns resolves the requested modes"
         )
 
@@ -96,27 +96,27 @@ class Search:
                 break
             tight = self.with_vectors or turn > 0
             found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
-            judged = self.judge(found)
+            judged = self.checked_or_retry(found)
             if judged is None:
                 continue
             self.update_best(judged)
             if (
                 judged.error_over_limit <= SEARCH.max_error_over_limit
-                or self.stalled >= SEARCH.max_stalled_refinements
+                or self.stalled_refinements >= SEARCH.max_stalled_refinements
             ):
                 break
             self.mesh = self.problem.next_mesh_for(
-                found.mesh, found.roots.wave_number[: self.modes], self.aim
+                found.mesh, found.roots.wave_number[: self.modes], self.accuracy
             )
         return self.conclude()
 
-    def judge(self, found: Candidates) -> CheckedCandidates | None:
+    def checked_or_retry(self, found: Candidates) -> CheckedCandidates | None:
         """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
         more eigenvalues were chosen for the next attempt."""
         if len(found.roots.w) < self.modes:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failures += bool(found.failure)
-            self.why = found.failure or self.why
+            self.failure_reason = found.failure or self.failure_reason
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
             if len(found.roots.w) >= SEARCH.min_resolved_fraction * self.modes:
                 self.requested += self.modes
@@ -194,7 +194,7 @@ class Search:
         best = self.best
         limit = SEARCH.progress_ratio * best.error_over_limit if best else 0.0
         better = best is None or judged.sort_key < (best.sort_key[0], limit)
-        self.stalled = 0 if better else self.stalled + 1
+        self.stalled_refinements = 0 if better else self.stalled_refinements + 1
         if (
             best is None
             or judged.sort_key <= best.sort_key
@@ -205,7 +205,7 @@ class Search:
     def conclude(self) -> Spectrum:
         """The spectrum of the best candidates; without candidates, a failed spectrum with the reason."""
         if self.best is not None:
-            return _result(self.best, self.problem, self.request)
+            return _spectrum(self.best, self.problem, self.request)
         if self.disagreement is not None:
             lost = self.disagreement
             number, found = lost.count.number, lost.found_count
@@ -214,10 +214,10 @@ class Search:
         if self.unresolved:
             why = "no mesh resolves all eigenvalues that may lead"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
-        return failed_spectrum(SpectrumStatus.failed, self.request, self.why)
+        return failed_spectrum(SpectrumStatus.failed, self.request, self.failure_reason)
 
 
-def _result(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
+def _spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
     found = best.candidates.roots
     comparison = best.comparison

@@ -139,8 +139,8 @@ class ShiftInvertSolver(ABC):
             KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.nodes]
         )
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
-        self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
-        self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
+        self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
+        self.tolerance_option = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
         self.loaded = LoadedPencil(0, 0.0)
 
@@ -187,8 +187,8 @@ class ShiftInvertSolver(ABC):
         requested = min(requested, most - 1)  # a conjugate pair may add one
         spare = KRYLOV_SETTINGS.tight_spare_vectors if tight else KRYLOV_SETTINGS.loose_spare_vectors
         tolerance = KRYLOV_SETTINGS.tight_tolerance if tight else KRYLOV_SETTINGS.loose_tolerance
-        krylov = self.users_krylov or max(2 * requested, requested + spare)
-        self.eps.setTolerances(self.users_tolerance or tolerance, KRYLOV_SETTINGS.max_restarts)
+        krylov = self.krylov_size_option or max(2 * requested, requested + spare)
+        self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
         krylov = min(krylov, most + KRYLOV_SETTINGS.vectors_for_infinity)
         self.eps.setDimensions(requested, krylov, krylov)
         self.eps.setInitialSpace(self.start)

@@ -62,27 +62,33 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
         destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
-    return outcome_or_failure(lambda: _solve(rod, request), failed)
+    return outcome_or_failure(lambda: _solve_or_raise(rod, request), failed)
 
 
-def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
+def _solve_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     problem = transverse_problem(rod)
     modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
     mesh: AnyMesh = problem.mesh_for(modes, aim)
-    before = _leading(problem, mesh, modes)
+    before = _leading_eigenvalues(problem, mesh, modes)
     best: Spectrum | None = None
     for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
         if mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns:
             break
-        found = _leading(problem, mesh, modes)
+        found = _leading_eigenvalues(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
-            here = _spectrum(problem, request, mesh, found, _errors(found.w, before.w, _scale(problem)))
+            here = _spectrum_of_mesh(
+                problem,
+                request,
+                mesh,
+                found,
+                _errors_between_meshes(found.w, before.w, _rounding_rate(problem)),
+            )
             if here.status == SpectrumStatus.ok:
                 return here
             # The finest mesh may have the largest rounding error.
-            best = here if best is None else min(best, here, key=_worst)
+            best = here if best is None else min(best, here, key=_largest_error)
         before = found
     if best is None:
         most = RESOLUTION_SETTINGS.max_unknowns
@@ -91,7 +97,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     return replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
 
 
-def _scale(problem: TransverseProblem) -> float:
+def _rounding_rate(problem: TransverseProblem) -> float:
     """Sum of |shift| and F^2, in 1/tau2: rounding errors of eigenvalues are proportional to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
@@ -105,7 +111,7 @@ class _MeshEigenvalues(NamedTuple):
     indices: NDArray[np.intp]
 
 
-def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
+def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
     """Sorted eigenvalues of a mesh. The requested number is doubled until the `modes` leading eigenvalues no
     longer change.
 
@@ -121,7 +127,7 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
-        by_rounding = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _scale(problem)
+        by_rounding = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _rounding_rate(problem)
         if complete and np.allclose(
             leading, before, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=by_rounding
         ):
@@ -132,17 +138,17 @@ def _leading(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEige
         requested = 2 * requested
 
 
-def _worst(found: Spectrum) -> float:
+def _largest_error(found: Spectrum) -> float:
     """Largest relative error estimate among the eigenvalues of a spectrum."""
     return float((found.error_estimate / np.abs(found.eigenvalues)).max())
 
 
-def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
+def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
     coarser mesh.
 
-    scale: result of `_scale`. Two meshes may agree on one eigenvalue by chance. The relative error of an
-    eigenvalue is therefore the largest of three differences: of the eigenvalue and of its two neighbours.
+    scale: result of `_rounding_rate`. Two meshes may agree on one eigenvalue by chance. The relative error of
+    an eigenvalue is therefore the largest of three differences: of the eigenvalue and of its two neighbours.
     Near a double eigenvalue the stated rounding errors are larger than elsewhere.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
@@ -156,7 +162,7 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     return errors
 
 
-def _spectrum(
+def _spectrum_of_mesh(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _MeshEigenvalues, error: Array
 ) -> Spectrum:
     """The spectrum of one mesh, with the status from the errors. error: absolute error of each found

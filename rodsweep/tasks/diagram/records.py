@@ -75,7 +75,7 @@ def criticality_record(
     declared = criticality_variables(*plane)
     values = _values_along_dimension(declared, "bautin", "bautin_", rows) | {
         "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in criticalities)]),
-        "bautin_unlocated": sum(curve.unlocated for curve in criticalities),
+        "bautin_unlocated": sum(curve.unlocated_count for curve in criticalities),
         "curve_gamma1": gamma1,
     }
     return _filled_variables(declared, values)

@@ -130,7 +130,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
 
 def turned_back(here):
     """A cycle of a branch that is followed to its other side."""
-    derivatives = replace(here.derivatives, tangent=-here.tangent, ahead=-here.ahead)
+    derivatives = replace(here.derivatives, tangent=-here.tangent, unit_tangent=-here.unit_tangent)
     return replace(here, derivatives=derivatives, before=None)
 
 

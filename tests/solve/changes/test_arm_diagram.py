@@ -12,8 +12,8 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.diagram.boundary_curves import trace
-from rodsweep.solve.changes.diagram.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
+from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.hopf.generalised import curve_criticality
@@ -32,7 +32,9 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     change = next(c for c in found.crossings if c.kind == kind)
     plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
     sign = 0.0 if kind == ChangeKind.hopf else -1.0
-    return trace(sign, plane, (first.coordinate(change.at), 0.5), change.frequency or change.growth_rate)
+    return trace_boundary(
+        sign, plane, (first.coordinate(change.at), 0.5), change.frequency or change.growth_rate
+    )
 
 
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
@@ -89,13 +91,18 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
 
     rubber = row("F", [10.0, 100.0, 500.0, 550.0], Rod(F=0.0, k1=500.0, **ROD, build=SWELLING))
     assert rubber.status == ThresholdStatus.ok
-    assert rubber.motion.tolist() == [Motion.monotone, Motion.flutter, Motion.oscillatory, Motion.oscillatory]
+    assert rubber.rod_class.tolist() == [
+        RodClass.monotone,
+        RodClass.flutter,
+        RodClass.oscillatory,
+        RodClass.oscillatory,
+    ]
     cone = row("F", [5.0, 20.0, 49.0, 51.0, 60.0], Rod(F=0.0, k1=200.0, **ROD, taper=0.5))
-    assert cone.motion.tolist()[3:] == [Motion.crushed] * 2
-    assert Motion.crushed not in cone.motion.tolist()[:3]
+    assert cone.rod_class.tolist()[3:] == [RodClass.crushed] * 2
+    assert RodClass.crushed not in cone.rod_class.tolist()[:3]
     assert cone.changes.end == pytest.approx(50.0, rel=2e-6)
     along_k1 = row("k1", [20.0, 39.0, 41.0, 200.0], Rod(F=10.0, k1=np.inf, **ROD, taper=0.5))
-    assert (along_k1.motion == Motion.crushed).tolist() == [True, True, False, False]
+    assert (along_k1.rod_class == RodClass.crushed).tolist() == [True, True, False, False]
 
 
 @pytest.fixture(scope="module")
@@ -137,8 +144,8 @@ def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
     for build in (Build(), ONES):
         plane = Plane(Rod(F=0.0, k1=200.0, **ROD, build=build), plane_axes)
         start = tuple(axis.coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
-        told = curve_criticality(plane, trace(0.0, plane, start, fold[2]), 1e-10)
-        assert told.unlocated == 0
+        told = curve_criticality(plane, trace_boundary(0.0, plane, start, fold[2]), 1e-10)
+        assert told.unlocated_count == 0
         points.append(told.points[0])
     exact, found = points
     for value, theirs, error in zip(exact.values, found.values, found.errors, strict=True):

@@ -16,7 +16,7 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.diagram.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
@@ -137,8 +137,8 @@ def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_som
     row = solve_row(STEPPED, RowRequest("F", np.linspace(0.0, 60.0, 13), 1e-8, True, 16))
     assert row.status == ThresholdStatus.ended_early
     known = np.linspace(0.0, 60.0, 13) <= row.changes.end
-    assert (row.motion[~known] == Motion.undecided).all()
-    assert row.motion[known].tolist() == [0] * 3 + [1] * 3 + [2] * int(known.sum() - 6)
+    assert (row.rod_class[~known] == RodClass.undecided).all()
+    assert row.rod_class[known].tolist() == [0] * 3 + [1] * 3 + [2] * int(known.sum() - 6)
 
 
 def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force):
@@ -159,7 +159,7 @@ def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
         else:
             seen.append((a, b))
     assert seen == [(0.0, 1.0), (1.0, 1.5), (1.5, 1.625), (1.625, 1.6875)]
-    assert intervals.reach == (1.6875, "no")
+    assert intervals.end == (1.6875, "no")
 
 
 def test_a_full_list_ends_the_search_and_holds_the_same_changes():
@@ -224,7 +224,7 @@ def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
     at = transitions(path, 0.0, 20.0).crossings[-1].at
     for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
         found = transitions(path, 0.0, end)
-        assert found.proved_to_the_end, found.why_not
+        assert found.proved_to_the_end, found.doubts
         assert len(across_the_axis(found)) == number
         assert found.searched == (0.0, end)
     from_there = transitions(path, at * (1 - 1e-7), 20.0)

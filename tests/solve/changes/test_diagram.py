@@ -12,9 +12,9 @@ from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram import boundary_curves
 from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
-from rodsweep.solve.changes.diagram.boundary_curves import trace
+from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEnd
-from rodsweep.solve.changes.diagram.rows import Motion, RowRequest, solve_row
+from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 
@@ -50,7 +50,7 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
     hopf = next(c for c in row.changes.crossings if c.kind == ChangeKind.hopf)
-    curve = trace(
+    curve = trace_boundary(
         0.0, plane, (plane.axes[0].coordinate(hopf.at), plane.axes[1].coordinate(300.0)), hopf.frequency
     )
     (fold,) = [f for f in curve.folds if f.axis == 1]
@@ -68,7 +68,9 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
         Rod(F=0.0, k1=200.0, k2=inf, gamma3=0.0), (PlaneAxis("F", 0.0, 140.0), PlaneAxis("k1", 145.0, 400.0))
     )
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
-    curve = trace(0.0, plane, (plane.axes[0].coordinate(start), plane.axes[1].coordinate(200.0)), 341.801)
+    curve = trace_boundary(
+        0.0, plane, (plane.axes[0].coordinate(start), plane.axes[1].coordinate(200.0)), 341.801
+    )
     F, k1 = curve.values.T
     assert len(F) > 30
     assert np.abs(F * (1 - F / k1) - Fc).max() < 1e-11
@@ -99,9 +101,9 @@ def test_a_plane_of_two_material_parameters():
     assert (curves.untraced, curves.agreement < 1e-11) == (0, True)
     values = np.linspace(20.0, 1e5, 41)
     gamma3 = axes[1].value(0.4)
-    for k2, motion, unstable in zip(values, found[2].motion, found[2].unstable_count, strict=True):
+    for k2, motion, unstable in zip(values, found[2].rod_class, found[2].unstable_count, strict=True):
         assert count_right_of(0.0, Rod(F=30.0, k1=1e4, k2=float(k2), gamma3=gamma3)).number == unstable
-        assert (motion == Motion.flutter) == (unstable > 0)
+        assert (motion == RodClass.flutter) == (unstable > 0)
 
 
 ENDS = [
@@ -181,7 +183,12 @@ def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4),
         RowRequest("F", np.array([10.0, 30.0, hopf, 40.0]), 1e-9, True, 9),
     )
-    assert row.motion.tolist() == [Motion.monotone, Motion.oscillatory, Motion.undecided, Motion.flutter]
+    assert row.rod_class.tolist() == [
+        RodClass.monotone,
+        RodClass.oscillatory,
+        RodClass.undecided,
+        RodClass.flutter,
+    ]
     assert row.unstable_count.tolist() == [0, 0, -1, 2]
 
 
@@ -191,7 +198,7 @@ def test_a_row_without_a_bound_fails_with_its_reason():
     )
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
-    assert (row.motion == Motion.undecided).all()
+    assert (row.rod_class == RodClass.undecided).all()
 
 
 def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
@@ -227,4 +234,4 @@ def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
     k1 = 10**2.5
     values = np.array([0.5 * k1, k1 * (1 + off), 2 * k1])
     row = solve_row(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), RowRequest("F", values, 1e-9, True, 9))
-    assert [Motion(motion).name for motion in row.motion] == ["flutter", "crushed", "crushed"]
+    assert [RodClass(motion).name for motion in row.rod_class] == ["flutter", "crushed", "crushed"]

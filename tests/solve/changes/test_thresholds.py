@@ -12,7 +12,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.diagram.rows import classes
+from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -115,7 +115,7 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
         end = min(150.0, 0.999 * k1)
         found = transitions(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
         forces = np.sort(rng.uniform(0, end, 20))
-        for F, motion, unstable in zip(forces, *classes(found, forces), strict=True):
+        for F, motion, unstable in zip(forces, *classes_and_unstable_counts(found, forces), strict=True):
             spectrum = solve_spectrum(Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), SpectrumRequest(2, 1e-6, True))
             if spectrum.certified:
                 leads = 2 if spectrum.unstable_count else int(spectrum.eigenvalues[0].imag != 0)
@@ -226,7 +226,7 @@ def test_a_pair_about_to_cross_the_axis_leads():
     kinds = [c.kind for c in found.crossings]
     assert ChangeKind.onset in kinds
     assert ChangeKind.real_leads in kinds
-    motion, _ = classes(found, np.array([-4.95]))
+    motion, _ = classes_and_unstable_counts(found, np.array([-4.95]))
     assert motion.tolist() == [1]
     assert found.proved
 

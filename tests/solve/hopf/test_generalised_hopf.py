@@ -15,7 +15,7 @@ from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.stability.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.changes.diagram.boundary_curves import trace
+from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality
@@ -34,7 +34,7 @@ phase_diagram: {criticality: true}
 
 def curve_of(plane, F, k1, frequency):
     start = [axis.coordinate({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
-    return trace(0.0, plane, tuple(start), frequency)
+    return trace_boundary(0.0, plane, tuple(start), frequency)
 
 
 def over_F_and_k1(F=(60.0, 110.0), k1=(145.0, 160.0), logarithmic=False):
@@ -75,7 +75,7 @@ def test_a_generalised_hopf_point_is_that_of_other_equations(found):
 def test_the_side_changes_once_and_at_the_point(found):
     plane, curve, told = found
     (point,) = told.points
-    assert told.unlocated == 0
+    assert told.unlocated_count == 0
     assert set(told.criticality) == {-1.0, 1.0}
     (after,) = np.flatnonzero(np.diff(told.criticality))
     assert point.after == after
@@ -149,7 +149,7 @@ def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
 
     monkeypatch.setattr(generalised, "hopf_coefficients", jumps)
     again = curve_criticality(plane, curve, 1e-10)
-    assert (again.points, again.unlocated) == ((), 1)
+    assert (again.points, again.unlocated_count) == ((), 1)
     assert np.array_equal(again.criticality, told.criticality)
 
 
@@ -305,7 +305,7 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
         point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
         return bautin_curves._CurvePoint(v, point)
 
-    monkeypatch.setattr(BautinSpace, "solved", on_parabola)
+    monkeypatch.setattr(BautinSpace, "solve_point", on_parabola)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
@@ -333,7 +333,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
         point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
         return bautin_curves._CurvePoint(v, point)
 
-    monkeypatch.setattr(BautinSpace, "solved", on_circle)
+    monkeypatch.setattr(BautinSpace, "solve_point", on_circle)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)

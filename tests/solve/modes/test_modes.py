@@ -495,7 +495,7 @@ def brute_force(propagator, times):
 def test_a_peak_later_than_the_decay_time_is_found():
     """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
     propagator = toy(np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1))
-    end, tail = growth_module._end(propagator, 1e-3, 20.0)
+    end, tail = growth_module._end_of_growth(propagator, 1e-3, 20.0)
     (largest, time), bound = largest_norm(propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6)
     assert propagator.norm(end)[0] < 1
     assert tail == 0
@@ -576,7 +576,9 @@ def test_no_time_within_an_interval_exceeds_its_bound(seed):
         inside = brute_force(propagator, np.linspace(t, t + h, 60)) ** 2
         assert squares == pytest.approx(inside[[0, -1]], rel=1e-9)
         for bend in (bends[0], INF):  # both orders together, and the first alone
-            bound = peak_module._bound(np.array([h]), *squares[:, None], np.array([bend]), abscissa)
+            bound = peak_module._squared_norm_bound(
+                np.array([h]), *squares[:, None], np.array([bend]), abscissa
+            )
             assert inside.max() <= bound[0] * (1 + 1e-12)
 
 
@@ -586,7 +588,9 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
     h = 1e-4
     ends = np.pi / 2 + np.array([-h / 2, h / 2])
     squares, bends = propagator.squares(ends)
-    bound = peak_module._bound(np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator))
+    bound = peak_module._squared_norm_bound(
+        np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator)
+    )
     lack = 81 - squares.max()
     assert 0 < bound[0] - 81 < 0.03 * lack
 
@@ -620,7 +624,7 @@ def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only()
     generator[2:, 2:] = [[-1.0, 8.0], [0.0, -1.5]]
     generator[:2, 2:] = 4.0
     propagator = toy(generator)
-    end, tail = growth_module._end(propagator, 1e-2, 25.0)
+    end, tail = growth_module._end_of_growth(propagator, 1e-2, 25.0)
     assert 20 < end < 40
     left_over = expm(generator * (end - np.pi / 6)) - mode_part(generator, end - np.pi / 6)
     assert tail == pytest.approx(2 * np.linalg.norm(left_over, 2), rel=1e-3)

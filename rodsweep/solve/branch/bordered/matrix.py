@@ -44,6 +44,7 @@ class BorderedMatrix:
         along = change_along(orbit.form, scale.name)
         K, s, n = orbit.states.shape
         V = np.empty((K, s, 3, len(p.matrices.weights)))
+        # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
@@ -62,18 +63,18 @@ class BorderedMatrix:
                 self._matrix[rows, :n] -= p.symmetry
         for place, c in ((-2, 0), (-1, 2)):
             own = slice(c, c + 1)
-            self._matrix[:-2, place] = -self.border_sides(np.zeros(n), self._columns[:, :, own], ends[own])
+            self._matrix[:-2, place] = -self.closing_sides(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[-2, :n] = row
         # `phase_change` is a right-hand side, with a minus sign; in a column of the matrix the sign is plus.
         self._matrix[-2, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
-        self._right = self._jump(orbit, self._columns[:, :, 1:2], ends[1:2])
+        self._closing_sides = self._closing_and_phase_sides(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
         """Newton's step at the orbit, (N + 1,), along which `border` . `scale.components` grows by `length`;
         border: (3,)."""
-        return self.solve(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+        return self.solve(border, np.append(self._closing_sides, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
@@ -81,13 +82,13 @@ class BorderedMatrix:
         factors = self._memory.factors
         p = self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
-        right = np.append(self._jump(orbit, columns, ends), length)
+        right = np.append(self._closing_and_phase_sides(orbit, columns, ends), length)
         return self.solve(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """Tangent of the branch, (N + 1,), of unit arc length, at an acute angle to `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
-        right = np.append(np.zeros(len(self._right)), 1.0)
+        right = np.append(np.zeros(len(self._closing_sides)), 1.0)
         change = self.solve(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
@@ -98,10 +99,10 @@ class BorderedMatrix:
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
         along = change_along(orbit.form, self.scale.name)
-        rod = orbit.semidiscrete
+        equations = orbit.semidiscrete
         p = self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
-            orbit.values, rod, along, variations, p, self._memory.factors
+            orbit.values, equations, along, variations, p, self._memory.factors
         )
         return changed
 
@@ -143,7 +144,7 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
-    def border_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
+    def closing_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
         """Right-hand sides, (m n,), of the closing conditions: the end of a shooting interval is the start of
         the next shooting interval.
 
@@ -156,11 +157,13 @@ class BorderedMatrix:
         sides[-1] += jump
         return sides.ravel()
 
-    def _jump(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
-        """Right-hand sides of the closing conditions of an orbit and of the phase condition, (m n + 1,);
-        columns, ends: as in `border_sides`."""
+    def _closing_and_phase_sides(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
+        """Right-hand sides of the m closing conditions of an orbit, one for each of its m shooting intervals,
+        and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages, (K, s, 1,
+        n). ends: change of the end of the last shooting interval caused by `columns` for a fixed start, (1,
+        n)."""
         p = orbit.semidiscrete
-        right = self.border_sides(jump_of(orbit.points, p), columns, ends)
+        right = self.closing_sides(jump_of(orbit.points, p), columns, ends)
         return np.append(right, -phase(orbit.start, p.rod, p.matrices))
 
     def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:

@@ -81,7 +81,7 @@ class SpecialBoundaries:
         index, behind = divmod(item, 2)
         one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _traced(limits, one, located(one.number), self.special).arrays()
+        return _trace_half_curve(limits, one, located(one.number), self.special).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
@@ -194,7 +194,7 @@ class _CurvesOfKind:
         return False
 
 
-def _traced(
+def _trace_half_curve(
     limits: SpecialCurveProblem,
     one: RowSpecialPoint,
     located: Iterable[SpecialPoint],
@@ -216,12 +216,12 @@ def _traced(
         points, end = limits.follow_from(same[0], one.row)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
-    distances = {i: _distance(limits, points, other) for i, other in enumerate(special)}
+    distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
     near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.max_distance}
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
-def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
+def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
     """Distance along the row of special point `one` from a curve, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
@@ -229,7 +229,7 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= row_coordinate <= high or not _near(limits, a, b, one):
+        if not low <= row_coordinate <= high or not _near_chord(limits, a, b, one):
             continue
         try:
             crossing = limits.on_row(a, b, row_coordinate)
@@ -240,7 +240,7 @@ def _distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: R
     return best
 
 
-def _near(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
     x = limits.line.coordinate(one.at)
     ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))

@@ -137,7 +137,7 @@ class TracedHalfCurve:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
         the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby special
         point."""
-        points = [] if self.half is None else [_numbers(point) for point in self.half.points]
+        points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
             "end": np.array([0.0 if self.half is None else float(self.half.end)]),
@@ -152,7 +152,7 @@ class TracedHalfCurve:
         return cls(half, {int(index): float(distance) for index, distance in arrays["distances"]})
 
 
-def _numbers(point: CurvePoint) -> list[float]:
+def _point_numbers(point: CurvePoint) -> list[float]:
     return [getattr(point, name) for name in CurvePoint.__slots__]
 
 

@@ -64,7 +64,7 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     return float(beyond[np.argmin(np.abs(beyond))])
 
 
-def _at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
+def _test_value_at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
     """Value of the test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
     scale, ahead: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
@@ -92,26 +92,26 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
             segment.start_on(mesh)
-            length, orbit, slope = _zero(kind, segment, length, slope)
+            length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
             last = point
-            point = _point_at(kind, orbit, start.scale.name)
+            point = _special_point_at(kind, orbit, start.scale.name)
             if last is not None:
-                point = _with_errors(point, last, start, end)
+                point = _with_mesh_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
             # Every second mesh is chosen from the measured error; the next mesh is only slightly finer, for
             # comparison.
-            mesh = _finer(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
+            mesh = _finer_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.allowed:
                 break
         if point is None or np.isnan(point.error):
             raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
     except Unsolvable as why:
-        return _between(kind, start, end, f"the special point ({kind.name}) is not located: {why}")
+        return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {why}")
     return point
 
 
-def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
+def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
@@ -126,7 +126,9 @@ def _finer(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
 
 
-def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint) -> SpecialPoint:
+def _with_mesh_errors(
+    point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint
+) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
     safety factor.
 
@@ -157,7 +159,7 @@ def _with_errors(point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: 
     )
 
 
-def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
+def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
     """The special point of a kind at the solved cycle `orbit`; all errors are NaN. name: continuation
     parameter."""
     path = CyclePath(orbit)
@@ -171,7 +173,7 @@ def _point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
     )
 
 
-def _between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
+def _unlocated_point(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
     """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
     the differences between the two cycles as errors. message: cause of the failure."""
     name = start.scale.name
@@ -196,7 +198,7 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
     bracketing on a segment; raises Unsolvable."""
     start = segment.start
     known = ((0.0, start), (segment.length, segment.end))
-    values = {at: _at_end(kind, start.scale, start.ahead, point) for at, point in known}
+    values = {at: _test_value_at_end(kind, start.scale, start.unit_tangent, point) for at, point in known}
 
     def kept(length: float) -> float:
         values[length] = test_function(kind, segment, segment.cycle_at(length))
@@ -211,7 +213,7 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
     return at - values[at] / slope, slope
 
 
-def _zero(
+def _zero_by_secants(
     kind: SpecialKind, segment: BranchSegment, guess: float, slope: float
 ) -> tuple[float, Orbit, float]:
     """(arc length of the zero of the test function near `guess`, cycle at this zero, slope of the test

@@ -33,7 +33,7 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
     if start.parameter_rate * end.parameter_rate < 0:
         found.append(SpecialKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
-    if (_beyond_minus_one(start) - _beyond_minus_one(end)) % 2:
+    if (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
         found.append(kind_at_minus_one(start.orbit))
     change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
@@ -43,7 +43,7 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
     return found, len(found) <= 1 and abs(change - len(found)) <= slack
 
 
-def _beyond_minus_one(point: ArcPoint) -> int:
+def _count_beyond_minus_one(point: ArcPoint) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
     h = point.partial_multipliers
     return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h))).sum())

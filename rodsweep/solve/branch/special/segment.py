@@ -19,7 +19,9 @@ class BranchSegment:
         self.start = start
         self.end = end
         self.length = arc_length_between(start, end)
-        self._back = float(end.ahead @ (end.scale.components(end.orbit) - end.scale.components(start.orbit)))
+        self._back = float(
+            end.unit_tangent @ (end.scale.components(end.orbit) - end.scale.components(start.orbit))
+        )
         self._known: tuple[float, Orbit, Array] | None = None
 
     def predicted(self, length: float) -> Orbit:
@@ -49,7 +51,7 @@ class BranchSegment:
         found = condition.solve_cycle(
             start, SPECIAL_POINT_SETTINGS.cycle_tolerance, workspace, SPECIAL_POINT_SETTINGS.matrix_distance
         )
-        function = FoldFunction(bordered_matrix_of(found), self.start.ahead, False)
+        function = FoldFunction(bordered_matrix_of(found), self.start.unit_tangent, False)
         correct_fully(function, found.orbit)
         self._known = length, found.orbit, function.vectors
         return found

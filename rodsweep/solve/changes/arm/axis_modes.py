@@ -69,8 +69,8 @@ class AxisModesOfPath:
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.certify = certify
-        self.known: dict[float, AxisModes] = {}
-        self.beyond: dict[float, float] = {}
+        self.modes_by_p: dict[float, AxisModes] = {}
+        self.replacement_p: dict[float, float] = {}
 
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
@@ -82,30 +82,30 @@ class AxisModesOfPath:
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
-        if p not in self.known:
+        if p not in self.modes_by_p:
             try:
-                self.known[p] = self._computed(p, beside)
+                self.modes_by_p[p] = self._compute_modes(p, beside)
             except Unsolvable:
-                replacement = self._beyond(p)
+                replacement = self._modes_at_replacement(p)
                 if replacement is None:
                     raise
-                self.known[p] = replacement
-        return self.known[p]
+                self.modes_by_p[p] = replacement
+        return self.modes_by_p[p]
 
-    def _beyond(self, p: float) -> AxisModes | None:
+    def _modes_at_replacement(self, p: float) -> AxisModes | None:
         """The modes at the path variable that replaces p; None if there is none or its modes cannot be
         computed."""
-        if p not in self.beyond:
+        if p not in self.replacement_p:
             return None
         try:
-            return self._computed(self.beyond[p], None)
+            return self._compute_modes(self.replacement_p[p], None)
         except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
             return None
 
-    def _computed(self, p: float, beside: Complex | None) -> AxisModes:
+    def _compute_modes(self, p: float, beside: Complex | None) -> AxisModes:
         """The modes at path variable p; raises Unsolvable. beside: as in `modes_at`."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
-        near = min(self.known.values(), key=lambda place: abs(place.p - p), default=None)
+        near = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
         growing = 0 if near is None else near.unstable
         found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
         return found or self._leading_modes(p, growing)

@@ -21,15 +21,15 @@ from .path import ArmPath
 class ArmCrossingSettings:
     """Settings of the search for crossings along a path of arms."""
 
-    beyond_the_list: float = 2.0
-    smallest_first: float = 1e-3
+    full_list_ratio: float = 2.0
+    min_halved_interval: float = 1e-3
     """An interval is halved before its search if the number of pairs expected to grow at its right end
-    exceeds `beyond_the_list` times the maximum number of crossings, unless the interval is shorter than
-    `smallest_first` times the path."""
-    most_at_once: int = 6
+    exceeds `full_list_ratio` times the maximum number of crossings, unless the interval is shorter than
+    `min_halved_interval` times the path."""
+    max_pairs_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
-    higher: float = 4.0
+    max_frequency_ratio: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest known
     |w|."""
     same_errors: float = 10.0
@@ -58,13 +58,13 @@ ARM_CROSSING_SETTINGS = ArmCrossingSettings()
 class CrossingSearch:
     """Search for crossings along a path.
 
-    found: crossings by path variable p. gaps: intervals of p that may contain two crossings.
+    crossings_by_p: crossings by path variable p. gaps: intervals of p that may contain two crossings.
     """
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
-        self.places = AxisModesOfPath(problem, certify)
-        self.found: dict[float, Crossing] = {}
+        self.axis_modes = AxisModesOfPath(problem, certify)
+        self.crossings_by_p: dict[float, Crossing] = {}
         self.gaps: list[tuple[float, float]] = []
 
     def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
@@ -77,10 +77,10 @@ class CrossingSearch:
         """
         intervals = SearchedIntervals(edges)
         beside = ARM_CROSSING_SETTINGS.count_distance * intervals.length
-        self.places.beyond = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
-        self.places.modes_at(edges[0])
+        self.axis_modes.replacement_p = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
+        self.axis_modes.modes_at(edges[0])
         for a, b in intervals:
-            if sum(p < a for p in self.found) > most:
+            if sum(p < a for p in self.crossings_by_p) > most:
                 intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
                 continue
             if self._is_too_long(a, b, most, intervals.length):
@@ -90,9 +90,9 @@ class CrossingSearch:
                 self._search(a, b, intervals)
             except Unsolvable as why:
                 intervals.end_within((a, b), str(why))
-                self.found = {p: crossing for p, crossing in self.found.items() if p <= a}
-        found = [self.found[p] for p in sorted(self.found)]
-        return [one for one in found if self._may_lie_within(one, edges[0], edges[-1])], intervals.reach
+                self.crossings_by_p = {p: crossing for p, crossing in self.crossings_by_p.items() if p <= a}
+        found = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
+        return [one for one in found if self._may_lie_within(one, edges[0], edges[-1])], intervals.end
 
     def _may_lie_within(self, crossing: Crossing, low: float, high: float) -> bool:
         """Whether path variables from `low` to `high` lie within the error of `crossing`."""
@@ -103,16 +103,18 @@ class CrossingSearch:
     def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
         """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
         likely to be full before b, where a count is expensive. length: length of the path."""
-        if b in self.places.known or b - a < ARM_CROSSING_SETTINGS.smallest_first * length:
+        if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
         expected = self.problem.expected_growing(b)
-        return self.places.has_many_modes(b) and expected > ARM_CROSSING_SETTINGS.beyond_the_list * 2 * most
+        return (
+            self.axis_modes.has_many_modes(b) and expected > ARM_CROSSING_SETTINGS.full_list_ratio * 2 * most
+        )
 
     def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
         the interval as a gap if it is too short to be divided; raises Unsolvable."""
-        left = self.places.modes_at(a)
-        right = self.places.modes_at(b)
+        left = self.axis_modes.modes_at(a)
+        right = self.axis_modes.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
         if left.unstable == right.unstable:
             share = next_count_position(left, right)
@@ -123,10 +125,14 @@ class CrossingSearch:
                 return
         else:
             share = 0.5
-            crossings = self._between(left, right)
-            parts = self._parted(crossings, left, right, intervals.length) if crossings else None
+            crossings = self._crossings_between(left, right)
+            parts = (
+                self._intervals_between_crossings(crossings, left, right, intervals.length)
+                if crossings
+                else None
+            )
             if parts is not None:
-                self.found.update(
+                self.crossings_by_p.update(
                     (self.problem.path.coordinate(crossing.at), crossing) for crossing in crossings
                 )
                 intervals.divide(*parts)
@@ -136,7 +142,7 @@ class CrossingSearch:
         middle = a + share * (b - a)
         intervals.divide((a, middle), (middle, b))
 
-    def _parted(
+    def _intervals_between_crossings(
         self, crossings: list[Crossing], left: AxisModes, right: AxisModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
@@ -147,16 +153,19 @@ class CrossingSearch:
         """
         parts: list[tuple[float, float]] = []
         start = left.p
-        highest = ARM_CROSSING_SETTINGS.higher * max(left.largest_modulus, right.largest_modulus)
+        highest = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(left.largest_modulus, right.largest_modulus)
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.at)
             before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
             behind = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance * length)
             beside = None
-            if self.places.has_many_modes(before):
-                beside = self.places.eigenvalues_near_axis(p, highest, np.array([1j * crossing.frequency]))
+            if self.axis_modes.has_many_modes(before):
+                beside = self.axis_modes.eigenvalues_near_axis(
+                    p, highest, np.array([1j * crossing.frequency])
+                )
             change = (
-                self.places.modes_at(behind, beside).unstable - self.places.modes_at(before, beside).unstable
+                self.axis_modes.modes_at(behind, beside).unstable
+                - self.axis_modes.modes_at(before, beside).unstable
             )
             if change != (2 if right.unstable > left.unstable else -2):
                 return None
@@ -164,14 +173,14 @@ class CrossingSearch:
             start = behind
         return [*parts, (start, right.p)]
 
-    def _between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
+    def _crossings_between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
         """Crossings between the arms with the modes `left` and `right`, in increasing order of p, that
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
         change = (right.unstable - left.unstable) // 2
-        many = self.places.has_many_modes(right.p)
+        many = self.axis_modes.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
-        if abs(change) > (ARM_CROSSING_SETTINGS.most_at_once if many else 1):
+        if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if many else 1):
             return []
         if many:
             self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
@@ -182,14 +191,18 @@ class CrossingSearch:
         for start, growing in ((left, not grows), (right, grows)):
             pairs = [i for i, w in enumerate(start.w.tolist()) if w.imag > 0 and (w.real > 0) == growing]
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
-                crossing = self._newton(start, i, (left.p, right.p), grows)
-                if crossing is not None and not any(_same(crossing, other) for other in found.values()):
+                crossing = self._newton_crossing(start, i, (left.p, right.p), grows)
+                if crossing is not None and not any(
+                    _are_same_crossing(crossing, other) for other in found.values()
+                ):
                     found[self.problem.path.coordinate(crossing.at)] = crossing
                 if len(found) == abs(change):
                     return [found[p] for p in sorted(found)]
         return []
 
-    def _newton(self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool) -> Crossing | None:
+    def _newton_crossing(
+        self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool
+    ) -> Crossing | None:
         """The crossing of the imaginary axis by the eigenvalue with index i in `start.w`, by Newton's method
         for p; None if Newton's method does not converge within `ends`, or converges to another crossing.
 
@@ -210,15 +223,15 @@ class CrossingSearch:
             blur = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding * abs(p)
             if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged * blur:
                 # With such an error no root of D is resolved.
-                unresolved = self.places.has_many_modes(
+                unresolved = self.axis_modes.has_many_modes(
                     p
                 ) and not blur <= ARM_CROSSING_SETTINGS.count_distance * (ends[1] - ends[0])
-                return None if unresolved else self._crossing(p, w, slope, blur, grows)
+                return None if unresolved else self._crossing_at(p, w, slope, blur, grows)
         return None
 
-    def _crossing(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
+    def _crossing_at(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
         """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
-        opposite to `grows`. slope: dw/dp. blur: error of p. grows: as in `_newton`."""
+        opposite to `grows`. slope: dw/dp. blur: error of p. grows: as in `_newton_crossing`."""
         # Newton's method may find another pair, which crosses in the opposite direction.
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
@@ -229,7 +242,7 @@ class CrossingSearch:
         return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
-def _same(one: Crossing, other: Crossing) -> bool:
+def _are_same_crossing(one: Crossing, other: Crossing) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
     apart = abs(one.at - other.at) <= ARM_CROSSING_SETTINGS.same_errors * (one.error + other.error)
     return (

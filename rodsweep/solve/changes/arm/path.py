@@ -42,13 +42,13 @@ class ArmPathSettings:
     spare_pair: int = 2
     """Number of modes solved for in addition to the requested modes, if more than `followed_modes` modes are
     requested."""
-    most_growing: float = 16.0
+    max_growing_modes: float = 16.0
     """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
     followed."""
     headroom: float = 4.0
     """Largest |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
-    amid: float = 0.25
+    max_count_offset: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
     the middle is less than this fraction of the interval's length."""
 
@@ -80,7 +80,7 @@ class ArmPath(PathProblem):
         if (
             made is None
             and self._followed is not None
-            and self.expected_growing(p) <= ARM_PATH_SETTINGS.most_growing
+            and self.expected_growing(p) <= ARM_PATH_SETTINGS.max_growing_modes
         ):
             return self._followed.family(p)
         return made
@@ -113,7 +113,7 @@ class ArmPath(PathProblem):
 
     def followed(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
-        if self._followed is None or self.expected_growing(p) > ARM_PATH_SETTINGS.most_growing:
+        if self._followed is None or self.expected_growing(p) > ARM_PATH_SETTINGS.max_growing_modes:
             return None
         found = self._followed.spectrum(p, modes)
         if found is not None:
@@ -151,9 +151,11 @@ class ArmPath(PathProblem):
             error_estimate=earlier.error_estimate[: request.modes],
         )
 
-    def counted_amid(self, low: float, high: float) -> int | None:
+    def known_count_amid(self, low: float, high: float) -> int | None:
         places = [
-            p for p in self._counts if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.amid * (high - low)
+            p
+            for p in self._counts
+            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_offset * (high - low)
         ]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._counts[nearest]
@@ -162,7 +164,7 @@ class ArmPath(PathProblem):
         known = self._followed.slope(guess, p) if self._followed is not None else None
         return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
-    def double(self, x: float, p: float, reach: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         return self._along.double_eigenvalue(x, p, reach)
 
     def count(self, line: float, p: float) -> EigenvalueCount:

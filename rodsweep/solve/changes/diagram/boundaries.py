@@ -15,7 +15,7 @@ from ....determinant.boundary import Boundary
 from ....determinant.parameter_plane import Plane
 from ...continuation.boundaries import Boundaries, trace_boundaries
 from ..unstable_modes import ChangeKind
-from .boundary_curves import BoundaryCurve, trace
+from .boundary_curves import BoundaryCurve, trace_boundary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +34,7 @@ class BoundaryAssignmentSettings:
     |eigenvalue|) are closer than this, because curves do not cross."""
     change_distance: float = 1e-7
     """A threshold closer to a curve than this lies on the curve; both axes have length 1."""
-    beside: float = 0.1
+    chord_overhang: float = 0.1
     """A chord of a curve is searched for a threshold only if the threshold lies at most this far beyond the
     chord's ends along the first axis, which has length 1; continuation steps are shorter than this."""
 
@@ -85,12 +85,12 @@ class _ChangeBoundaries:
         """The curve through the threshold with index `seed`; None if no curve is found."""
         one = self.seeds[seed]
         x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, one.values, strict=True))
-        return trace(one.sign, self.plane, (x, y), one.eigenvalue)
+        return trace_boundary(one.sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
         """Distance of the threshold with index `seed` from `curve` along the first axis; inf if the curve has
         no point near the threshold."""
-        return _distance(self.plane, curve, self.seeds[seed])
+        return _distance_from_curve(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
         """Whether two curves are identical because they share an end; near a crushed rod a threshold may not
@@ -111,7 +111,7 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]
     ).boundaries
 
 
-def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
+def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis; inf if the curve has no point near the threshold."""
     if curve.sign != seed.sign:
@@ -132,9 +132,9 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
         a = points[i]
         b = points[i + 1]
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
-        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.beside:
+        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.chord_overhang:
             continue
-        there = _at_height(Boundary(plane, curve.sign), a, b, y)
+        there = _point_at_height(Boundary(plane, curve.sign), a, b, y)
         if (
             there is not None
             and abs(there[2] - math.log(abs(seed.eigenvalue))) < BOUNDARY_ASSIGNMENT_SETTINGS.same_eigenvalue
@@ -143,7 +143,7 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     return best
 
 
-def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
+def _point_at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
     """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
     None if not found.
 

@@ -61,7 +61,9 @@ class BoundaryCurve:
         return self.sign == 0
 
 
-def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> BoundaryCurve | None:
+def trace_boundary(
+    sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float
+) -> BoundaryCurve | None:
     """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
     curve is found there. sign: as in `BoundaryCurve`.
 
@@ -84,10 +86,12 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.coincident_points
-    return _curve(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
+    return _curve_with_folds(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
-def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]) -> BoundaryCurve:
+def _curve_with_folds(
+    curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
+) -> BoundaryCurve:
     """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
     ends."""
     boundary = curve.boundary
@@ -99,7 +103,7 @@ def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, Bo
         passed = list(map(BoundaryPoint, points, tangents))
         for axis in (0, 1):
             for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
-                fold = _fold(curve, passed[i], passed[i + 1], axis)
+                fold = _fold_between(curve, passed[i], passed[i + 1], axis)
                 if fold is not None:
                     folds.append(fold)
     # One by one: the rounding of NumPy's exp of an array depends on the position of an element in memory.
@@ -109,11 +113,11 @@ def _curve(curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, Bo
     return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
-def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
+def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
     """The fold between the points a and b, where the tangent has no component along `axis`; None if not
     found."""
     boundary = curve.boundary
-    noise = _tangent_noise(curve.boundary)
+    noise = _tangent_error(curve.boundary)
     chord = b.v - a.v
     found = dict[float, BoundarySolution]()
     size = float(np.linalg.norm(chord))
@@ -138,11 +142,15 @@ def _fold(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: i
     return _as_fold(boundary, found[length], axis, along)
 
 
-def _tangent_noise(boundary: Boundary) -> float:
+def _tangent_error(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
     if not boundary.plane.standard:
-        return BOUNDARY_CURVE_SETTINGS.arm_tangent
-    return BOUNDARY_CURVE_SETTINGS.double_tangent if boundary.sign else BOUNDARY_CURVE_SETTINGS.hopf_tangent
+        return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
+    return (
+        BOUNDARY_CURVE_SETTINGS.double_tangent_error
+        if boundary.sign
+        else BOUNDARY_CURVE_SETTINGS.hopf_tangent_error
+    )
 
 
 def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:

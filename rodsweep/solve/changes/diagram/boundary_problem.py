@@ -33,7 +33,7 @@ enough for a smooth drawn curve."""
 class BoundaryCurveSettings:
     """Settings for points, ends and folds of a boundary curve."""
 
-    beside_an_edge: float = 1e-9
+    edge_tolerance: float = 1e-9
     """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
     coincident_points: float = 1e-9
     """Two neighbouring points of a curve are merged if their distance is at most this, as at a start on an
@@ -41,12 +41,12 @@ class BoundaryCurveSettings:
     fold_accuracy: float = 1e-13
     """Convergence tolerance at a fold: largest component of the tangent, and smallest bracket as a fraction
     of the step."""
-    hopf_tangent: float = 1e-12
+    hopf_tangent_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
-    double_tangent: float = 1e-11
+    double_tangent_error: float = 1e-11
     """Error of the unit tangent to a curve of double eigenvalues, from finite differences in the Jacobian of
     D_w."""
-    arm_tangent: float = 3e-10
+    arm_tangent_error: float = 3e-10
     """Error of the unit tangent to a curve of arms, from differences of D, which deviate from the closed form
     by up to 8e-11 for uniform rods."""
     min_loop_points: int = 4
@@ -129,9 +129,9 @@ class ChangeCurveProblem:
         found = self.boundary.point_near(inner + share * (outer.v - inner), np.eye(3)[axis])
         if (
             found is None
-            or not -BOUNDARY_CURVE_SETTINGS.beside_an_edge
+            or not -BOUNDARY_CURVE_SETTINGS.edge_tolerance
             <= found.v[1 - axis]
-            <= 1 + BOUNDARY_CURVE_SETTINGS.beside_an_edge
+            <= 1 + BOUNDARY_CURVE_SETTINGS.edge_tolerance
         ):
             return None
         return BoundaryPoint.on(found, behind[-1].tangent)
@@ -163,7 +163,7 @@ class ChangeCurveProblem:
         v, tangent = followed.solutions[-1]
         if (
             self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min()
-            <= BOUNDARY_CURVE_SETTINGS.beside_an_edge
+            <= BOUNDARY_CURVE_SETTINGS.edge_tolerance
         ):
             return BoundaryEnd.edge
         beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.min_length * tangent, tangent)

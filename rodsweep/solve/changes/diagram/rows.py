@@ -21,7 +21,7 @@ from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, threshol
 from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
 
-class Motion(IntEnum):
+class RodClass(IntEnum):
     """Evolution of a small deflection of the straight rod.
 
     monotone, oscillatory: stable; the slowest mode decays without or with oscillations. flutter: at least one
@@ -53,10 +53,10 @@ class RowRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
-    """One row: class (`Motion`) and number of unstable modes at each value, (values,), and all thresholds
-    along the row."""
+    """One row: class (`RodClass`) and number of unstable modes at each value, (values,), and all thresholds
+    along the row. unstable_count: -1 where the number is unknown or the rod is crushed."""
 
-    motion: NDArray[np.int8]
+    rod_class: NDArray[np.int8]
     unstable_count: NDArray[np.int32]
     changes: Thresholds
     seconds: float = 0.0
@@ -75,13 +75,13 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
     status, never raised."""
 
     def failed(cause: str) -> DiagramRow:
-        return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
+        return _row_of_one_class(ThresholdStatus.failed, request.values, RodClass.undecided, cause)
 
     # ValueError: the search needs a rod whose parameters are outside the allowed range.
-    return outcome_or_failure(lambda: _searched(rod, request), failed, more_failures=(ValueError,))
+    return outcome_or_failure(lambda: _search_row(rod, request), failed, more_failures=(ValueError,))
 
 
-def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
+def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
     crushing force; a row of crushed rods is not searched."""
     name = request.name
@@ -90,39 +90,44 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
     share = rod.build.relative_crushing_force(rod.taper)
     crushing = k1 * share
-    alive = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin) > F
+    uncrushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin) > F
     crushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.meets_crushing) <= F
-    if not alive.any():
-        row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
-        return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
-    start = float(values[alive][0])
-    stop = float(values[alive][-1])
+    nearly_crushed = ~uncrushed & ~crushed
+    if not uncrushed.any():
+        row = _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
+        return replace(row, rod_class=np.where(crushed, RodClass.crushed, RodClass.undecided).astype(np.int8))
+    start = float(values[uncrushed][0])
+    stop = float(values[uncrushed][-1])
     # Thresholds may lie between the last value that is not crushed and the crushing force.
-    if name == "F" and not alive.all():
+    if name == "F" and not uncrushed.all():
         stop = rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)
-    if name == "k1" and not alive.all():
+    if name == "k1" and not uncrushed.all():
         start = rod.F / (share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)) if rod.F > 0 else start
     found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
-    motion, unstable = classes(found, values)
+    classes, unstable = classes_and_unstable_counts(found, values)
     # Nearly crushed rods lie outside the searched range.
-    motion[crushed] = Motion.crushed
+    classes[crushed] = RodClass.crushed
     unstable[crushed] = -1
-    motion[~alive & ~crushed] = Motion.undecided
-    unstable[~alive & ~crushed] = -1
+    classes[nearly_crushed] = RodClass.undecided
+    unstable[nearly_crushed] = -1
     changes = thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
-    return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
+    return DiagramRow(rod_class=classes, unstable_count=unstable, changes=changes)
 
 
-def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: str = "") -> DiagramRow:
+def _row_of_one_class(
+    status: ThresholdStatus, values: Array, rod_class: RodClass, message: str = ""
+) -> DiagramRow:
     """A row without thresholds, with the same class at all values."""
     return DiagramRow(
-        motion=np.full(len(values), motion, dtype=np.int8),
+        rod_class=np.full(len(values), rod_class, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
         changes=empty_thresholds(status, float(values[-1]), message),
     )
 
 
-def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+def classes_and_unstable_counts(
+    found: Transitions, values: Array
+) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
     the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
     the open range, beyond the end of a search that ended early, and where the number is unknown."""
@@ -143,9 +148,9 @@ def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArra
         blurred |= (values >= low) & (values <= high)
         # Crossings in the open range change the number unseen; the count at the end applies behind the range.
         unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
-    motion = np.where(oscillates, Motion.oscillatory, Motion.monotone).astype(np.int8)
-    motion[unstable > 0] = Motion.flutter
+    classes = np.where(oscillates, RodClass.oscillatory, RodClass.monotone).astype(np.int8)
+    classes[unstable > 0] = RodClass.flutter
     blurred |= unstable < 0
-    motion[blurred] = Motion.undecided
+    classes[blurred] = RodClass.undecided
     unstable[blurred] = -1
-    return motion, unstable
+    return classes, unstable

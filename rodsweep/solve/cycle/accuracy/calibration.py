@@ -103,7 +103,7 @@ class Calibration:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
         in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
-            _change(self.tails, _tails(orbit)), 1.0
+            _tail_growth(self.tails, _tails(orbit)), 1.0
         )
         return in_space * self.space, in_time * self.time
 
@@ -187,11 +187,11 @@ def _growth(before: Array, after: Array) -> Array:
     predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
-    growth: Array = np.maximum(_change(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
+    growth: Array = np.maximum(_tail_growth(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
     return growth
 
 
-def _change(before: Array, after: Array) -> Array:
+def _tail_growth(before: Array, after: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
     after: relative tails and size, (3,) each."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
@@ -227,7 +227,7 @@ def _space_rate(before: Array, after: Array, orders: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
     on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
     fall: Array = np.clip(
-        _logarithm(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
+        _log_ratio(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
     )
     return fall
 
@@ -238,11 +238,11 @@ def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMes
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    power: Array = np.clip(_logarithm(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
+    power: Array = np.clip(_log_ratio(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
     return power
 
 
-def _logarithm(before: Array, after: Array) -> Array:
+def _log_ratio(before: Array, after: Array) -> Array:
     """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
     least = EXPONENT_SETTINGS.least_divisor
     quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))

@@ -92,7 +92,7 @@ class CoarserMeshes:
         fine_in_time = mesh.interpolate(time.orbit)
         coarse = mesh.interpolate(self._coarse.orbit)
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
-        by_orders = np.exp(_fall(space.orbit) * (mesh.order - self.mesh.order))
+        by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
@@ -124,7 +124,7 @@ class CoarserMeshes:
         return mesh.full_intervals / self.mesh.full_intervals
 
 
-def _fall(orbit: Orbit) -> float:
+def _pessimistic_space_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
     slowest = COARSER_MESH_SETTINGS.slowest_decay_ratio * tails_of(orbit).decay
     return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
@@ -132,5 +132,5 @@ def _fall(orbit: Orbit) -> float:
 
 def _fewer_orders(near: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
-    needed = ceil(COARSER_MESH_SETTINGS.min_space_decay / _fall(near))
+    needed = ceil(COARSER_MESH_SETTINGS.min_space_decay / _pessimistic_space_decay(near))
     return min(max(needed, COARSER_MESH_SETTINGS.min_fewer_orders), COARSER_MESH_SETTINGS.max_fewer_orders)

@@ -41,12 +41,12 @@ class RefinedCycle:
         return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
 
     @property
-    def divisor(self) -> int:
+    def undecided_divisor(self) -> int:
         """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal."""
         return undecided_divisor(self.path, self.errors.extrema_error)
 
     @property
-    def margin(self) -> float:
+    def modulus_error(self) -> float:
         """Error of `largest_multiplier`; the stability is undecided if this modulus differs from 1 by this
         error or less."""
         return max(self.trivial_error, self.errors.multiplier_error)
@@ -56,7 +56,7 @@ class RefinedCycle:
         """Whether all nontrivial multipliers lie inside the unit circle; None if the largest modulus is 1
         within its error."""
         beyond = self.largest_multiplier - 1
-        return None if abs(beyond) <= self.margin else beyond < 0
+        return None if abs(beyond) <= self.modulus_error else beyond < 0
 
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
@@ -65,11 +65,15 @@ class RefinedCycle:
             return CycleStatus.left_the_model, f"smallest h1 = {self.measures.least_stretch:.3g} on the cycle"
         if self.errors.largest > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
-        if self.divisor != 1:
+        if self.undecided_divisor != 1:
             several = (
-                f"the period found may be {self.divisor} minimal periods, within the errors of its harmonics"
+                f"the period found may be {self.undecided_divisor} minimal periods, "
+                "within the errors of its harmonics"
             )
             return CycleStatus.not_settled, several
         if self.stable is None:
-            return CycleStatus.not_settled, f"the cycle's largest |multiplier| is 1 within {self.margin:.0e}"
+            return (
+                CycleStatus.not_settled,
+                f"the cycle's largest |multiplier| is 1 within {self.modulus_error:.0e}",
+            )
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

@@ -86,7 +86,7 @@ def refined_at_period(
                 )
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
-            found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
+            found = _solve_on_mesh(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
@@ -161,13 +161,15 @@ def calibrated_cycle(
         finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
         if not finer.allowed:
             break
-        found = _on(finer, found, accuracy, parameter)
+        found = _solve_on_mesh(finer, found, accuracy, parameter)
     if best is None:
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
     return best
 
 
-def _on(mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None) -> ConvergedOrbit:
+def _solve_on_mesh(
+    mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None
+) -> ConvergedOrbit:
     """The orbit `found` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that its
     multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter: parameter along which the tangent of the orbit is computed, or None."""

@@ -73,10 +73,10 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     # Only the last returns are stored, so some or all of the returns to skip may be missing already.
     skipped = max(
         0,
-        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.waited)
-        - (transient.waited - len(transient.past)),
+        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.returns)
+        - (transient.returns - len(transient.past_returns)),
     )
-    past = list(transient.past)[skipped:]
+    past = list(transient.past_returns)[skipped:]
     if len(past) < 2 * TORUS_TEST_SETTINGS.min_returns_around:
         return end
     times = np.array([time for time, _ in past])
@@ -114,8 +114,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
     this pair is the only instability of the cycle."""
-    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.margin]
-    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.margin:
+    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.modulus_error]
+    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.modulus_error:
         return None
     return float(abs(np.angle(outside[0])))
 

@@ -66,23 +66,23 @@ class Transient:
         self.unstable = unstable
         self.mode = leading_mode(self.beam)
         self.trace = self._trace(request)
-        self.row = tip_angle_row(self.beam)
+        self.tip_angle_row = tip_angle_row(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
         self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
             rate * period, request.transient > 0
         )
         self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
-        self.small = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
+        self.amplitude = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / TRANSIENT.first_steps_per_period
         """First time step of the next run, in tau2."""
-        self.past: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_stored_returns)
+        self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
-        self.clock = 0.0
-        self.waited = self.steps = self.jumps = self.failures = self.next_newton = 0
+        self.elapsed = 0.0
+        self.returns = self.steps = self.jumps = self.failures = self.next_newton_return = 0
         self.failed_starts = 0
         """Number of successive failures of Newton's method."""
-        self.unsolved = ""
+        self.unsolved_message = ""
         """Message that no cycle is found near a periodic motion; "" while the search continues."""
 
     def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
@@ -93,74 +93,74 @@ class Transient:
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from the state z, (unknowns,)."""
-        z = self._relaxed(z)
+        z = self._after_fast_decay(z)
         first = True
-        while self.waited < self.most_periods and self.steps < self.max_steps and not self.unsolved:
-            report(lambda: SolvePosition(f"{self.waited} of at most {self.most_periods} returns of the tip"))
+        while self.returns < self.most_periods and self.steps < self.max_steps and not self.unsolved_message:
+            report(lambda: SolvePosition(f"{self.returns} of at most {self.most_periods} returns of the tip"))
             run = self._run_of_returns(z, first)
-            if end := early_end(self.beam, run, self.waited):
+            if end := early_end(self.beam, run, self.returns):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
-                return self._ended(status, end.message)
+                return self._result(status, end.message)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
-                return self._ended(CycleStatus.straight, "the motion has decayed to rounding error")
+                return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
                 if self.trace or self.jumps >= TRANSIENT.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
-                z = self._jumped(TRANSIENT.restart_deflection * self.mode.z.real)
+                z = self._after_jump(TRANSIENT.restart_deflection * self.mode.z.real)
                 continue
             early = first
             first = False
-            if len(times) < 3 or (early and self.small.is_slow_mode(times, states)):
+            if len(times) < 3 or (early and self.amplitude.is_slow_mode(times, states)):
                 continue
             shown = self.trace is not None and self.trace.needs_more_motion(z)
-            if not early and not shown and self.small.decays_as_linear(times, states):
-                return self._ended(CycleStatus.straight, "the motion decays at the rate of the leading mode")
+            if not early and not shown and self.amplitude.decays_as_linear(times, states):
+                return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
             jumps = not early and self.jumps < TRANSIENT.max_jumps
-            factor = self.small.scale_to_cycle(times, states) if jumps else None
+            factor = self.amplitude.scale_to_cycle(times, states) if jumps else None
             if factor is not None:
                 if self.trace and not self.trace.is_full:
                     continue  # a motion with a stored path has no jumps
                 scaled = factor * z
                 pull = self.beam.layout.field(scaled, "n1")
                 pull *= factor  # the stretch is quadratic in the deflection
-                z = self._jumped(scaled)
+                z = self._after_jump(scaled)
                 continue
-            cycle = None if self.small.decays_faster(times, states) else self._cycle_from_returns(run)
+            cycle = None if self.amplitude.decays_faster(times, states) else self._cycle_from_returns(run)
             if cycle is not None:
-                return self._ended(*cycle.verdict(self.accuracy), cycle)
-        return self._ended(CycleStatus.not_settled, self._not_settled(z))
+                return self._result(*cycle.verdict(self.accuracy), cycle)
+        return self._result(CycleStatus.not_settled, self._not_settled(z))
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
         times, states: of the returns, (k,) and (k, unknowns)."""
-        self.waited += max(len(times), 1)
+        self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.field(states, "m3")
-        self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
-        self.clock += run.times[-1]
+        self.past_returns.extend(zip(map(float, self.elapsed + times), moments, strict=True))
+        self.elapsed += run.times[-1]
 
-    def _jumped(self, z: Array) -> Array:
+    def _after_jump(self, z: Array) -> Array:
         """The state, (unknowns,), after a jump to the state z, (unknowns,), and the decay of its fast
         components. The earlier returns are discarded."""
         self.jumps += 1
-        self.past.clear()
+        self.past_returns.clear()
         return relax_fast_components(self.beam, z, self.mode.period)
 
     def _not_settled(self, z: Array) -> str:
         """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
-        if self.unsolved:
-            return f"after {counted(self.waited, 'return')} of the tip {self.unsolved}"
+        if self.unsolved_message:
+            return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
         if self._bends_visibly(z):
             work = f" and the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
-            return f"no periodic motion within {counted(self.waited, 'return')} of the tip{work}"
+            return f"no periodic motion within {counted(self.returns, 'return')} of the tip{work}"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "the stretch of the rod has not relaxed"
-        return f"the deflection has decayed after {self.waited} returns, but {why}"
+        return f"the deflection has decayed after {self.returns} returns, but {why}"
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
@@ -176,17 +176,17 @@ class Transient:
             return rate
         return straight_rod(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
-    def _relaxed(self, z: Array) -> Array:
+    def _after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
         after = relax_fast_components(self.beam, z, self.mode.period)
         if self.trace:
-            self.clock = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
-            self.trace.begin(z, after, self.clock)
+            self.elapsed = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
+            self.trace.begin(z, after, self.elapsed)
         return after
 
-    def _ended(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
-        return TransientOutcome(status, why, self.waited, found)
+    def _result(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
+        return TransientOutcome(status, why, self.returns, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
@@ -194,38 +194,39 @@ class Transient:
         expected time per return."""
         returns = TRANSIENT.first_returns if first else TRANSIENT.returns_per_run
         scheme = self.first_scheme if first else self.scheme
-        limit = until_returns(self.row, z, returns)
+        limit = until_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
-        last = self.past[-1][0] - self.past[-2][0] if len(self.past) > 1 else 0.0
+        last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
         duration = TRANSIENT.max_run_duration * returns * max(self.mode.period, last)
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
         if self.trace:
-            self.trace.add(run, self.clock)
+            self.trace.add(run, self.elapsed)
         return run
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
-        None. After too many failures of Newton's method near a periodic motion, sets `unsolved`."""
+        None, also until the next attempt is due: the returns between attempts double with each attempt. After
+        too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
         turns, distance = repetition(
-            [state for _, state in self.past][-1 - RETURN_SETTINGS.max_returns_per_period :]
+            [state for _, state in self.past_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
         )
         if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
-            self.unsolved = (
+            self.unsolved_message = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
-        if distance >= self._newton_start_distance() or self.waited < self.next_newton:
+        if distance >= self._newton_start_distance() or self.returns < self.next_newton_return:
             return None
-        self.next_newton = self.waited + TRANSIENT.returns_per_run * 2**self.failures
+        self.next_newton_return = self.returns + TRANSIENT.returns_per_run * 2**self.failures
         self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
-        return self._cycle_near(run, self.past[-1][0] - self.past[-1 - turns][0], turns)
+        return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns)
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
         distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
-        settles = self.trace and self.waited < self.most_periods // 2
+        settles = self.trace and self.returns < self.most_periods // 2
         return min(distance, TRANSIENT.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:

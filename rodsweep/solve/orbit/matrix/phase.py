@@ -63,8 +63,8 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
 
 @compiled_for_vectors
 def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
-    """Writes the derivative of `phase` with respect to the state `start`, (n,), into `row`, (n,). c, m: as in
-    `phase`."""
+    """Writes the derivative of the tip's lateral velocity (`phase`) with respect to the state `start`, (n,),
+    into `row`, (n,). c: rod at the nodes of the mesh. m: matrices of the mesh."""
     n = len(start)
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)

@@ -48,7 +48,7 @@ def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> Corre
 
 
 @compiled
-def _settled(
+def _converged_step_and_error(
     first: CorrectedEigenvalue, crowding: float, exact: bool, level: PropagatorsWithSlopes
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
@@ -103,7 +103,7 @@ def _correct_all(
             w[k] = first.w
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
-            last, error[k] = _settled(first, curvature_estimate(w, k), rank <= modes, level)
+            last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
             # Interpolation changes D as relative changes of w and p by `ARM_FAMILY_SETTINGS.converged_tail`
             # would.
             error[k] += ARM_FAMILY_SETTINGS.converged_tail * (abs(last.w) + abs(p * last.slope))

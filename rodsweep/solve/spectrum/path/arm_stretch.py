@@ -77,7 +77,7 @@ def follow_interval(
         if before is None or number >= before.further_modes
     ):
         if best is not None and not (
-            _too_few(best) or (not counts_follow and _proves_more(path, best, request, further))
+            _follows_too_few_modes(best) or (not counts_follow and _proves_more(path, best, request, further))
         ):
             break
         found = (
@@ -90,12 +90,12 @@ def follow_interval(
         enough = best is not None and best.proved_points(
             request.modes
         ) >= ARM_STRETCH_SETTINGS.min_proved_fraction * len(best.p)
-        if best is not None and enough and not _too_few(best):
+        if best is not None and enough and not _follows_too_few_modes(best):
             break
     return best
 
 
-def _too_few(found: ArmInterval) -> bool:
+def _follows_too_few_modes(found: ArmInterval) -> bool:
     """Whether too few modes are followed to prove all growing modes complete at every point."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
     return bool(growing + ARM_STRETCH_SETTINGS.modes_beyond_growing > found.track.w.shape[1])
@@ -107,7 +107,7 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
     """
     here = found.proved_points(modes)
     there = other.proved_points(modes)
-    return here > there or (here == there and _too_few(other))
+    return here > there or (here == there and _follows_too_few_modes(other))
 
 
 def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
@@ -120,7 +120,7 @@ def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, furth
 def _proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int) -> bool:
     """Whether the wanted modes at path variable p, inside the interval `found`, would be proved complete if
     `further` modes were followed in addition."""
-    roots = _roots(path, p, request, further)
+    roots = _leading_roots(path, p, request, further)
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.rod_at(p))
@@ -219,11 +219,11 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: i
     """Eigenvalues at p from which following starts, (m,), without unpaired complex eigenvalues; None if the
     solve fails.
     """
-    found = _roots(path, p, request, further)
+    found = _leading_roots(path, p, request, further)
     return None if found is None else found.w[has_conjugate(found.w)]
 
 
-def _roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
+def _leading_roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
     """The leading eigenvalues at path variable p, without a proof: the wanted modes and `further` more modes;
     None if the solve fails.
     """

@@ -68,20 +68,22 @@ def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
         end = first + len(run)
         patience = 1
         while end - first >= NO_CROSSING_SETTINGS.arms:
-            chain = _chain(path, found, followed, (first, end - 1), modes)
+            chain = _longest_chain(path, found, followed, (first, end - 1), modes)
             if not chain.lines:
                 # Further points often fail, too, so every further failure skips twice as many points.
                 first += patience
                 patience *= 2
                 continue
             end_of_chain = chain.points[-1], chain.lines[-1]
-            if _confirmed(path, found, followed, end_of_chain, modes) is not None:
-                _store(found, followed, chain)
+            if _confirmed_line_at(path, found, followed, end_of_chain, modes) is not None:
+                _store_proved_modes(found, followed, chain)
             first = chain.points[-1] + 1
             patience = 1
 
 
-def _chain(path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[int, int], modes: int) -> Chain:
+def _longest_chain(
+    path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[int, int], modes: int
+) -> Chain:
     """The longest chain of points found from the first to the last index in `ends`; without lines if no count
     can be carried from the first point."""
     here, last = ends
@@ -95,10 +97,10 @@ def _chain(path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[in
             there = last
         line = float(followed.lines[here : there + 1].min())
         if counted is None or counted > line:
-            counted = _confirmed(path, found, followed, (here, line), modes)
+            counted = _confirmed_line_at(path, found, followed, (here, line), modes)
             if counted is None:
                 break
-        if _is_free(path, found, line, (here, there)):
+        if _is_line_free(path, found, line, (here, there)):
             chain.points.append(there)
             chain.lines.append(line)
             counted = line
@@ -111,7 +113,7 @@ def _chain(path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[in
     return chain
 
 
-def _confirmed(
+def _confirmed_line_at(
     path: Path, found: ArmInterval, followed: Eigenvalues, at: tuple[int, float], modes: int
 ) -> float | None:
     """`confirmed_line` at a point, for the line at most. at: (index of the point, real part of the line)."""
@@ -120,7 +122,7 @@ def _confirmed(
     return confirmed_line(path, found, float(found.p[i]), here, modes, line)
 
 
-def _is_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
+def _is_line_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
     """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
     points = sampled_points(*ends)
     known = found.track.w[points], found.track.error[points]
@@ -129,7 +131,7 @@ def _is_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, int])
     return proves_no_crossing(line, rods, p, known, found.family, found.hulls)
 
 
-def _store(found: ArmInterval, followed: Eigenvalues, chain: Chain) -> None:
+def _store_proved_modes(found: ArmInterval, followed: Eigenvalues, chain: Chain) -> None:
     """Fills `found.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
     line."""
     for (first, last), line in zip(pairwise(chain.points), chain.lines, strict=True):

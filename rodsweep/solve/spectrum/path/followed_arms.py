@@ -34,22 +34,24 @@ class FollowedArms:
         self.path = path
         self.request = SpectrumRequest(modes, ARM_STRETCH_SETTINGS.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
-        self._judged: dict[float, list[ProvedEigenvalues]] = {}
+        self._proved_at: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
-        self._next = 0
-        self._patience = 1
+        self._next_point = 0
+        self._points_skipped_on_failure = 1
 
     def _follow_to(self, p: float) -> None:
         """Follows eigenvalues up to the first point at or beyond p."""
-        while self._next < len(self._p) and (self._next == 0 or self._p[self._next] < p):
+        while self._next_point < len(self._p) and (self._next_point == 0 or self._p[self._next_point] < p):
             before = self.intervals[-1] if self.intervals else None
-            found = follow_interval(self.path, self._p[self._next :], self.request, before)
+            found = follow_interval(self.path, self._p[self._next_point :], self.request, before)
             if found is not None:
                 self.intervals.append(found)
             # Intervals share their end points. After a failure the next points often fail, too,
             # so every further failure skips twice as many points.
-            self._next += max(len(found.p) - 1, 1) if found is not None else self._patience
-            self._patience = 1 if found is not None else 2 * self._patience
+            self._next_point += (
+                max(len(found.p) - 1, 1) if found is not None else self._points_skipped_on_failure
+            )
+            self._points_skipped_on_failure = 1 if found is not None else 2 * self._points_skipped_on_failure
 
     def family(self, p: float) -> ArmFamily | None:
         """The family of interpolated arms that contains p; None if no interval reached p."""
@@ -59,7 +61,7 @@ class FollowedArms:
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
         w."""
-        for one in self._judged.get(p, []):
+        for one in self._proved_at.get(p, []):
             for k in np.flatnonzero(one.track.w[0] == w).tolist():
                 return complex(one.track.slope[0, k]), float(one.track.error[0, k])
         return None
@@ -69,9 +71,9 @@ class FollowedArms:
         complete.
         """
         self._follow_to(p)
-        judged = self._judged.setdefault(p, [])
+        judged = self._proved_at.setdefault(p, [])
         if not any(modes <= one.max_modes for one in judged):
-            judged += self._judge(p, modes)
+            judged += self._prove_at(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
 
@@ -85,7 +87,7 @@ class FollowedArms:
                     return KnownRoots(here.w[0], here.error[0])
         return None
 
-    def _judge(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
+    def _prove_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
         """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
         for `modes`.
 

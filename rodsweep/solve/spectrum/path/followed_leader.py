@@ -46,18 +46,18 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
     several eigenvalues. accuracy: largest relative error.
     """
     if rod.standard:
-        return _of_uniform(rod, complex(near[0]), accuracy)
+        return _follow_leader_of_uniform(rod, complex(near[0]), accuracy)
     if rod.uniform:
         linear, rate = rod.equivalent
         found = follow_leading_eigenvalue(linear, near / rate, accuracy)
         return found and LeadingEigenvalue(rate * found.w, rate * found.error, rate * found.eigenvalues)
     try:
-        return _of_arm(rod, near, accuracy)
+        return _follow_leader_of_arm(rod, near, accuracy)
     except FloatingPointError:  # D needs too many elements
         return None
 
 
-def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
+def _follow_leader_of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue | None:
     """The result of `follow_leading_eigenvalue` for a uniform rod of linear material.
 
     near: leading eigenvalue of the neighbouring rod. accuracy: largest relative error.
@@ -67,11 +67,11 @@ def _of_uniform(rod: Rod, near: complex, accuracy: float) -> LeadingEigenvalue |
     if not _matches_neighbour(w, error, near, accuracy):
         return None
     number = 2 if w.imag else 1
-    leads = any(count_right_of(line, rod).number == number for line in _lines(w))
+    leads = any(count_right_of(line, rod).number == number for line in _lines_for_count(w))
     return LeadingEigenvalue(w, error, np.array([w])) if leads else None
 
 
-def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
+def _follow_leader_of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | None:
     """The result of `follow_leading_eigenvalue` for an arm that is not uniform; raises FloatingPointError if
     D needs too many elements.
 
@@ -85,7 +85,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     first = complex(near[0])
     size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
     if not isfinite(size):
-        size = largest_w_of_count(next(_lines(first)), determinant, hull)
+        size = largest_w_of_count(next(_lines_for_count(first)), determinant, hull)
     determinant.level(size)  # the elements for the proof also serve the eigenvalues
     found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
     w = np.array([root for root, _ in found])
@@ -101,7 +101,7 @@ def _of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEigenvalue | Non
     complete, _ = prove_complete(line_for_proof(leader, float(error[0])), *known, determinant, hull)
     leads = complete or any(
         count_of_arm(line, determinant, hull, *known).number == (known.w.real > line).sum()
-        for line in _lines(leader)
+        for line in _lines_for_count(leader)
     )
     return LeadingEigenvalue(leader, float(error[0]), w) if leads else None
 
@@ -112,7 +112,7 @@ def _matches_neighbour(w: complex, error: float, near: complex, accuracy: float)
     return error <= accuracy * abs(w) and w.imag >= 0 and (w.imag == 0) == (near.imag == 0)
 
 
-def _lines(w: complex) -> Iterator[float]:
+def _lines_for_count(w: complex) -> Iterator[float]:
     """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper count
     first."""
     return (

@@ -87,12 +87,12 @@ def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretc
     """
     began = time.perf_counter()
     n = len(stretch)
-    columns = _unsolved(n, request.modes)
+    columns = _unsolved_fields(n, request.modes)
     solved = np.zeros(n, np.bool_)
     start = 0
     patience = 1
     while start < n:
-        found = _followed(stretch, start, request)
+        found = _followed_eigenvalues(stretch, start, request)
         if found is None:
             # If no proof succeeds, for example without a bound, following is tried less and less often.
             start += patience
@@ -110,7 +110,7 @@ def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretc
     return FollowedStretch(Spectrum(seconds=seconds, **columns), solved)
 
 
-def _unsolved(n: int, modes: int) -> dict[str, Any]:
+def _unsolved_fields(n: int, modes: int) -> dict[str, Any]:
     """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
     whole = np.zeros(n, np.int64)
     return {
@@ -125,7 +125,7 @@ def _unsolved(n: int, modes: int) -> dict[str, Any]:
     }
 
 
-def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
+def _followed_eigenvalues(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
     """Eigenvalues followed from the rod with index `start` as far as possible, with counts; None if the first
     rod fails, or for a uniform rod of nonlinear material, which is solved as an equivalent linear rod."""
     rod = stretch.path.rod
@@ -134,7 +134,7 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Followe
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.standard:
         return follow_stretch_of_arms(stretch.path, stretch.path_variables[start:], request)
-    seed = _first_point(stretch.rod(start), request)
+    seed = _first_eigenvalues(stretch.rod(start), request)
     if seed is None:
         return None
     first, complete = seed
@@ -145,13 +145,13 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Followe
     if n == 0:
         return None
     track = slice_track(track, 0, n)
-    known = _known_along(rest, track, modes, complete)
+    known = _proved_counts_along(rest, track, modes, complete)
     reached = slice_track(track, 0, len(known))
     good, unstable = assess_points(reached, known, modes, request.accuracy)
     return FollowedPoints(*leading_eigenvalues(reached, modes), unstable, good)
 
 
-def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
+def _proved_counts_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
 
@@ -178,7 +178,7 @@ def _known_along(stretch: Stretch, track: Track, modes: int, complete: int) -> N
     return known[: at + 1]
 
 
-def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
+def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
     """Returns (eigenvalues, complete); None after a failure or without a proof. eigenvalues: eigenvalues to
     follow, (m,), without unpaired complex eigenvalues. complete: number of eigenvalues proved complete.
     """

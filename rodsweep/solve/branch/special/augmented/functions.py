@@ -90,7 +90,7 @@ class FoldFunction:
         phase_row(orbit.start, p.rod, p.matrices, row)
         along = orbit.form.parameter_derivative(matrix.scale.name)
         shift = phase_change(orbit.start, along, p.rod, p.matrices)
-        closing = matrix.border_sides(jump_of(change.points, p), columns, ends)
+        closing = matrix.closing_sides(jump_of(change.points, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start
         right = np.array(
             [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
