@@ -251,7 +251,7 @@ def parameters() -> str:
         if p.optional:
             having = list(CONFIGS)
             default = f"{p.default:g}; no dimension of the file unless given"
-        key, allowed = f"`parameters.{name}`", p.allowed.phrase
+        key, allowed = f"`parameters.{name}`", p.allowed.description
         rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
 

@@ -17,7 +17,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAGS
-from ..model.arm.quantities import LOADS, RELATIVE
+from ..model.arm.quantities import LOADS, RELATIVE_LOADS
 from ..model.material.build import STANDARD
 from ..solve.exclusive import defer_signals
 from ..tasks.running.job import Job, job_of, machine_memory
@@ -65,7 +65,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
-        names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
+        names = [n for n in ArmSection.model_fields if n not in RELATIVE_LOADS and (loaded or n not in LOADS)]
         known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
@@ -109,7 +109,7 @@ def require_allowed_keys(tree: ConfigTree) -> None:
     which the ranks of the run share.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
-    if arm is None or arm.load_axis not in RELATIVE:
+    if arm is None or arm.load_axis not in RELATIVE_LOADS:
         job_from(tree)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from ..model.arm.quantities import QUANTITIES, UNITS
-from ..model.arm.segments import EXAMPLE
+from ..model.arm.segments import EXAMPLE_SEGMENT
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
 HELP_REMARKS = {
@@ -22,7 +22,8 @@ MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
     "--segment": {
         "multiple": True,
         "metavar": "SEGMENT",
-        "help": f"Segment, such as '{EXAMPLE}', also with inner_radius; repeat the option, from base to tip.",
+        "help": f"Segment, such as '{EXAMPLE_SEGMENT}', also with inner_radius; repeat the option, from base "
+        "to tip.",
     },
     "--law": {"metavar": "LAW", "help": "Constitutive law, linear or neo_hookean; by default linear."},
     "--section": {

@@ -17,7 +17,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ..model.arm.quantities import LOADS, QUANTITIES, RELATIVE, SECTION_SIDES
+from ..model.arm.quantities import LOADS, QUANTITIES, RELATIVE_LOADS, SECTION_SIDES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .arm.axes import LOAD_AXES, NON_LOAD_KEYS
 from .document.refusals import value_type_of_key
@@ -30,7 +30,7 @@ QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
-    **{name: {"minimum": 0} for name in RELATIVE},
+    **{name: {"minimum": 0} for name in RELATIVE_LOADS},
 }
 """Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
 DIALECT = "http://json-schema.org/draft-07/schema#"
@@ -148,9 +148,9 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
-            words = ("inf", "+inf") if parameter.rigid else ()
+            words = ("inf", "+inf") if parameter.rigid_adjective else ()
             properties[name]["anyOf"] = [
-                with_axis_bounds(kind, parameter.allowed.bound, words) for kind in kinds
+                with_axis_bounds(kind, parameter.allowed.schema_bounds, words) for kind in kinds
             ]
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from ..errors import InputError
 from ..model.material.build import Build
-from ..model.material.profile import FACTORS, Profile
+from ..model.material.profile import FACTOR_NAMES, Profile
 from .values import Number, StrictSection, cell_number, short_repr
 
 MOST_ROWS = 1000
@@ -47,7 +47,7 @@ class ProfileTable(StrictSection):
     @cached_property
     def profile(self) -> Profile:
         """The `Profile` of this table; ValueError for an invalid table."""
-        given = {name: getattr(self, name) for name in FACTORS}
+        given = {name: getattr(self, name) for name in FACTOR_NAMES}
         columns = {name: [1.0] * len(self.u) if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
@@ -128,8 +128,8 @@ def read_profile(path: Path) -> dict[str, list[float]]:
     if len(text) > LARGEST_FILE or len(rows) > MOST_ROWS + 1:
         raise InputError(f"{where} has more than {MOST_ROWS} rows")
     header = rows[0] if rows else []
-    if "u" not in header or not set(header) <= {"u", *FACTORS} or len(set(header)) < len(header):
-        raise InputError(f"{where}: the header must name u and any of {', '.join(FACTORS)}, each once")
+    if "u" not in header or not set(header) <= {"u", *FACTOR_NAMES} or len(set(header)) < len(header):
+        raise InputError(f"{where}: the header must name u and any of {', '.join(FACTOR_NAMES)}, each once")
     columns: dict[str, list[float]] = {name: [] for name in header}
     for number, row in enumerate(rows[1:], 1):
         row_name = f"{where}: row {number}"

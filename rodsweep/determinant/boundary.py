@@ -125,7 +125,7 @@ class Boundary:
         """`equations` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w = sign
         exp(h).
         """
-        w = self._real(v)
+        w = self._real_eigenvalue(v)
         here = self.plane.determinant(w, v[0], v[1])
         slope = (w * here.D_w).real  # w D_w = dD/dh
         jacobian = np.empty((2, 3))
@@ -141,13 +141,13 @@ class Boundary:
                 step = np.zeros(3)
                 step[i] = offset * h
                 shifted = v + step
-                w = self._real(shifted)
+                w = self._real_eigenvalue(shifted)
                 neighbour = self.plane.value(w, shifted[0], shifted[1])
                 jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
         return residual, jacobian / scale[:, None], float(here.rounding / scale.min())
 
-    def _real(self, v: Array) -> complex:
+    def _real_eigenvalue(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""
         return complex(self.sign * math.exp(v[2]), 0.0)

@@ -81,10 +81,10 @@ def _noise_by_roots(
     one, blur_M, blur_square = blurs
     c1 = modulus(of_u.cosh)
     f1 = modulus(of_u.sinhc)
-    g1 = modulus(of_u.slope)
+    g1 = modulus(of_u.sinhc_slope)
     c2 = modulus(of_v.cosh)
     f2 = modulus(of_v.sinhc)
-    g2 = modulus(of_v.slope)
+    g2 = modulus(of_v.sinhc_slope)
     per_root = 1 / modulus(apart)
     blur_u = (u * blur_M + blur_square) * per_root + u
     blur_v = (v * blur_M + blur_square) * per_root + v

@@ -48,7 +48,7 @@ class HyperbolicFunctions(NamedTuple):
 
     cosh: complex
     sinhc: complex
-    slope: complex
+    sinhc_slope: complex
 
 
 @compiled

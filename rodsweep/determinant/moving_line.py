@@ -68,7 +68,7 @@ class Strip(NamedTuple):
 
     p_start: float
     p_stop: float
-    y: float
+    y_start: float
     half_height: float
 
 
@@ -108,14 +108,14 @@ def is_free_of_zeros(
     radii = (math.hypot(half_y, tilt * half_p), half_p)
     if abs(D) > 2 * rounding:
         if is_remainder_below(
-            centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.clearance * abs(D) - rounding, 1
+            centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.max_relative_change * abs(D) - rounding, 1
         ):
             return True, 0.0, 0.0
         mean = mean_growth_rates(centre)
         in_w = D_w - mean[0] * D
         in_p = D_p - mean[1] * D
         room = (
-            DISC_BOUND_SETTINGS.clearance
+            DISC_BOUND_SETTINGS.max_relative_change
             * distance_from_zero_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p)
             - rounding
         )
@@ -140,7 +140,7 @@ def proves_no_crossing(
         first, last = last, first
     depth = -min(first.line, last.line)
     a = math.sqrt(
-        (1 + BOX_SETTINGS.margin) * squared_amplification_between(first.coefficients, last.coefficients)
+        (1 + BOX_SETTINGS.bound_excess) * squared_amplification_between(first.coefficients, last.coefficients)
     )
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0

@@ -5,7 +5,7 @@ from functools import cached_property
 from math import exp, inf, log
 from typing import NamedTuple
 
-from ..model.parameters import CRUSHING, PARAMETERS
+from ..model.parameters import CRUSHING_PARAMETERS, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
 from .exponents import ROUND_OFF
@@ -110,9 +110,9 @@ class Plane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         if not self.standard:
-            return self._of_arms(w, x, y)
-        (D, D_w, _, S, noise), D_x = self._along(w, rod, self.axes[0])
-        _, D_y = self._along(w, rod, self.axes[1])
+            return self._determinant_of_arms(w, x, y)
+        (D, D_w, _, S, noise), D_x = self._determinant_along_axis(w, rod, self.axes[0])
+        _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
         # The rounding errors of w, x and y add to the rounding error of D.
         blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
@@ -126,11 +126,11 @@ class Plane:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
         (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
         """
-        h = self.small_step(x, y, which, PLANE_SETTINGS.difference_step)
+        h = self.difference_step_at(x, y, which, PLANE_SETTINGS.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
 
-    def _of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
+    def _determinant_of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
         differences.
         """
@@ -148,14 +148,14 @@ class Plane:
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
     @staticmethod
-    def _along(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
+    def _determinant_along_axis(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
         """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
         coordinate of `axis`).
         """
         value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
         return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
-    def small_step(self, x: float, y: float, which: int, largest: float) -> float:
+    def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:
         """A difference step along axis number `which` at (x, y): the smaller of `largest` and the fraction
         `step_to_crushing` of the distance to a crushed rod. The step is `largest` if no value on the axis
         crushes the rod.
@@ -163,7 +163,7 @@ class Plane:
         rod = self.rod_at(x, y)
         axis = self.axes[which]
         force = rod.crushing_force
-        if force == inf or axis.name not in (*CRUSHING, "taper"):
+        if force == inf or axis.name not in (*CRUSHING_PARAMETERS, "taper"):
             return largest
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)

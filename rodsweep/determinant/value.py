@@ -58,13 +58,13 @@ class DeterminantValue(NamedTuple):
 
 
 class ExponentDerivatives(NamedTuple):
-    """P, its derivatives P_w and P_ww by w, z+ (`plus`) and z- (`minus`), see the module docstring."""
+    """P, its derivatives P_w and P_ww by w, z+ (`z_plus`) and z- (`z_minus`), see the module docstring."""
 
     P: complex
     P_w: complex
     P_ww: complex
-    plus: complex
-    minus: complex
+    z_plus: complex
+    z_minus: complex
 
 
 @compiled

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.compiled.compilation import compiled
-from ..model.material.jump import Unknowns, unknowns_before_jump, unknowns_behind_jump
+from ..model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on
@@ -36,7 +36,7 @@ def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> N
     sides, (2, 7).
     """
     for i in range(len(q1)):
-        q = Unknowns(q1[i], q3[i])
+        q = LawUnknowns(q1[i], q3[i])
         a = unknowns_before_jump(law, sides, q)
         b = unknowns_behind_jump(sides, q, a)
         out[0, i] = a.q1

@@ -12,8 +12,8 @@ Arrays over the nodes of every element contain the elements one after the other,
 from ..arrays import Array
 from ..model.compiled.compilation import compiled, compiled_for_vectors
 from ..model.material.jump import (
-    SHEAR,
-    Unknowns,
+    SHEAR_COLUMN,
+    LawUnknowns,
     changes_beside_jump,
     unknowns_before_jump,
     unknowns_behind_jump,
@@ -48,12 +48,12 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
         sides = rod.sides[j]
         before = index_before_jump(node, order)
         for k in range(S.shape[1]):
-            q = Unknowns(S[0, k, node], S[2, k, node])
+            q = LawUnknowns(S[0, k, node], S[2, k, node])
             first = unknowns_before_jump(rod.law, sides, q)
             beside = first, unknowns_behind_jump(sides, q, first)
             for side in range(2):
                 out[0, k, before + side] = sides[side, 0] + sides[side, 1] * beside[side].q1
-                out[1, k, before + side] = sides[side, SHEAR] * S[1, k, node]
+                out[1, k, before + side] = sides[side, SHEAR_COLUMN] * S[1, k, node]
                 out[2, k, before + side] = sides[side, 2] * beside[side].q3
 
 
@@ -76,12 +76,12 @@ def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: i
         c2 = rod.compliance[1, node]
         c3 = rod.compliance[2, node]
         for k in range(rates.shape[1]):
-            q = Unknowns(S[0, k, node], S[2, k, node])
+            q = LawUnknowns(S[0, k, node], S[2, k, node])
             # The strain of a rigid component is constant for every stress.
             dq1 = rates[0, k, node] / c1 if c1 > 0 else 0.0
             dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
-            changes = changes_beside_jump(rod.law, sides, q, Unknowns(dq1, rates[2, k, node] / c3))
+            changes = changes_beside_jump(rod.law, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3))
             for side in range(2):
                 out[0, k, before + side] = sides[side, 1] * changes[side].q1
-                out[1, k, before + side] = sides[side, SHEAR] * dq2
+                out[1, k, before + side] = sides[side, SHEAR_COLUMN] * dq2
                 out[2, k, before + side] = sides[side, 2] * changes[side].q3

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..model.balance import Material
-from ..model.material.jump import COLUMNS
+from ..model.material.jump import SIDE_COLUMNS
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
 
@@ -45,7 +45,7 @@ class Jumps(NamedTuple):
     sides: Array
 
 
-NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(COLUMNS))))
+NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(SIDE_COLUMNS))))
 """Jumps of a rod with a continuous material: arrays of length 0."""
 NO_JUMP_CHANGE = np.zeros((0, 2, 3))
 """Derivatives of the material on both sides of jumps, for a rod without jumps or with a linear law: an array

@@ -43,7 +43,7 @@ from math import sqrt, tan, tanh
 
 from .rod import Rod
 
-SERIES_BELOW = 1e-4
+TANH_SERIES_BELOW = 1e-4
 """If abs(kappa^2) is below this, `tip_layer_factor` computes tanh(kappa)/kappa by a power series, because the
 quotient loses digits."""
 
@@ -57,7 +57,7 @@ def tip_layer_factor(rod: Rod) -> float:
         return 0.0
     square = rod.g * rod.nu / rod.c2
     # For imaginary kappa tanh becomes tan. The series holds for either sign of kappa^2.
-    if abs(square) < SERIES_BELOW:
+    if abs(square) < TANH_SERIES_BELOW:
         return 1 - square / 3 + 2 * square**2 / 15
     kappa = sqrt(abs(square))
     return tanh(kappa) / kappa if square > 0 else tan(kappa) / kappa

@@ -10,24 +10,24 @@ the rod is a loop over the nonzero constants.
 
 from typing import NamedTuple
 
-Term = tuple[int, int, int, float]
+StructureConstant = tuple[int, int, int, float]
 """A nonzero structure constant s_abc of a Lie algebra with its indices, (a, b, c, s_abc)."""
-Pattern = tuple[tuple[bool, ...], ...]
+SparsityPattern = tuple[tuple[bool, ...], ...]
 """Sparsity pattern of a matrix: pattern[row][column] is True where the matrix element may be nonzero."""
 
 
 class Algebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
-    components: indices of the components. terms: nonzero structure constants. forward: pattern of ad;
-    forward[a][c] is True if (ad_E V)_a depends on V_c. backward: pattern of the derivative of ad*;
-    backward[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b, which depends on Sigma_b.
+    components: indices of the components. structure_constants: the nonzero ones. ad_pattern: pattern of ad;
+    ad_pattern[a][c] is True if (ad_E V)_a depends on V_c. coad_pattern: pattern of the derivative of ad*;
+    coad_pattern[c][b] is True if (ad*_E Sigma)_c depends on Sigma_b or on E_b, which depends on Sigma_b.
     """
 
     components: range
-    terms: tuple[Term, ...]
-    forward: Pattern
-    backward: Pattern
+    structure_constants: tuple[StructureConstant, ...]
+    ad_pattern: SparsityPattern
+    coad_pattern: SparsityPattern
 
     @property
     def dimension(self) -> int:
@@ -35,13 +35,13 @@ class Algebra(NamedTuple):
         return len(self.components)
 
     @property
-    def pairs(self) -> list[tuple[int, int]]:
+    def distinct_pairs(self) -> list[tuple[int, int]]:
         """All ordered pairs (a, b) of indices of components of the algebra with a != b."""
         return [(a, b) for a in self.components for b in self.components if a != b]
 
 
-def algebra(size: int, terms: list[Term]) -> Algebra:
-    """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
+def algebra(size: int, terms: list[StructureConstant]) -> Algebra:
+    """The Lie algebra of dimension `size` whose nonzero structure constants are `structure_constants`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
@@ -51,7 +51,7 @@ def algebra(size: int, terms: list[Term]) -> Algebra:
     return Algebra(range(size), tuple(terms), forward, backward)
 
 
-def _cross(out: int, left: int, right: int) -> list[Term]:
+def _cross(out: int, left: int, right: int) -> list[StructureConstant]:
     """Structure constants of a cross product of two triples of components, as a part of ad_E V.
 
     The first factor is the triple of components of E that starts at index `left`, the second factor the

@@ -34,7 +34,7 @@ PLANE_COMPONENTS = [0, 1, 5]
 def ad(E: Values, V: Values) -> Values:
     """ad_E V of two elements E and V of se(2) or se(3), (3, ...) or (6, ...) each; the shapes broadcast."""
     out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
-    for a, b, c, sign in ALGEBRAS[len(E)].terms:
+    for a, b, c, sign in ALGEBRAS[len(E)].structure_constants:
         # out[a, ...] is a view also for scalar components; out[a] would be a copy.
         (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
     return out
@@ -43,7 +43,7 @@ def ad(E: Values, V: Values) -> Values:
 def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma of a deformation E and a stress Sigma, (3, ...) each in the plane or (6, ...) in space."""
     out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
-    for a, b, c, sign in ALGEBRAS[len(E)].terms:
+    for a, b, c, sign in ALGEBRAS[len(E)].structure_constants:
         # ad* is minus the transpose of `ad`.
         (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c, ...])
     return out

@@ -60,14 +60,14 @@ class SampledArm(NamedTuple):
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
-def sampled(rod: Rod) -> SampledArm:
+def sampled_arm(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and the local coefficients at these points, cached."""
-    points, weights = _points_of(rod.build)
+    points, weights = _interval_midpoints(rod.build)
     return SampledArm(points, weights, rod.local(points))
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
-def _points_of(build: Build) -> tuple[Array, Array]:
+def _interval_midpoints(build: Build) -> tuple[Array, Array]:
     """Returns (midpoints, lengths) of short intervals of u between the breaks of a profile, (points,)
     each.
     """
@@ -78,14 +78,14 @@ def _points_of(build: Build) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
-def local_growth(rod: Rod) -> tuple[Array, Array]:
-    """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled(rod)`,
+def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
+    """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled_arm(rod)`,
     (points,) each.
 
     A local wave travels on an infinitely long uniform rod with the coefficients of the arm at the point. If
     all waves at a point decay, both numbers are 0.
     """
-    nu, c2, c3, gamma2, gamma3, g = sampled(rod).local
+    nu, c2, c3, gamma2, gamma3, g = sampled_arm(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
     _, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
     largest = rates.max(axis=-1)
@@ -93,13 +93,13 @@ def local_growth(rod: Rod) -> tuple[Array, Array]:
     return largest / (gamma2 * c3), wave
 
 
-def expected_growing(rod: Rod) -> float:
+def expected_unstable_count(rod: Rod) -> float:
     """Estimate of the number of unstable modes of an arm: the integral over the arm of the largest wave
     number that grows by the local dispersion relation, divided by pi.
 
     For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
     """
-    _, weights, local = sampled(rod)
+    _, weights, local = sampled_arm(rod)
     return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
 
 

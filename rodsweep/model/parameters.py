@@ -19,8 +19,8 @@ class Range:
     """Allowed values of a parameter, as a predicate and as a phrase for messages. No range contains NaN."""
 
     contains: Callable[[float], bool]
-    phrase: str
-    bound: Mapping[str, float] = field(default_factory=dict)
+    description: str
+    schema_bounds: Mapping[str, float] = field(default_factory=dict)
     """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every finite number is
     allowed."""
 
@@ -46,7 +46,7 @@ class Parameter:
     allowed: Range
     linear: bool = True
     """Whether the transverse linear problem contains the parameter."""
-    rigid: str = ""
+    rigid_adjective: str = ""
     """Adjective for a rod whose parameter is inf, like "inextensible"; empty if inf is not allowed."""
     optional: bool = False
     """Whether a result file contains the parameter only if the config contains it."""
@@ -69,7 +69,7 @@ class Parameter:
     @property
     def by_compliance(self) -> bool:
         """Whether the coordinate of the parameter is 1/value; then the value may be inf."""
-        return bool(self.rigid or set(self.scaled_names) & set(STIFFNESSES))
+        return bool(self.rigid_adjective or set(self.scaled_names) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
         """The coordinate, in which the equations are affine: 1/value for a stiffness, otherwise the value."""
@@ -84,7 +84,7 @@ class Parameter:
         return coordinate
 
     @property
-    def neutral(self) -> float:
+    def neutral_value(self) -> float:
         """The default of the parameter; without a default, the value at coordinate 0, which is valid for
         every rod.
         """
@@ -98,7 +98,7 @@ class Parameter:
     def require(self, value: float) -> None:
         """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
         if not self.allowed.contains(value):
-            raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
+            raise ValueError(f"{self.name} = {value} is not {self.allowed.description}")
 
 
 SMALLEST_TAPER = 0.01
@@ -123,7 +123,7 @@ def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
             f"a number above 0, or inf for an {rigid} rod",
             {"exclusiveMinimum": 0},
         ),
-        rigid=rigid,
+        rigid_adjective=rigid,
     )
 
 
@@ -180,7 +180,7 @@ LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[na
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
 """Names of the parameters that a result file contains only if the config contains them."""
-SCALINGS = tuple(
+SCALED_COEFFICIENTS = tuple(
     (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
 )
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
@@ -189,11 +189,11 @@ TRANSVERSE_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 RANGE_CHECKS = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
 """(name, predicate) of every parameter; the predicate is True for values in the range. The list is prepared
 once, because sweeps create many rods."""
-CRUSHING = ("F", "k1")
+CRUSHING_PARAMETERS = ("F", "k1")
 """Names of the force and of the stretch stiffness: a rod of linear material is crushed if F >= k1."""
 
 
-def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
+def names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
     """All names in `names` except `varied`. names: parameter names, by default the parameters of the
     transverse linear problem.
     """

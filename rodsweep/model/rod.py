@@ -57,8 +57,8 @@ class Rod:
     k1: float
     k2: float
     gamma3: float
-    gamma1: float = PARAMETERS["gamma1"].neutral
-    taper: float = PARAMETERS["taper"].neutral
+    gamma1: float = PARAMETERS["gamma1"].neutral_value
+    taper: float = PARAMETERS["taper"].neutral_value
     build: Build = field(default=STANDARD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
@@ -127,7 +127,7 @@ class Rod:
         return self._coefficients is not None
 
     @property
-    def equivalent(self) -> tuple["Rod", float]:
+    def equivalent_linear_rod(self) -> tuple["Rod", float]:
         """Returns (linear rod, rate). Eigenvalues of this rod are `rate` times eigenvalues of the linear rod.
 
         With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients
@@ -200,7 +200,7 @@ class Rod:
 
     def direction(self, name: str) -> Coefficients:
         """Derivative of the affine `coefficients` with respect to the coordinate of the parameter `name`."""
-        slopes = self._slopes(name)
+        slopes = self._derivatives_by_coordinate(name)
         F = slopes.get("F", 0.0)
         c1 = slopes.get("k1", 0.0)
         # 0.0 - x keeps a zero positive, where -x would be -0.0.
@@ -220,7 +220,7 @@ class Rod:
 
     def section_changes(self, name: str, u: Array) -> Sections:
         """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
-        slopes = {"taper": 1.0} if name == "taper" else self._slopes(name)
+        slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
         return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
@@ -233,13 +233,13 @@ class Rod:
 
     def material_change(self, name: str) -> Material:
         """Derivative of `material` with respect to the coordinate of the parameter `name`."""
-        slopes = self._slopes(name)
+        slopes = self._derivatives_by_coordinate(name)
         F, nu, c2, gamma3 = self.direction(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
         return Material(compliance, drag, F, first_component(nu, 3))
 
-    def _slopes(self, name: str) -> dict[str, float]:
+    def _derivatives_by_coordinate(self, name: str) -> dict[str, float]:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
 
         Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .parameters import SCALINGS
+from .parameters import SCALED_COEFFICIENTS
 
 
 def local_coefficients_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -18,10 +18,10 @@ def local_coefficients_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
     A result is the value of the parameter of the same name, times the values of all parameters that multiply
     this parameter, see `Parameter.scaled_names`.
     """
-    if not SCALINGS:
+    if not SCALED_COEFFICIENTS:
         return values
     own = dict(values)
-    for factor, of in SCALINGS:
+    for factor, of in SCALED_COEFFICIENTS:
         own[of] = own[of] * values[factor]
     return own
 

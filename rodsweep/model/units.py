@@ -36,7 +36,7 @@ KINEMATIC_VISCOSITY = "is a kinematic viscosity; multiply it by the density of t
 
 
 @cache
-def registry() -> "UnitRegistry":
+def unit_registry() -> "UnitRegistry":
     """pint's registry of units, loaded at first use. Raises EnvironmentIncomplete if pint is not
     installed.
     """
@@ -50,6 +50,9 @@ def registry() -> "UnitRegistry":
 def split_quantity(given: str) -> tuple[float, str]:
     """Returns (number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a
     number.
+
+    In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit is "" if the text has none, and
+    not checked.
     """
     found = NUMBER_AND_UNIT.fullmatch(given)
     if not found:
@@ -64,27 +67,27 @@ def in_si(name: str, given: Given, unit: str, example: str) -> float:
     """
     allowed = f"a number with a unit, as in '{example}'"
     if not isinstance(given, str):
-        value = _number(name, given, unit, allowed)
+        value = _number_in_si(name, given, unit, allowed)
     else:
         number, written = split_quantity(given)
         if math.isnan(number):
             raise InputError(f"{name} = '{given}' is not {allowed}")
         if not written:
             raise InputError(f"{name} = '{given}' has no unit; write {allowed}")
-        value = number * factor(f"{name} = '{given}'", written, unit, allowed)
+        value = number * conversion_factor(f"{name} = '{given}'", written, unit, allowed)
     if not math.isfinite(value):
         raise InputError(f"{name} = '{given}' is not a finite number")
     return value
 
 
-def _number(name: str, given: Any, unit: str, allowed: str) -> float:
+def _number_in_si(name: str, given: Any, unit: str, allowed: str) -> float:
     """Value in the SI unit `unit` of `given`, a number in SI or a pint quantity. Raises InputError for other
     objects.
 
     name, allowed: name of the quantity and allowed texts, for messages.
     """
     if hasattr(given, "to_base_units"):
-        return _number(name, given.magnitude, unit, allowed) * factor(
+        return _number_in_si(name, given.magnitude, unit, allowed) * conversion_factor(
             f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
         )
     try:
@@ -98,7 +101,7 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
         ) from None
 
 
-def factor(subject: str, written: str, unit: str, allowed: str) -> float:
+def conversion_factor(subject: str, written: str, unit: str, allowed: str) -> float:
     """Number by which a value in the unit `written` is multiplied to get the value in `unit`.
 
     subject, allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of
@@ -110,15 +113,15 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
         raise InputError(
             f"{subject} has the unit '{written[:MAX_UNIT_LENGTH]}', which is not understood; write {allowed}"
         )
-    units = registry()
+    units = unit_registry()
     from pint.errors import PintError
 
     try:
-        return _ratio(written, unit)
+        return _cached_conversion_factor(written, unit)
     except PintError as error:
-        known = "from" in str(error)  # "Cannot convert from ..."
-        why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
-        if known and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
+        is_known_unit = "from" in str(error)  # pint: "Cannot convert from ..." for another dimension
+        why = f"is not measured in {unit}" if is_known_unit else f"has the unknown unit '{written}'"
+        if is_known_unit and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
             why = KINEMATIC_VISCOSITY
         raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
     except Exception as error:  # pint's parser raises errors of many types for invalid units
@@ -128,9 +131,9 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
 
 
 @lru_cache(CONVERSION_CACHE_SIZE)
-def _ratio(written: str, unit: str) -> float:
+def _cached_conversion_factor(written: str, unit: str) -> float:
     """Conversion factor from the unit `written` to `unit`, cached; raises the errors of pint."""
-    return float(registry().Quantity(1.0, written).to(unit).magnitude)
+    return float(unit_registry().Quantity(1.0, written).to(unit).magnitude)
 
 
 def _suggestion(written: str, unit: str) -> str:
@@ -139,7 +142,9 @@ def _suggestion(written: str, unit: str) -> str:
     """
     squeezed = "".join(written.split()).casefold()
     for common in COMMON_UNITS:
-        if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
+        if "".join(common.split()).casefold() == squeezed and unit_registry()(common).check(
+            unit_registry()(unit)
+        ):
             return f"did you mean '{common}'? "
     return ""
 
@@ -149,9 +154,9 @@ def unit_of(given: Given, default: str) -> str:
     return (split_quantity(given)[1] or default) if isinstance(given, str) else default
 
 
-def written_in(value: float, unit: str, si: str) -> float:
+def value_in_unit(value: float, unit: str, si: str) -> float:
     """Value in `unit` of the quantity that has the value `value` in the SI unit `si`."""
-    return value / factor("", unit, si, "")
+    return value / conversion_factor("", unit, si, "")
 
 
 def share_of_flutter(given: Given) -> float | None:
@@ -168,7 +173,7 @@ def share_of_flutter(given: Given) -> float | None:
     return None
 
 
-def compact(value: float, unit: str) -> tuple[float, str]:
+def with_si_prefix(value: float, unit: str) -> tuple[float, str]:
     """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
     The SI prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm"). For a value that is 0, inf
@@ -176,6 +181,6 @@ def compact(value: float, unit: str) -> tuple[float, str]:
     """
     if not value or not math.isfinite(value):
         return 1.0, unit
-    readable = registry().Quantity(value, unit).to_compact()
+    readable = unit_registry().Quantity(value, unit).to_compact()
     # Releases of pint use different characters for micro.
     return float(readable.magnitude) / value, f"{readable.units:~}".replace("\u03bc", "\u00b5")

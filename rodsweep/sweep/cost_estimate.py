@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import expected_growing, most_amplified_wave
+from ..model.dispersion import expected_unstable_count, most_amplified_wave
 from ..model.rod import Rod
 from .points.points import Points
 from .points.stretches import Stretches
@@ -180,7 +180,7 @@ def estimate_followed(alone: Estimate, stretches: Stretches, points: Points, mod
     share = FIRST_POINT_COST * stretches.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     each = FOLLOWED_ARM_POINT_MS if any(not rod.standard for rod in rods) else FOLLOWED_POINT_MS
-    growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
+    growing = np.array([0.0 if rod.standard else expected_unstable_count(rod) for rod in rods])
     left_alone = np.where(
         growing > modes + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
     )
@@ -212,7 +212,7 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     each = np.where(n <= MIN_SPARSE_UNKNOWNS, dense, SPARSE_MS_PER_UNKNOWN * n) + (
         CERTIFICATE_MS if certify else 0
     )
-    growing = np.array([0.0 if rod.standard else expected_growing(rod) for rod in rods])
+    growing = np.array([0.0 if rod.standard else expected_unstable_count(rod) for rod in rods])
     each += varied * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())

@@ -20,7 +20,7 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
     """Initial mesh for the `modes` leading eigenvalues of a rod; accuracy: relative error due to the mesh."""
     if not rod.uniform:
         return arm_mesh(rod, modes, accuracy)
-    _, wave = most_amplified_wave(rod.equivalent[0])
+    _, wave = most_amplified_wave(rod.equivalent_linear_rod[0])
     resolution = resolution_for(expected_wave_number(modes, wave), accuracy)
     return Elements(equal_edges(resolution.elements), resolution.order)
 

@@ -150,7 +150,7 @@ def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
     """
     dragged = bool((columns["gamma3"] > 0).any())
     return [
-        *(_deformation_row(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
+        *(_deformation_row(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid_adjective),
         ("rotational drag", dragged, "gamma3 > 0" if dragged else "gamma3 = 0"),
     ]
 
@@ -231,5 +231,5 @@ def _deformation_row(parameter: Parameter, values: np.ndarray) -> CheckRow:
     what = parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)
     if rigid.all():
-        return what, False, f"{name} = inf: the rod is {parameter.rigid}"
+        return what, False, f"{name} = inf: the rod is {parameter.rigid_adjective}"
     return what, True, f"{name} is finite" + (f" at all but {int(rigid.sum())} values" if rigid.any() else "")

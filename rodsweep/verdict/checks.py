@@ -5,7 +5,7 @@ from math import isnan
 from typing import TYPE_CHECKING
 
 from ..model.arm.arm import SlenderArm
-from ..model.arm.neglected import SELF_BUCKLING, Effect, Validity
+from ..model.arm.neglected import SELF_BUCKLING_WEIGHT, Effect, Validity
 from ..model.material.laws import LINEAR
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ MIN_SLENDERNESS = 20.0
 THRESHOLD_DECREASE_BY_INERTIA = 0.64
 """Estimated relative decrease of the flutter threshold by inertia, per radian of phase between drag and
 velocity caused by inertia."""
-SAG_AT_SELF_BUCKLING = SELF_BUCKLING / 8
+SAG_AT_SELF_BUCKLING = SELF_BUCKLING_WEIGHT / 8
 """Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
 MAX_STATED_SAG = 0.25
 """A check states the ratio of sag to length only below this ratio. At a larger sag the linear formula is

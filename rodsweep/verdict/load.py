@@ -4,7 +4,7 @@ from math import floor, log10
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
-from ..model.units import compact, split_quantity, unit_of, written_in
+from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
 from .flutter import Span
 
 TYPICAL_FLUTTER_FORCE = 36.0
@@ -52,14 +52,14 @@ class Load:
         self.unit = (
             unit_of(given, si)
             if given is not None
-            else compact(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
+            else with_si_prefix(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
         self.typed_text = (
             "" if given is None else _shortened_load(given, float(getattr(arm.si, self.name)), si)
         )
         """The load as the user typed it, rounded by `_shortened_load` if long; empty if the arm has no
         load."""
-        self.load_at_unit_force = written_in(arm.load_scale, self.unit, si)
+        self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
     def of(self, forces: Span) -> str:

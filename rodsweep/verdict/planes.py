@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
-from ..model.units import compact
+from ..model.units import with_si_prefix
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, flutter_range
 from .relative import with_exchanged_sides
@@ -86,7 +86,7 @@ def with_load(planes: Planes) -> Planes:
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
             f"not flutter up to {end}; give an absolute load"
         )
-    factor, unit = compact(share * force * scale, UNITS[load][0])
+    factor, unit = with_si_prefix(share * force * scale, UNITS[load][0])
     given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
     return Planes(replace(first, arm=replace(first.arm, **given)), second)

@@ -81,7 +81,7 @@ def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
     section's height. build: constitutive law and profile; None for the build of the arm.
     """
     own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
-    return Rod(F=0.0, **own, build=build or arm.build_with(drag))
+    return Rod(F=0.0, **own, build=build or arm.build_with_drag(drag))
 
 
 def first_flutter(arm: SlenderArm) -> float:

@@ -8,7 +8,7 @@ from math import isnan
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Effect, Validity
 from ..model.arm.quantities import UNITS
-from ..model.units import unit_of, written_in
+from ..model.units import unit_of, value_in_unit
 from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
@@ -68,7 +68,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     if effect_kind(effect) == "weight":
         si = UNITS["density_difference"][0]
         unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
-        most = rounded_down(written_in(abs(arm.si.density_difference) * share, unit, si))
+        most = rounded_down(value_in_unit(abs(arm.si.density_difference) * share, unit, si))
         return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
     if any(effect is each for each in assessment.under_load):
         pulls = "a pull" if arm.F < 0 else "a load"
@@ -83,7 +83,7 @@ def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> st
     si = UNITS["viscosity"][0]
     unit = unit_of(arm.viscosity, si)
     factor = viscosity_factor(assessment.at_flutter)
-    viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
+    viscosity = f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
     says = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
     thickness = thickness_factor(arm)
     if isnan(thickness):

@@ -4,7 +4,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
 from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR
-from ..model.units import compact
+from ..model.units import with_si_prefix
 
 
 def shape_words(arm: SlenderArm) -> str:
@@ -36,5 +36,5 @@ def station_words(station: Station) -> str:
 
 def _with_si_prefix(value: float, si: str) -> str:
     """A value in the SI unit `si` as text with four digits and a prefix: "6 mm"."""
-    factor, unit = compact(value, si)
+    factor, unit = with_si_prefix(value, si)
     return f"{value * factor:.4g} {unit}"

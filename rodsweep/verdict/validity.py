@@ -11,10 +11,10 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import (
     Effect,
     Validity,
-    compression,
-    effects_of,
-    fastest_rate,
-    weakest_load,
+    compression_effect,
+    largest_angular_frequency,
+    neglected_effects,
+    weakest_section_force,
     worst_validity,
 )
 from ..model.arm.quantities import LOADS, SECTION_SIDES
@@ -56,7 +56,11 @@ class Assessment:
         """Compression by the arm's load, the only neglected effect that depends on the load; empty if the arm
         has no load.
         """
-        return () if self.arm.load is None else (compression(self.arm, weakest_load(self.arm, self.arm.F)),)
+        return (
+            ()
+            if self.arm.load is None
+            else (compression_effect(self.arm, weakest_section_force(self.arm, self.arm.F)),)
+        )
 
     @property
     def force_at_flutter(self) -> float | None:
@@ -102,8 +106,10 @@ def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ..
     """
     first = first_flutter_of(found)
     if first is None:
-        return effects_of(arm, nan, nan)
-    return effects_of(arm, fastest_rate(arm, abs(first.frequency)), weakest_load(arm, first.at))
+        return neglected_effects(arm, nan, nan)
+    return neglected_effects(
+        arm, largest_angular_frequency(arm, abs(first.frequency)), weakest_section_force(arm, first.at)
+    )
 
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:

@@ -10,7 +10,12 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.model.arm.neglected import (
+    Validity,
+    largest_angular_frequency,
+    neglected_effects,
+    worst_validity,
+)
 from rodsweep.solve.changes.thresholds import ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.verdict.arm import arm_report
@@ -162,7 +167,7 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     )
     first, found = plane[0], plane[1].flutter
     hopf = found.forces[0].first(ChangeKind.hopf)
-    effects = effects_of(first, fastest_rate(first, abs(hopf.frequency)), hopf.at)
+    effects = neglected_effects(first, largest_angular_frequency(first, abs(hopf.frequency)), hopf.at)
     worst = int(worst_validity(effects, of_cycles=False))
     if arm.share_of_flutter is not None:
         share = arm.share_of_flutter * hopf.at / first.k1

@@ -10,7 +10,7 @@ from rodsweep.determinant.arm.count.count import count_right_of
 from rodsweep.determinant.arm.count.modes_near_axis import modes_near_axis
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
-from rodsweep.determinant.arm.hull.region import Hull, clearance
+from rodsweep.determinant.arm.hull.region import Hull, distance_and_normal
 from rodsweep.determinant.arm.newton import refine_eigenvalue, root_error
 from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
@@ -37,7 +37,9 @@ def test_counts_and_hulls_agree_with_dense_eigenvalues(seed):
         rod = random_arm(rng)
         hull, determinant, w = hull_of(rod), ArmDeterminant(rod), eigenvalues(rod)
         for value in w[:8]:
-            assert clearance(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(value)
+            assert distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(
+                value
+            )
         line = line_in_gap(w)
         counted = count_right_of(line, determinant, hull)
         assert counted.number == int((w.real > line).sum()), (rod, rod.build, counted)
@@ -79,7 +81,7 @@ def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
     n = np.linspace(0, 200, 40_001)
     for _ in range(40):
         w = complex(rng.uniform(-300, 100), rng.uniform(0, 300))
-        distance, normal = clearance(w, hull.a, hull.c)
+        distance, normal = distance_and_normal(w, hull.a, hull.c)
         if distance <= 0:
             continue
         x, y = hull.a * n - (1 - hull.c) * n**2, hull.a * n + hull.c * n**2
@@ -101,7 +103,7 @@ def test_without_a_bound_no_count_is_given():
     assert hull_of(pulled).a == np.inf
     refused = count_right_of(-1.0, ArmDeterminant(pulled), hull_of(pulled))
     assert refused.number is None
-    assert refused.why_not == "no a-priori bound on the eigenvalues applies to this rod"
+    assert refused.failure_reason == "no a-priori bound on the eigenvalues applies to this rod"
 
 
 @pytest.mark.parametrize("gamma3", [0.0, 1e-5, 1e-2])
@@ -112,7 +114,9 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
     dense = eigenvalues(rod if gamma3 else Rod(F=F, k1=1e4, k2=1.0, gamma3=1e-9, build=rod.build), 10)
     hull, determinant = hull_of(rod), ArmDeterminant(rod)
     for value in dense[:12]:
-        assert clearance(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(value)
+        assert distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(
+            value
+        )
     line = line_in_gap(dense, int((dense.real > 0).sum()))
     number = int((dense.real > line).sum())
     found = refine_mesh_eigenvalues(dense[: number + 2].astype(complex), determinant, hull, 400.0)
@@ -120,7 +124,7 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
     fast = count_right_of(line, determinant, hull, found.w, found.error)
     one_less = count_right_of(line, determinant, hull, found.w[2:], found.error[2:])
     assert (alone.number, fast.number, one_less.number) == (number,) * 3
-    assert max(fast.nodes, alone.nodes) < 65  # without the dominant wave 84 and 135 in four cases
+    assert max(fast.node_count, alone.node_count) < 65  # without the dominant wave 84 and 135 in four cases
 
 
 @pytest.mark.parametrize("F", [4.5, 12.0])
@@ -161,5 +165,5 @@ def test_eigenvalues_that_are_no_roots_are_left_out():
     w = eigenvalues(rod)[:4]
     raw = np.array([*w, -1000.0, np.inf, 1e9, w[0] + 40])
     found = refine_mesh_eigenvalues(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
-    assert sorted(found.indices.tolist()) == [0, 1, 2, 3]
-    np.testing.assert_allclose(found.w, w[found.indices], rtol=1e-6)
+    assert sorted(found.mesh_indices.tolist()) == [0, 1, 2, 3]
+    np.testing.assert_allclose(found.w, w[found.mesh_indices], rtol=1e-6)

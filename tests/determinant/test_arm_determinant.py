@@ -5,18 +5,18 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.elements.evaluation import fill_propagator, powers_of
+from rodsweep.determinant.arm.elements.evaluation import fill_propagator, powers_and_derivatives
 from rodsweep.determinant.arm.elements.minor_rates import PADDED
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.material.build import Build
-from rodsweep.model.material.profile import FACTORS, Profile
+from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.rod import Rod
 
 PLACES = (0.3 + 0j, -2.0 + 0j, 40j, -300 + 700j, -3000 + 20j, 2e4j, 1e6j)
 JUMP = Profile(
     (0.0, 0.3, 0.3, 0.7, 1.0),
     tuple(
-        tuple(dict(zip(FACTORS, row, strict=True)).values())
+        tuple(dict(zip(FACTOR_NAMES, row, strict=True)).values())
         for row in (
             (1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
             (1.2, 0.8, 1.1, 1.0, 1.0, 2.0),
@@ -100,7 +100,7 @@ def test_cone_of_radius_ratio_one_half_flutters_where_collocation_says():
 @pytest.mark.parametrize("F", [-50.0, 1e-3, 60.0, 900.0])
 def test_uniform_rods_of_rubber_are_equivalent_to_linear_ones(law, section, F):
     rod = Rod(F=F, k1=500.0, k2=70.0, gamma3=0.01, build=Build(law=law, section=section))
-    linear, rate = rod.equivalent
+    linear, rate = rod.equivalent_linear_rod
     for w in PLACES[:5]:
         found = ArmDeterminant(rod).value(w)
         closed = scaled_determinant(w / rate, linear.coefficients)
@@ -138,7 +138,7 @@ def test_left_out_powers_of_w_do_not_matter(arm, z):
     for size in (20.0, 2e3, 2e5):
         W, polynomials = ArmDeterminant(ARMS[arm]).level(size, 1.0)
         terms = polynomials.shape[1]
-        powers = powers_of(complex(z), terms)
+        powers = powers_and_derivatives(complex(z), terms)
         assert len(powers) < terms or abs(z) > 1e-4
         n = np.arange(terms)[:, None]
         power = np.clongdouble(z) ** n

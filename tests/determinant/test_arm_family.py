@@ -12,7 +12,7 @@ from rodsweep.determinant.arm.family import (
     interpolated_family,
     propagators_at,
 )
-from rodsweep.determinant.arm.value import chain_along
+from rodsweep.determinant.arm.value import path_value_by_chain
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -25,7 +25,7 @@ def along(family, w, p):
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)
     propagators_at(family, p, polynomials, changes)
-    return chain_along(w, family.W, polynomials, changes)
+    return path_value_by_chain(w, family.W, polynomials, changes)
 
 
 @pytest.mark.parametrize("name", ["F", "k1", "k2", "gamma3", "taper"])

@@ -48,7 +48,7 @@ def test_a_hidden_eigenvalue_that_crosses_the_line_is_never_missed(seed):
         path, found = followed_path(rng)
         w = found.track.w
         for k in range(w.shape[1]):
-            first = int(rng.integers(len(w) - NO_CROSSING_SETTINGS.arms))
+            first = int(rng.integers(len(w) - NO_CROSSING_SETTINGS.arm_count))
             last = min(len(w) - 1, first + int(rng.choice([4, 8, 16, 32])))
             here = w[first : last + 1, k]
             line = float(rng.uniform(here.real.min(), here.real.max()))

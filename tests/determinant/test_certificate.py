@@ -54,7 +54,7 @@ def test_line_through_an_eigenvalue_is_refused(reference_spectra):
         rod, w = rod_and_eigenvalues(point)
         count = count_right_of(w[0].real, rod)
         assert count.number is None
-        assert "too close" in count.why_not
+        assert "too close" in count.failure_reason
 
 
 @pytest.mark.parametrize("offset", [1e-4, -1e-4, 1e-6, -1e-6])
@@ -75,7 +75,7 @@ def test_no_bound_no_count():
     """A pull beyond the shear stiffness without rotational drag has no a-priori bound."""
     count = count_right_of(-1.0, Rod(F=-30.0, k1=1e4, k2=20.0, gamma3=0.0))
     assert count.number is None
-    assert "bound" in count.why_not
+    assert "bound" in count.failure_reason
 
 
 def test_box_holds_every_reference_eigenvalue(reference_spectra):
@@ -142,7 +142,7 @@ def test_long_strides_give_the_phase_of_short_steps():
 
 def test_few_nodes_suffice_on_the_paper_s_rods():
     nodes = [
-        count_right_of(-3000.0, Rod(F=force, k1=k1, k2=k2, gamma3=gamma3)).nodes
+        count_right_of(-3000.0, Rod(F=force, k1=k1, k2=k2, gamma3=gamma3)).node_count
         for k1, k2, gamma3, top in ((1e4, 1e4, 1e-4, 60), (1e4, 1e2, 1e-2, 45), (2e2, 1e4, 1e-4, 180))
         for force in np.linspace(0.1, 1.0, 5) * top
     ]

@@ -306,11 +306,11 @@ def import_all() -> None:
     import rodsweep.post.figures
     import rodsweep.post.summary
     import rodsweep.tasks.cycle_shapes  # noqa: F401
-    from rodsweep.model.units import registry
+    from rodsweep.model.units import unit_registry
 
     for name in ("interpolate", "ndimage", "spatial"):
         getattr(scipy, name)
-    registry()
+    unit_registry()
 
 
 def load(solving: bool, configs: list[str]) -> None:

@@ -14,12 +14,12 @@ import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAGS
 from rodsweep.model.arm.neglected import (
-    DOUBTFUL_FROM,
-    HALF_LENGTH,
-    WIDE_CURVATURE,
+    CURVATURE_OVER_AMPLITUDE,
+    DOUBTFUL_RATIO,
+    LARGE_AMPLITUDE,
     Validity,
-    effects_of,
-    fastest_rate,
+    largest_angular_frequency,
+    neglected_effects,
     worst_validity,
 )
 from rodsweep.model.rod import Rod
@@ -457,9 +457,9 @@ def _validity_line(view, page, fine):
         rate, F, amplitude, cycles = _motion(view, fine, i)
         if "drag" in q and view.task != "phase_diagram":
             rate = np.asarray(rate) / scales_of(q)["tau2"]
-            effects = effects_of(arm, rate, F, drag=arm.own_drag, amplitude=amplitude)
+            effects = neglected_effects(arm, rate, F, drag=arm.chosen_drag, amplitude=amplitude)
         else:
-            effects = effects_of(arm, fastest_rate(arm, rate), F, amplitude=amplitude)
+            effects = neglected_effects(arm, largest_angular_frequency(arm, rate), F, amplitude=amplitude)
         of = [e for e in effects if cycles or not e.of_cycles_only]
         applies.append(int(np.max(worst_validity(effects, of_cycles=cycles))))
         excess.append(max(float(np.nanmax(np.append(e.excess, -1.0))) for e in of))
@@ -477,8 +477,8 @@ def _validity_line(view, page, fine):
         largest = np.max(np.array(excess)[there])
         if abs(float(match[4]) - largest) > TWO_DIGITS * largest:
             why.append(f"it is {largest}")
-        if (worst == 1) != (match[5] is not None and float(match[5]) == DOUBTFUL_FROM):
-            why.append(f"a model is doubtful above {DOUBTFUL_FROM}")
+        if (worst == 1) != (match[5] is not None and float(match[5]) == DOUBTFUL_RATIO):
+            why.append(f"a model is doubtful above {DOUBTFUL_RATIO}")
         if match[2] and int(match[2]) != there.sum():
             why.append(f"at {there.sum()} points")
         if match[3] and int(match[3]) != count:
@@ -502,7 +502,11 @@ def _motion(view, fine, i):
         )
         rod = rod_of(0.0, *(float(columns[name][i]) for name in ("k1", "k2", "gamma3")))
         hopf = next((c for c in changes_over_force(rod, top) if c.kind.name == "hopf"), None)
-        return (hopf.frequency, hopf.at, HALF_LENGTH, False) if hopf else (np.nan, np.nan, HALF_LENGTH, False)
+        return (
+            (hopf.frequency, hopf.at, LARGE_AMPLITUDE, False)
+            if hopf
+            else (np.nan, np.nan, LARGE_AMPLITUDE, False)
+        )
     if view.task == "limit_cycle":
         v = fine.variables
         frequency, y = float(v["frequency"].ravel()[i]), float(v["tip_y_max"].ravel()[i])
@@ -513,7 +517,7 @@ def _motion(view, fine, i):
         return 2 * pi / period, F, y, True
     modes = np.abs(view.variables["frequency"].reshape(len(columns["F"]), -1)[i])
     moving = modes[modes > 0]
-    return moving[0] if len(moving) else np.nan, float(columns["F"][i]), HALF_LENGTH, False
+    return moving[0] if len(moving) else np.nan, float(columns["F"][i]), LARGE_AMPLITUDE, False
 
 
 # --- the report of `rodsweep arm` ---
@@ -696,7 +700,9 @@ class ArmTruth:
         for line, match in read(page, r"within NUMBER (\S+) of the fluid's"):
             q = self.q | {"density_difference": float(match[1]) * UNITS.get(match[2], 1.0)}
             weight = next(
-                float(e.excess) for e in effects_of(SlenderArm(**q), np.nan, np.nan) if e.name == "weight"
+                float(e.excess)
+                for e in neglected_effects(SlenderArm(**q), np.nan, np.nan)
+                if e.name == "weight"
             )
             found.append((line, "" if 0.85 < weight <= 1 + 1e-9 else f"it is {weight} times the limit"))
         for line, match in read(page, rf"^NUMBER ({UNIT}) is NUMBER of flutter with the likeliest drag"):
@@ -733,7 +739,9 @@ class ArmTruth:
         flutter = self._flutter(q)
         arm = SlenderArm(**q)
         rate = 2 * pi * flutter["hertz"][0] * drags_of(q)[0][1] / min(d[1] for d in drags_of(q))
-        return max(float(e.excess) for e in effects_of(arm, rate, flutter["hopf"][0]) if "inertia" in e.name)
+        return max(
+            float(e.excess) for e in neglected_effects(arm, rate, flutter["hopf"][0]) if "inertia" in e.name
+        )
 
     def _effects(self):
         arm = SlenderArm(**self.q)
@@ -741,9 +749,9 @@ class ArmTruth:
         n = next((i for i, F in enumerate(hopf) if np.isfinite(F)), 0)
         drags = drags_of(self.q)
         rate = 2 * pi * hertz[n] * drags[n][1] / min(d[1] for d in drags)
-        effects = list(effects_of(arm, rate, hopf[n]))
+        effects = list(neglected_effects(arm, rate, hopf[n]))
         if self.F is not None:
-            effects += [e for e in effects_of(arm, np.nan, self.F) if e.name == "compression"]
+            effects += [e for e in neglected_effects(arm, np.nan, self.F) if e.name == "compression"]
         return effects
 
     def rows(self, page):
@@ -828,7 +836,7 @@ def lost_by_flattening(q):
     y, dy = np.sin(theta), np.cos(2 * theta) * np.sin(theta) - np.sin(2 * theta) * np.cos(theta) / 2
     moment, slope = 2 * pi * r**3 * t * np.mean(y**2), 2 * pi * r**3 * t * np.mean(2 * y * dy)
     wall = 2 * pi / r * t**3 / (12 * (1 - q["poisson"] ** 2)) * np.mean((3 * np.cos(2 * theta)) ** 2)
-    curvature = WIDE_CURVATURE * HALF_LENGTH / q["length"]
+    curvature = CURVATURE_OVER_AMPLITUDE * LARGE_AMPLITUDE / q["length"]
     z = -(curvature**2) * slope / (2 * wall)
     return -slope * z / moment
 

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAGS, cox, gray_hancock
-from rodsweep.model.arm.neglected import SELF_BUCKLING, effects_of, least_drag
+from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, least_drag, neglected_effects
 from rodsweep.model.arm.shape import MAX_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
@@ -67,7 +67,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     u = np.linspace(0, 1, 1001)[1:-1]
     values = {name: cone.parameter(name) for name in ("k1", "k2", "gamma3", "taper")}
     for number, form in ((0, cox), (1, gray_hancock)):
-        local = cone.build_with(cone.drags[number]).local(0.0, values, u)
+        local = cone.build_with_drag(cone.drags[number]).local(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
         across = np.array([form(1.0, each)[1] for each in slenderness])
         assert local.gamma2 == pytest.approx(across / form(1.0, 0.1 / radius)[1], rel=3e-4)
@@ -107,7 +107,7 @@ def test_many_segments_have_the_coefficients_of_a_cone():
         for arm in (cone, steps):
             values = {name: arm.parameter(name) for name in ("k1", "k2", "taper")}
             drag = arm.drags[number]
-            own = arm.build_with(drag).local(0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles)
+            own = arm.build_with_drag(drag).local(0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles)
             stiffness, L = arm.bending_stiffness, arm.si.length
             found.append(
                 (
@@ -143,9 +143,9 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
         uniform(radius=radius, pressure=None, density_difference=10.0) for radius in ("6 mm", "4 mm")
     )
     assert arm.crushing_force * arm.force_scale == pytest.approx(thin.k1 * thin.force_scale, rel=1e-12)
-    own = {e.name: float(e.value) for e in effects_of(arm, 2.0, 1.0)}
+    own = {e.name: float(e.value) for e in neglected_effects(arm, 2.0, 1.0)}
     found = [
-        {e.name: float(e.value) for e in effects_of(each, 2.0, 1.0, drag=least_drag(each))}
+        {e.name: float(e.value) for e in neglected_effects(each, 2.0, 1.0, drag=least_drag(each))}
         for each in (thick, thin)
     ]
     for name in ("inertia of the arm", "inertia of the fluid", "Reynolds number"):
@@ -189,7 +189,9 @@ def test_an_upright_arm_buckles_under_the_weight_that_is_stated(changes):
         state = solve_ivp(slopes, (inside, low + 1e-12), state, rtol=1e-10, atol=1e-14).y[:, -1]
     assert abs(state[1]) < 1e-3
     if not changes:
-        assert weight == pytest.approx(SELF_BUCKLING * arm.force_scale / (math.pi * 25e-6 * 0.1), rel=1e-4)
+        assert weight == pytest.approx(
+            SELF_BUCKLING_WEIGHT * arm.force_scale / (math.pi * 25e-6 * 0.1), rel=1e-4
+        )
 
 
 SEGMENTS = {"radius": None, "length": None}

@@ -14,12 +14,12 @@ from rodsweep.model.arm.neglected import (
     WEIGHT_LIMIT,
     Effect,
     Validity,
-    effects_of,
-    fastest_rate,
+    largest_angular_frequency,
     least_drag,
+    neglected_effects,
     worst_validity,
 )
-from rodsweep.model.arm.unsteady_drag import unsteady_phase
+from rodsweep.model.arm.unsteady_drag import drag_phase_lag
 
 WATER = {"length": 0.12, "radius": 0.006, "young": 80e3, "poisson": 0.49, "viscosity": 1e-3}
 """A soft arm in water, in SI units."""
@@ -32,14 +32,14 @@ def named(effects):
 def test_effects_on_an_arm_in_water_by_hand():
     """m omega/gamma2 with gamma2 = 4 pi eta/(ln 160 + 1/2), F/k1, rho U 2 a/eta, weight over 7.837 k3/L^2."""
     arm = SlenderArm(**WATER, density_difference=100.0)
-    effects = named(effects_of(arm, 50.0, 40.0))
+    effects = named(neglected_effects(arm, 50.0, 40.0))
     logarithm = math.log(160) + 0.5
     inertia = 1100 * math.pi * 36e-6 * 50 * logarithm / (4 * math.pi * 1e-3)
     s = 1000 * 50 * (0.12 / 4.694) ** 2 / 1e-3
     heavy = 100 * 9.81 * math.pi * 36e-6 * 0.12 / (80e3 * math.pi * 1296e-12 / 4 / 0.0144)
     values = {
         "inertia of the arm": inertia,
-        "inertia of the fluid": float(unsteady_phase(s, logarithm)),
+        "inertia of the fluid": float(drag_phase_lag(s, logarithm)),
         "compression": 40 / 1600,
         "weight": heavy / 7.837,
         "Reynolds number": 1000 * 50 * 0.06 * 0.012 / 1e-3,
@@ -76,37 +76,40 @@ def mobility(s, logarithm):
 def test_phase_of_the_fluid_is_that_of_unsteady_flow(s):
     """Apart from the cut-off of the integral, which ends at q^2/k^2 = exp(19) = 2e8."""
     exact = -np.angle(mobility(s, 10.0))
-    assert unsteady_phase(s, 10.0) == pytest.approx(exact, rel=1e-5)
+    assert drag_phase_lag(s, 10.0) == pytest.approx(exact, rel=1e-5)
 
 
 def test_phase_of_the_fluid_is_proportional_to_slow_rates():
-    assert unsteady_phase(1e-4, 3.0) == pytest.approx(0.75e-4 / 3, rel=1e-3)
-    assert unsteady_phase([0.0, np.nan], 3.0) == pytest.approx([0.25e-6, np.nan], rel=1e-3, nan_ok=True)
+    assert drag_phase_lag(1e-4, 3.0) == pytest.approx(0.75e-4 / 3, rel=1e-3)
+    assert drag_phase_lag([0.0, np.nan], 3.0) == pytest.approx([0.25e-6, np.nan], rel=1e-3, nan_ok=True)
 
 
 @pytest.mark.parametrize("name", ["inertia of the arm", "inertia of the fluid", "Reynolds number"])
 def test_a_fluid_as_viscous_as_stated_brings_an_effect_to_its_limit(name):
     """The rate is that of the same frequency in 1/tau2, so it falls with viscosity."""
     arm = SlenderArm(**WATER)
-    before = named(effects_of(arm, fastest_rate(arm, 170.0), 35.0))[name]
+    before = named(neglected_effects(arm, largest_angular_frequency(arm, 170.0), 35.0))[name]
     factor = float(before.viscosity_factor)
     thicker = SlenderArm(**WATER | {"viscosity": factor * 1e-3})
-    after = named(effects_of(thicker, fastest_rate(thicker, 170.0), 35.0))[name]
+    after = named(neglected_effects(thicker, largest_angular_frequency(thicker, 170.0), 35.0))[name]
     assert before.excess > 1
     assert factor > 1
     assert after.value == pytest.approx(after.limit, rel=1e-9)
 
 
 def test_no_fluid_undoes_compression_and_weight():
-    effects = named(effects_of(SlenderArm(**WATER, density_difference=100.0), math.nan, 400.0))
+    effects = named(neglected_effects(SlenderArm(**WATER, density_difference=100.0), math.nan, 400.0))
     assert [float(effects[name].viscosity_factor) for name in ("compression", "weight")] == [math.inf] * 2
-    assert float(named(effects_of(SlenderArm(**WATER), math.nan, 4.0))["compression"].viscosity_factor) == 0
+    assert (
+        float(named(neglected_effects(SlenderArm(**WATER), math.nan, 4.0))["compression"].viscosity_factor)
+        == 0
+    )
 
 
 def test_least_drag_moves_fastest():
     arm = SlenderArm(**WATER)
     rates = [170.0 / arm.tau2_with(drag) for drag in arm.drags]
-    assert fastest_rate(arm, 170.0) == pytest.approx(max(rates))
+    assert largest_angular_frequency(arm, 170.0) == pytest.approx(max(rates))
     assert least_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
 
 
@@ -120,20 +123,20 @@ def test_validity_goes_by_tenths_of_the_limit_and_is_of_arrays():
 def test_rates_and_forces_broadcast():
     arm = SlenderArm(**WATER)
     rates, forces = np.array([[0.0], [np.nan], [1e4]]), np.array([1.0, 40.0, 400.0])
-    effects = effects_of(arm, rates, forces)
+    effects = neglected_effects(arm, rates, forces)
     assert all(effect.value.shape == (3, 3) for effect in effects)
     assert worst_validity(effects, of_cycles=False).tolist() == [[0, 1, 2], [0, 1, 2], [2, 2, 2]]
-    one = effects_of(arm, 1e4, 400.0)
+    one = neglected_effects(arm, 1e4, 400.0)
     assert [float(a.value) for a in one] == [float(b.value[2, 2]) for b in effects]
 
 
 def test_reynolds_number_is_of_cycles_only_and_of_their_amplitude():
     arm = SlenderArm(**WATER)
-    number = named(effects_of(arm, 50.0, 40.0))["Reynolds number"]
+    number = named(neglected_effects(arm, 50.0, 40.0))["Reynolds number"]
     assert worst_validity([number], of_cycles=True) == Validity.does_not_apply
-    still = named(effects_of(arm, 50.0, 40.0, amplitude=0.05))["Reynolds number"]
+    still = named(neglected_effects(arm, 50.0, 40.0, amplitude=0.05))["Reynolds number"]
     assert number.value == pytest.approx(10 * still.value)
-    others = effects_of(SlenderArm(**WATER | {"viscosity": 100.0}), 0.0, 4.0)
+    others = neglected_effects(SlenderArm(**WATER | {"viscosity": 100.0}), 0.0, 4.0)
     assert worst_validity((number, *others), of_cycles=False) == Validity.applies
     assert worst_validity((number, *others), of_cycles=True) == Validity.does_not_apply
 
@@ -150,5 +153,5 @@ def test_an_arm_without_load_has_no_force():
 @pytest.mark.filterwarnings("error")
 def test_a_tube_without_an_amplitude_has_an_unknown_flattening_of_its_wall():
     tube = SlenderArm(length="10 cm", radius="5 mm", inner_radius="3 mm", young="1 MPa", viscosity="12 Pa s")
-    effects = named(effects_of(tube, math.nan, math.nan, amplitude=math.nan))
+    effects = named(neglected_effects(tube, math.nan, math.nan, amplitude=math.nan))
     assert np.isnan(effects["flattening of the wall"].value)

@@ -9,12 +9,12 @@ import pytest
 import rodsweep
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import (
-    CRUSHING,
+    CRUSHING_PARAMETERS,
     LINEAR_PARAMETERS,
     NONLINEAR_PARAMETERS,
     OPTIONAL_PARAMETERS,
     PARAMETERS,
-    all_but,
+    names_except,
 )
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.variables import DIMENSIONS
@@ -24,8 +24,8 @@ def test_the_rod_has_all_parameters():
     assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "build")
     assert NONLINEAR_PARAMETERS[:4] == LINEAR_PARAMETERS
     assert OPTIONAL_PARAMETERS == ("taper",)
-    assert all_but("F") == LINEAR_PARAMETERS[1:]
-    assert set(CRUSHING) <= set(LINEAR_PARAMETERS)
+    assert names_except("F") == LINEAR_PARAMETERS[1:]
+    assert set(CRUSHING_PARAMETERS) <= set(LINEAR_PARAMETERS)
 
 
 def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():

@@ -41,7 +41,7 @@ def state(rod, grid):
 def balanced(x, rod, grid):
     """V and G at all nodes, (d, nodes + 1)."""
     V, G = np.empty((2, *rod.drag.shape))
-    balance.of(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
+    balance.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
     return V, G
 
 
@@ -49,7 +49,7 @@ def equations(x, rod, grid):
     """G at all nodes, (d, nodes + 1), and the balance of what is unknown of V, flat."""
     _, G = balanced(x, rod, grid)
     out = np.empty(len(x))
-    velocity_balance.of(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
+    velocity_balance.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
     return np.append(G.ravel(), out[len(G) * grid.nodes :])
 
 
@@ -62,7 +62,10 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
     g, n = ALGEBRAS[d], d * grid.nodes + len(kept) * (grid.nodes + 1)
     x = np.random.default_rng(d).standard_normal(n)
     found = []
-    for run, slope in ((balance.of(g), jacobian.of(g)), (partial(balance, g), partial(jacobian, g))):
+    for run, slope in (
+        (balance.compiled_for(g), jacobian.compiled_for(g)),
+        (partial(balance, g), partial(jacobian, g)),
+    ):
         V, G = np.empty((2, d, grid.nodes + 1))
         J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
         run(x, V, G, rod, grid.matrices)
@@ -83,7 +86,7 @@ def test_plane_states_of_space_are_those_of_the_plane(grid):
     for rod, here in ((plane, x), (space, there)):
         V, G = balanced(here, rod, grid)
         J, tip = np.empty((len(here),) * 2), np.empty((len(V), len(here)))
-        jacobian.of(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
+        jacobian.compiled_for(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
         jacobians.append((V, G, J, tip))
     (V, G, J, tip), (V_space, G_space, J_space, tip_space) = jacobians
     for ours, theirs in ((V_space, V), (G_space, G)):
@@ -117,7 +120,7 @@ def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, ke
     x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
-    jacobian.of(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
+    jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
     whole = np.concatenate([J[: d * n].reshape(d, n, -1), tip[:, None]], axis=1).reshape(d * (n + 1), -1)
     whole = np.concatenate([whole, J[d * n :]])
     for k, step in enumerate(1e-2 * np.eye(len(x))):  # the equations are cubic: this difference is exact
@@ -146,7 +149,7 @@ def test_a_rigid_motion_strains_no_rod():
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
     V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
     G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.nodes + 1, axis=1)
-    write_strain_rates.of(SE3)(strain, V, G, grid.matrices)
+    write_strain_rates.compiled_for(SE3)(strain, V, G, grid.matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold
     G[:, -1] += V[:, -1]  # and the reaction
     assert np.abs(G).max() < 1e-12 * np.abs(V).max()

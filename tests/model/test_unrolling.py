@@ -28,7 +28,7 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
     V, G = np.empty((2, 3, GRID.nodes + 1))
     balance(SE2, x, V, G, rod, GRID.matrices)
     out = np.empty((2, 3, 3, GRID.nodes + 1))
-    balance_change.of(SE2)(x, V, out[0], change, rod, GRID.matrices)
+    balance_change.compiled_for(SE2)(x, V, out[0], change, rod, GRID.matrices)
     balance_change(SE2, x, V, out[1], change, rod, GRID.matrices)
     assert np.abs(out[0] - out[1]).max() <= 1e-13 * np.abs(out[1]).max()
 
@@ -36,12 +36,12 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
 @UnrolledOverAlgebra
 def decided(g, x):
     total = 0.0
-    both = [[x[a] * x[b] if g.forward[a][b] else 0.0 for b in g.components] for a in g.components]
-    for a, b, o, sign in g.terms:
+    both = [[x[a] * x[b] if g.ad_pattern[a][b] else 0.0 for b in g.components] for a in g.components]
+    for a, b, o, sign in g.structure_constants:
         if a == o:
             total += x[b] / 0.0
         else:
-            total += sign * both[a][o] if g.forward[a][o] else x[a] / 0.0
+            total += sign * both[a][o] if g.ad_pattern[a][o] else x[a] / 0.0
     return total
 
 
@@ -56,17 +56,19 @@ def left_early(g, x):
 @BOTH
 def test_conditions_on_the_algebra_are_decided_before_compilation(g):
     x = np.arange(1.0, 1 + g.dimension)
-    assert decided.of(g)(x) == pytest.approx(sum(sign * x[a] * x[o] for a, _, o, sign in g.terms))
+    assert decided.compiled_for(g)(x) == pytest.approx(
+        sum(sign * x[a] * x[o] for a, _, o, sign in g.structure_constants)
+    )
 
 
 def test_a_loop_that_is_left_early_is_not_written_out():
     with pytest.raises(TypeError, match="has no break"):
-        left_early.of(SE2)
+        left_early.compiled_for(SE2)
 
 
 def test_algebras_have_kernels_of_their_own():
-    assert balance.of(SE2) is balance.of(SE2)
-    assert balance.of(SE2) is not balance.of(SE3)
+    assert balance.compiled_for(SE2) is balance.compiled_for(SE2)
+    assert balance.compiled_for(SE2) is not balance.compiled_for(SE3)
 
 
 @pytest.mark.parametrize(
@@ -83,5 +85,5 @@ def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text
         spec = importlib.util.spec_from_file_location("of_a_test", path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        digests.append(digest(kernel_of(module.f.written_out(SE2), {}), {}))
+        digests.append(digest(kernel_of(module.f.unrolled_for(SE2), {}), {}))
     assert (digests[0] == digests[1]) == same

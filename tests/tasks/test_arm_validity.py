@@ -10,7 +10,12 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.api.keyword_arguments import job_from
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.model.arm.neglected import (
+    Validity,
+    largest_angular_frequency,
+    neglected_effects,
+    worst_validity,
+)
 from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
 from rodsweep.post.summary.arm.validity import validity_sentence
@@ -41,7 +46,7 @@ def test_each_point_has_the_worst_of_what_is_left_out():
     assert data.model_applies[0] == Validity.does_not_apply  # shorter than ten radii
     for point in (data.isel(length=i) for i in (1, 2, 3)):
         arm = arm_at(point)
-        effects = effects_of(arm, fastest_rate(arm, point.hopf_frequency), point.F_hopf)
+        effects = neglected_effects(arm, largest_angular_frequency(arm, point.hopf_frequency), point.F_hopf)
         counted = [effect for effect in effects if not effect.of_cycles_only]
         assert point.model_applies == worst_validity(effects, of_cycles=False)
         largest = max(counted, key=lambda effect: effect.excess)
@@ -131,7 +136,9 @@ def test_the_motion_is_that_of_the_task(task, more):
         rate = next((w for w in frequency if w > 0), np.nan)
         arm_here = arm_at(point, density_difference=1.0)
         amplitude = np.nan_to_num(point.tip_y_max.item()) if task == "limit_cycle" else 0.5
-        effects = effects_of(arm_here, fastest_rate(arm_here, rate), data.F[i].item(), amplitude=amplitude)
+        effects = neglected_effects(
+            arm_here, largest_angular_frequency(arm_here, rate), data.F[i].item(), amplitude=amplitude
+        )
         assert point.model_applies == worst_validity(effects, of_cycles=task == "limit_cycle")
         counted = [e for e in effects if task == "limit_cycle" or not e.of_cycles_only]
         expected = np.nanmax([float(effect.excess) for effect in counted])
@@ -157,7 +164,7 @@ def test_branches_and_diagrams_are_judged_too():
     branch = rs.sweep("branch", arm=arm, stop=45, cycles=60, accuracy=1e-4)
     fastest = np.nanmax(2 * np.pi / branch.period.values)
     here = arm_at(branch)
-    effect = effects_of(here, fastest_rate(here, fastest), 0.0)[0]
+    effect = neglected_effects(here, largest_angular_frequency(here, fastest), 0.0)[0]
     assert branch.neglected_excess.item() >= float(effect.excess) * (1 - 1e-12)
     diagram = rs.sweep(
         "phase_diagram", arm=arm | {"pressure": rs.linspace("1 kPa", "3 kPa", 5)}, gamma3=[0.002, 0.004],

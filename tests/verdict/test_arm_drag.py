@@ -15,7 +15,7 @@ from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAGS
-from rodsweep.model.arm.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effect
+from rodsweep.model.arm.neglected import CURVATURE_OVER_AMPLITUDE, LARGE_AMPLITUDE, wall_effect
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
@@ -292,7 +292,7 @@ def test_a_tube_flattens_as_brazier_found():
     """The largest moment of M = E pi r^3 t kappa (1 - loss) is 2 sqrt(2)/9 pi E r t^2/sqrt(1 - nu^2)."""
     r, t, nu = 10.0, 0.01, 0.3
     bend = np.linspace(0, 2e-3, 200001)[1:] / r  # curvatures up to beyond the maximum
-    loss = wall_effect(WIDE_CURVATURE * HALF_LENGTH / bend, r + t / 2, r - t / 2, nu).value
+    loss = wall_effect(CURVATURE_OVER_AMPLITUDE * LARGE_AMPLITUDE / bend, r + t / 2, r - t / 2, nu).value
     moment = np.pi * r**3 * t * bend * (1 - loss)
     assert moment.max() == pytest.approx(2 * np.sqrt(2) / 9 * np.pi * r * t**2 / np.sqrt(1 - nu**2), rel=1e-6)
     report = str(rs.Arm(**SILICONE, inner_radius="3.6 mm").report())

@@ -7,8 +7,8 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ...errors import InputError
 from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
-from ...model.arm.quantities import RELATIVE, UNITS
-from ...model.units import in_si, share_of_flutter, split_quantity, written_in
+from ...model.arm.quantities import RELATIVE_LOADS, UNITS
+from ...model.units import in_si, share_of_flutter, split_quantity, value_in_unit
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_float, short_repr
 
 RANGE_ENDS = ("start", "stop")
@@ -68,7 +68,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
     found = dict(given)
-    for name, load in RELATIVE.items():
+    for name, load in RELATIVE_LOADS.items():
         shares, is_relative = _loads_in_flutter_loads(given.get(load))
         if not is_relative:
             continue
@@ -137,7 +137,7 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
             words.append(f"drag {RANGE_OF_DRAG if len(names) == len(DRAGS) else ' and '.join(names)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
-        texts = [f"{written_in(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
+        texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
         words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
         if unit and not all(isinstance(one, str) for one in _written_values(axis.written)):
             bare.append(name)

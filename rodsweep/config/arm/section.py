@@ -11,9 +11,9 @@ from pydantic import Field, model_validator
 from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
+from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE_LOADS, SCALE_NAME, UNITS
 from ...model.material.build import Build
-from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from ...model.parameters import NONLINEAR_PARAMETERS, names_except
 from ..material import LawName, SectionName
 from ..values import Axis, StrictSection, Values
 from .axes import LOAD_AXES, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
@@ -118,12 +118,12 @@ class ArmSection(StrictSection):
     @property
     def load(self) -> str | None:
         """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
-        return RELATIVE.get(str(self.load_axis), self.load_axis)
+        return RELATIVE_LOADS.get(str(self.load_axis), self.load_axis)
 
     @property
     def varying_quantities(self) -> tuple[str, ...]:
         """Names of the quantities that have several values or are relative to flutter."""
-        return tuple(name for name, axis in self.quantity_axes.items() if axis.size > 1 or name in RELATIVE)
+        return tuple(n for n, axis in self.quantity_axes.items() if axis.size > 1 or n in RELATIVE_LOADS)
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
@@ -151,7 +151,7 @@ class ArmSection(StrictSection):
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
             low = float(axis.array()[0])
-            if name in RELATIVE and low < 0:
+            if name in RELATIVE_LOADS and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
             if name in UNITS and not (QUANTITIES[name].signed or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
@@ -189,13 +189,13 @@ class ArmSection(StrictSection):
         Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
         arm = self.arm_of(self.first_values, loaded=True)
-        names = (*all_but("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
+        names = (*names_except("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
             different = {getattr(self.arm_of(each), name) for each in self.sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
-            axes = {"F": self.quantity_axes[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
+            axes = {"F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAME[self.load]))} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:

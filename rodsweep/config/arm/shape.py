@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BeforeValidator, WithJsonSchema
 
 from ...errors import InputError
-from ...model.arm.segments import EXAMPLE, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
+from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import STANDARD, Build
-from ...model.units import unit_of, written_in
+from ...model.units import unit_of, value_in_unit
 from .axes import UncoveredArm
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def with_length(given: dict[str, Any]) -> dict[str, Any]:
     texts = as_segments(given["segments"]) or ()
     unit = unit_of(texts[0].partition(":")[0], "m")
     total = sum(segment.length for segment in segments_of(texts))
-    return given | {"length": f"{written_in(total, unit, 'm'):.15g} {unit}"}
+    return given | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
 
 
 def build_of(arm: "ArmSection") -> Build:
@@ -138,5 +138,7 @@ Segments = Annotated[
         }
     ),
 ]
-SEGMENTS_ALLOWED = f"a list of segments, each as '{EXAMPLE}' or a mapping of {', '.join(SEGMENT_KEYS)}"
+SEGMENTS_ALLOWED = (
+    f"a list of segments, each as '{EXAMPLE_SEGMENT}' or a mapping of {', '.join(SEGMENT_KEYS)}"
+)
 """Phrase for messages that describes the allowed values of the key `segments`."""

@@ -11,7 +11,7 @@ from ...model.parameters import (
     NONLINEAR_PARAMETERS,
     OPTIONAL_PARAMETERS,
     PARAMETERS,
-    all_but,
+    names_except,
 )
 from ..axes import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
 from ..schema import Config
@@ -44,9 +44,12 @@ class BranchOptions(StrictSection):
         allowed = PARAMETERS[self.along].allowed
         for key, value in (("start", self.start), ("stop", self.stop)):
             if not allowed.contains(value) or not isfinite(value):
-                finite = " (not inf: a branch has finite ends)" if PARAMETERS[self.along].rigid else ""
+                finite = (
+                    " (not inf: a branch has finite ends)" if PARAMETERS[self.along].rigid_adjective else ""
+                )
                 raise ValueError(
-                    f"{key} = {value:g} is not allowed along {self.along}; allowed: {allowed.phrase}{finite}"
+                    f"{key} = {value:g} is not allowed along {self.along}; allowed: "
+                    f"{allowed.description}{finite}"
                 )
         if not self.start < self.stop:
             raise ValueError(f"start = {self.start:g} is not below stop = {self.stop:g}")
@@ -68,11 +71,11 @@ class BranchConfig(Config):
 
     @property
     def names(self) -> tuple[str, ...]:
-        return (*all_but(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
+        return (*names_except(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return all_but(options.get("along", "F"), NONLINEAR_PARAMETERS)
+        return names_except(options.get("along", "F"), NONLINEAR_PARAMETERS)
 
     @model_validator(mode="before")
     @classmethod

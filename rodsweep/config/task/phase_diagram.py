@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...model.arm.quantities import RELATIVE
+from ...model.arm.quantities import RELATIVE_LOADS
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axes import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
@@ -69,7 +69,8 @@ class PhaseDiagramOptions(StrictSection):
         values = axis.array()
         if axis.size < 2 or not (values < inf).all() or not all(map(allowed.contains, values)):
             raise ValueError(
-                f"bautin_along.{name} needs at least two values, all {allowed.phrase} and none of them inf"
+                f"bautin_along.{name} needs at least two values, all {allowed.description} and none of them "
+                "inf"
             )
         if not self.criticality:
             raise ValueError("bautin_along is given but criticality is false; set criticality: true")
@@ -173,11 +174,14 @@ class PhaseDiagramConfig(LinearConfig):
             )
             moves = "no parameter" if several in FLUID_QUANTITIES else "several parameters at once"
             why = (
-                "is relative to flutter" if several in RELATIVE else f"has several values, which move {moves}"
+                "is relative to flutter"
+                if several in RELATIVE_LOADS
+                else f"has several values, which move {moves}"
             )
             raise ValueError(
-                f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
-                f"{joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given with the arm"
+                f"parameters.arm.{RELATIVE_LOADS.get(several, several)} {why}; a phase diagram of an "
+                f"arm is over {joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given with "
+                "the arm"
             )
         long = self.plane
         names = joined_names((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
@@ -188,7 +192,9 @@ class PhaseDiagramConfig(LinearConfig):
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
-            stiff = joined_names(tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid), "and")
+            stiff = joined_names(
+                tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective), "and"
+            )
             raise ValueError(
                 f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
                 f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import Path
-from ..roots.newton import FAILED, ROOT_NEWTON_SETTINGS, LocatedZero
+from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
@@ -87,8 +87,8 @@ class ArmAlongPath:
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
-        reach: expected distance of p from the guess. Returns `FAILED` if p moves by more than twice `reach`,
-        if the sign of x changes, if the Jacobian is singular, or without convergence.
+        reach: expected distance of p from the guess. Returns `FAILED_ZERO` if p moves by more than twice
+        `reach`, if the sign of x changes, if the Jacobian is singular, or without convergence.
         """
         start = x
         first = p
@@ -106,7 +106,7 @@ class ArmAlongPath:
             D_p, D_wp = (sum(weight * value[i] for weight, value in neighbours) / k for i in range(2))
             cross = D_w * D_wp - D_p * D_ww
             if cross == 0 or not math.isfinite(cross):
-                return FAILED
+                return FAILED_ZERO
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
             blur = ARM_DOUBLE_EIGENVALUE_SETTINGS.rounding_over_noise * noise + ROUND_OFF * abs(p * D_p)
@@ -121,7 +121,7 @@ class ArmAlongPath:
             x += in_x
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0:
-                return FAILED
+                return FAILED_ZERO
             small = abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
             if small and (abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2):
                 # Only after convergence, because D on further elements is expensive.
@@ -129,7 +129,7 @@ class ArmAlongPath:
                 e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY_SETTINGS.interpolation_error * abs(p)
                 return LocatedZero(x, p, max(more * e_x, abs(in_x)), e_p)
             last = abs(in_x)
-        return FAILED
+        return FAILED_ZERO
 
     def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
         """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `spread_factor` times (max -

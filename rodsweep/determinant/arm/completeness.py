@@ -168,7 +168,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     points = np.empty(k)
     for j in range(k):
         points[j] = x * (1 + COMPLETENESS.point_spread * j / max(k - 1, 1))
-    while not _turn_of_hull(points, a, c) < math.pi / 2:
+    while not _largest_angle_sum(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENT_SETTINGS.least_divisor:
             return points[:0]
         points *= COMPLETENESS.widening_factor
@@ -176,7 +176,7 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
 
 
 @compiled
-def _turn_of_hull(points: Array, a: float, c: float) -> float:
+def _largest_angle_sum(points: Array, a: float, c: float) -> float:
     """Upper bound of sum_j arg(x_j - v) over v in the hull (a, c); inf if a point x_j may lie in the hull."""
     b = 1 - c
     total = 0.0
@@ -223,11 +223,11 @@ def remainder_of_sum(
             rate += 1 / abs(x - w)
         R -= phi.real
         blur += abs(phi) * rate * error[n]
-    return Remainder(R, blur, _least_right_of(line, points, hull[0], hull[1]))
+    return Remainder(R, blur, _least_term_right_of(line, points, hull[0], hull[1]))
 
 
 @compiled
-def _least_right_of(line: float, points: Array, a: float, c: float) -> float:
+def _least_term_right_of(line: float, points: Array, a: float, c: float) -> float:
     """Lower bound of Re phi at real w, and of 2 Re phi at complex w, in the hull (a, c) right of the line."""
     b = 1 - c
     right = max(a * a / (4 * b), line)

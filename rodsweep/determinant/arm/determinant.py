@@ -2,8 +2,8 @@
 
 The propagators of an element are polynomials in w/W that are valid for |w| <= W. Every bound W has its own
 elements, made at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`ARM_ELEMENTS.longest`) over an element, and that the Gauss points resolve the coefficients. Elements end
-at every break of the profile.
+exp(`ARM_ELEMENTS.max_exponent`) over an element, and that the Gauss points resolve the coefficients. Elements
+end at every break of the profile.
 """
 
 from functools import cached_property, lru_cache
@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...model.dispersion import sampled
+from ...model.dispersion import sampled_arm
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
 from ..value import DeterminantValue
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENTS
-from .local_waves import ArmSamples, arm_samples, scales_at, scales_at_all
+from .local_waves import ArmSamples, arm_samples, wave_number_and_length_at, wave_numbers_and_lengths_at
 from .value import determinant_along_chain
 
 BoundedPropagators = tuple[float, Array]
@@ -36,11 +36,11 @@ class ArmDeterminant:
 
     def __init__(self, rod: Rod, known: BoundedPropagators | None = None):
         self.rod = rod
-        self._levels: list[BoundedPropagators] = [] if known is None else [known]
-        points, weights, local = sampled(rod)
+        self._known_propagators: list[BoundedPropagators] = [] if known is None else [known]
+        points, weights, local = sampled_arm(rod)
         self.samples = arm_samples(float(rod.F), local, weights)
         each = LocalCoefficients(*(x[None] for x in local))
-        self._samples = Samples(points, each, self.samples.squares[:, None])
+        self._coefficient_samples = CoefficientSamples(points, each, self.samples.squares[:, None])
 
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -52,7 +52,7 @@ class ArmDeterminant:
 
         The differences between values for several factors show the rounding error of D.
         """
-        W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.highest_compared)
+        W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.max_compared_reuse_ratio)
         return determinant_along_chain(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
@@ -70,11 +70,11 @@ class ArmDeterminant:
 
     def scales(self, w: complex) -> tuple[float, float]:
         """(`wave_number`, `length`) at w."""
-        return scales_at(w, self.samples)
+        return wave_number_and_length_at(w, self.samples)
 
     def scales_of_all(self, w: Complex) -> Array:
         """Array (2, n) of `wave_number` and `length` at every w, (n,)."""
-        return scales_at_all(w, self.samples)
+        return wave_numbers_and_lengths_at(w, self.samples)
 
     @cached_property
     def gauss_samples(self) -> ArmSamples:
@@ -88,24 +88,24 @@ class ArmDeterminant:
         """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= size.
 
         Existing propagators with the smallest such W are reused if W <= highest * size; otherwise new
-        propagators are made. highest: by default `ARM_ELEMENTS.highest`.
+        propagators are made. highest: by default `ARM_ELEMENTS.max_reuse_ratio`.
         """
-        highest = ARM_ELEMENTS.highest if highest is None else highest
-        size = max(size, ARM_ELEMENTS.smallest_level)
-        for level in self._levels:
+        highest = ARM_ELEMENTS.max_reuse_ratio if highest is None else highest
+        size = max(size, ARM_ELEMENTS.min_largest_w)
+        for level in self._known_propagators:
             if size <= level[0] <= highest * size:
                 return level
-        W = ARM_ELEMENTS.headroom * size
+        W = ARM_ELEMENTS.largest_w_factor * size
         made = W, self._propagators(W)
-        self._levels = sorted([*self._levels, made], key=itemgetter(0))
+        self._known_propagators = sorted([*self._known_propagators, made], key=itemgetter(0))
         return made
 
     def _propagators(self, W: float) -> Array:
-        found = elements_for([self.rod], self._samples, W)
+        found = elements_for([self.rod], self._coefficient_samples, W)
         return element_propagators([self.rod.F], found.local, found.lengths, W)[0]
 
 
-class Samples(NamedTuple):
+class CoefficientSamples(NamedTuple):
     """Samples of n arms between the breaks of their profile.
 
     points: material coordinates u, (points,). local: `LocalCoefficients` at the points, each (n, points).
@@ -126,15 +126,15 @@ class PropagatorElements(NamedTuple):
     local: Array
 
 
-def samples_of(rods: list[Rod]) -> Samples:
+def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     """Samples of the arms `rods`, whose profiles have equal breaks."""
-    points, weights, _ = sampled(rods[0])
+    points, weights, _ = sampled_arm(rods[0])
     local = Rod.local_of_all(rods, points)
     forces = np.array([[rod.F] for rod in rods])
-    return Samples(points, local, arm_samples(forces, local, weights).squares)
+    return CoefficientSamples(points, local, arm_samples(forces, local, weights).squares)
 
 
-def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorElements:
+def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> PropagatorElements:
     """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same build.
 
     Raises FloatingPointError if `max_elements` elements do not resolve an arm.
@@ -155,7 +155,7 @@ def elements_for(rods: list[Rod], samples: Samples, W: float) -> PropagatorEleme
     raise FloatingPointError(f"{most} elements are too few to resolve this arm at |w| = {W:g}")
 
 
-@lru_cache(maxsize=ARM_ELEMENTS.arms_kept)
+@lru_cache(maxsize=ARM_ELEMENTS.max_cached_arms)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """The determinant D of an arm, cached: propagators made for one w serve later calls."""
     return ArmDeterminant(rod)

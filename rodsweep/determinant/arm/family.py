@@ -20,11 +20,11 @@ from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import Path
 from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
-from .determinant import Samples, elements_for, samples_of
+from .determinant import CoefficientSamples, coefficient_samples, elements_for
 from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENTS
-from .value import ARM_VALUE_SETTINGS, chain_along, determinant_along_chain
+from .value import ARM_VALUE_SETTINGS, determinant_along_chain, path_value_by_chain
 
 LINEAR_SCALE = math.inf
 """Value of `ArmFamily.scale` for series in p itself, not in a logarithm of p."""
@@ -39,7 +39,7 @@ class ArmFamilySettings(CompiledSettings):
     spacing_scales: tuple[float, ...] = (LINEAR_SCALE, LINEAR_SCALE, LINEAR_SCALE, 0.05, 0.05)
     """`ArmFamily.scale` over the length of the interval, for each trial. Logarithmic spacing needs fewer arms
     near complex forces of the size of the stiffness, where the stretch of rubber has branch points."""
-    max_entries: int = 500_000
+    max_propagator_entries: int = 500_000
     """No family is made if the propagators of one arm have more entries: single arms are then faster."""
     converged_tail: float = 1e-15
     """The series has converged if the last two Chebyshev coefficients of every propagator are at most this
@@ -82,35 +82,35 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
     for number, share in ARM_FAMILY_SETTINGS.trials():
         scale = share * (high - low)
         arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, number).tolist()]
-        samples = samples_of(arms)
+        samples = coefficient_samples(arms)
         # What the coefficients along the arm do not resolve, the propagators made of them cannot.
         if not _series_converges(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY_SETTINGS.max_entries:
+        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY_SETTINGS.max_propagator_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
-        if _converged(values, ARM_FAMILY_SETTINGS.converged_tail):
-            coefficients = np.tensordot(_to_series(number), values, 1)
+        if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail):
+            coefficients = np.tensordot(_chebyshev_coefficient_matrix(number), values, 1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients))
     return None
 
 
-def is_smooth(path: Path, low: float, high: float) -> bool:
+def has_smooth_coefficients(path: Path, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
     Raises ValueError at a p without a valid arm.
     """
     for number, share in reversed(ARM_FAMILY_SETTINGS.trials()):
         p = _interpolation_points(low, high, share * (high - low), number)
-        if _series_converges(samples_of([path.rod_at(value) for value in p.tolist()])):
+        if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):
             return True
     return False
 
 
-def _series_converges(samples: Samples) -> bool:
+def _series_converges(samples: CoefficientSamples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
     tail = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail
-    return _converged(np.moveaxis(np.array(samples.local), 1, 0), tail)
+    return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tail)
 
 
 def _interpolation_points(low: float, high: float, scale: float, number: int) -> Array:
@@ -122,12 +122,12 @@ def _interpolation_points(low: float, high: float, scale: float, number: int) ->
     return np.minimum(low + (high - low) * t, high)
 
 
-def _converged(values: Array, tolerance: float) -> bool:
+def _has_small_coefficient_tail(values: Array, tolerance: float) -> bool:
     """Whether the last two Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:,
     i]|.
     """
     others = tuple(range(2, values.ndim))
-    last = np.tensordot(_to_series(len(values))[-2:], values, 1)
+    last = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
     size = np.abs(values).max(axis=(0, *others))
     return bool((np.abs(last).max(axis=(0, *others)) <= tolerance * size).all())
 
@@ -139,7 +139,7 @@ def chebyshev_points(number: int) -> Array:
 
 
 @cache
-def _to_series(number: int) -> Array:
+def _chebyshev_coefficient_matrix(number: int) -> Array:
     """Matrix that maps values at `number` Chebyshev points to Chebyshev coefficients, (number, number)."""
     return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev_points(number), number - 1)))
 
@@ -241,7 +241,7 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
             break
         last = abs(step)
         w -= step
-    D, D_w, D_p, _, noise = chain_along(w, family.W, polynomials, changes)
+    D, D_w, D_p, _, noise = path_value_by_chain(w, family.W, polynomials, changes)
     size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:

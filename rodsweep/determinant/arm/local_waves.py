@@ -40,7 +40,7 @@ def arm_samples(F: float | Array, local: LocalCoefficients, weights: Array) -> A
 
 
 @compiled_for_vectors
-def root_of_upper_half(real: float, imag: float) -> tuple[float, float]:
+def sqrt_in_upper_half_plane(real: float, imag: float) -> tuple[float, float]:
     """(real part, imaginary part) of the square root of real + i imag, imag >= 0."""
     larger = math.sqrt((math.sqrt(real * real + imag * imag) + abs(real)) / 2)
     smaller = imag / (2 * max(larger, EXPONENT_SETTINGS.least_divisor))
@@ -48,13 +48,13 @@ def root_of_upper_half(real: float, imag: float) -> tuple[float, float]:
 
 
 @compiled_for_vectors
-def size_of(real: float, imag: float) -> float:
+def modulus_of_parts(real: float, imag: float) -> float:
     """Modulus of the number real + i imag."""
     return math.sqrt(real * real + imag * imag)
 
 
 @compiled_for_vectors
-def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
+def wave_number_and_length_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
     """Returns (wave number, length) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|, averaged
     along the arm. length: 1/(average along the arm of the larger |d sqrt(z+-)/dw|).
     """
@@ -64,29 +64,32 @@ def scales_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
     b = w.imag
     for i in range(len(samples.weights)):
         drag, load, rate, bend = samples.squares[:, i]
-        x, y = root_of_upper_half(a * (rate + bend * a) - bend * b * b, b * (rate + 2 * bend * a))
-        P = size_of(x, y)
-        first = math.sqrt(size_of(drag * a - load + 2 * x, drag * b + 2 * y))
-        second = math.sqrt(size_of(drag * a - load - 2 * x, drag * b - 2 * y))
+        x, y = sqrt_in_upper_half_plane(a * (rate + bend * a) - bend * b * b, b * (rate + 2 * bend * a))
+        P = modulus_of_parts(x, y)
+        first = math.sqrt(modulus_of_parts(drag * a - load + 2 * x, drag * b + 2 * y))
+        second = math.sqrt(modulus_of_parts(drag * a - load - 2 * x, drag * b - 2 * y))
         # Where both squares are close D depends on P^2, which has no branch point, and not on P.
         share = 1 / (max(P, EXPONENT_SETTINGS.least_divisor) * max(P, 1.0, first, second))
         slope = rate + 2 * bend * a
         turn = share * (slope * x + 2 * bend * b * y)
         side = share * (2 * bend * b * x - slope * y)
-        rates = size_of(drag + turn, side) / max(1.0, first), size_of(drag - turn, side) / max(1.0, second)
+        rates = (
+            modulus_of_parts(drag + turn, side) / max(1.0, first),
+            modulus_of_parts(drag - turn, side) / max(1.0, second),
+        )
         number += samples.weights[i] * (first + second) / 2
         fast += samples.weights[i] * max(rates[0], rates[1]) / 2
     return number, 1 / max(fast, EXPONENT_SETTINGS.least_divisor)
 
 
 @compiled
-def scales_at_all(w: Complex, samples: ArmSamples) -> Array:
-    """Wave numbers and lengths of `scales_at` at every w, (n,), as an array, (2, n)."""
+def wave_numbers_and_lengths_at(w: Complex, samples: ArmSamples) -> Array:
+    """Wave numbers and lengths of `wave_number_and_length_at` at every w, (n,), as an array, (2, n)."""
     found = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.
         if n > 0 and w[n] == w[n - 1].conjugate():
             found[:, n] = found[:, n - 1]
         else:
-            found[:, n] = scales_at(w[n], samples)
+            found[:, n] = wave_number_and_length_at(w[n], samples)
     return found

@@ -45,7 +45,7 @@ def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> compl
 
 
 @compiled
-def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> float:
+def _root_error_from_value(w: complex, value: DeterminantValue, level: BoundedPropagators) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
     e = ARM_VALUE_SETTINGS.root_residual * abs(value.D) + ARM_VALUE_SETTINGS.root_noise * value.noise
     size = abs(value.D_w)
@@ -60,13 +60,15 @@ def _error(w: complex, value: DeterminantValue, level: BoundedPropagators) -> fl
 
 
 @compiled
-def _root_error(w: complex, level: BoundedPropagators) -> float:
+def _root_error_by_propagators(w: complex, level: BoundedPropagators) -> float:
     """`root_error` at w, from the propagators of `level`."""
-    return _error(w, determinant_along_chain(w, level[0], level[1]), level)
+    return _root_error_from_value(w, determinant_along_chain(w, level[0], level[1]), level)
 
 
 @compiled
-def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[complex, float, float]:
+def _newton_from_guess(
+    guess: complex, level: BoundedPropagators, last: float
+) -> tuple[complex, float, float]:
     """Returns (w, error of w, length of the last step) after Newton's method from `guess`, with the
     propagators of `level`.
 
@@ -80,18 +82,18 @@ def _refined(guess: complex, level: BoundedPropagators, last: float) -> tuple[co
         if guess.imag == 0:
             step = complex(step.real, 0.0)
         if not abs(step) < last / 2:
-            return w, _error(w, value, level), last
+            return w, _root_error_from_value(w, value, level), last
         last = abs(step)
         w -= step
         if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
         if not (1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w) <= level[0]:
             return w, -1.0, last
-    return w, _root_error(w, level), last
+    return w, _root_error_by_propagators(w, level), last
 
 
 @compiled
-def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
+def _two_roots_by_propagators(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
     """`two_roots` about `middle`, with the propagators of `level`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     if middle.imag == 0:
@@ -100,19 +102,19 @@ def _two_roots(middle: complex, level: BoundedPropagators) -> tuple[complex, com
     return roots_of_parabola(middle, D, D_w, _second_derivative(middle, S, level))
 
 
-def _level(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
+def _propagators_at(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
     """(W, propagators) that are valid for D and D'' at w."""
     return determinant.level((1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
     """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w."""
-    return _second_derivative(complex(w), S, _level(w, determinant))
+    return _second_derivative(complex(w), S, _propagators_at(w, determinant))
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
     """Estimated distance from w to the nearest root of an arm's D, in 1/tau2; valid near double roots too."""
-    return _root_error(complex(w), _level(w, determinant))
+    return _root_error_by_propagators(complex(w), _propagators_at(w, determinant))
 
 
 def refine_eigenvalue(w: complex, determinant: ArmDeterminant) -> complex:
@@ -132,7 +134,7 @@ def refine_eigenvalue_and_error(
     error = -1.0
     last = 2 * farthest
     while error < 0:
-        w, error, last = _refined(complex(w), _level(w, determinant), last)
+        w, error, last = _newton_from_guess(complex(w), _propagators_at(w, determinant), last)
     return w, error
 
 
@@ -141,4 +143,4 @@ def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, co
 
     For a real `middle` the roots are both real or complex conjugates.
     """
-    return _two_roots(middle, _level(middle, determinant))
+    return _two_roots_by_propagators(middle, _propagators_at(middle, determinant))

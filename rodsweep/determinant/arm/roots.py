@@ -42,9 +42,9 @@ def refine_mesh_eigenvalues(
     scale = dict(zip(inside, lengths.tolist(), strict=True))
     resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= most_waves]
     start = [first[i] for i in resolved]
-    _make_elements(determinant, max(map(abs, start), default=0.0), largest)
+    _prepare_elements(determinant, max(map(abs, start), default=0.0), largest)
     errors = dict(zip(resolved, _values_at_roots(start, lambda w: root_error(w, determinant)), strict=True))
-    chosen = [i for i in resolved if errors[i] <= ROOT_SETTINGS.largest_of_pair * scale[i]]
+    chosen = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction * scale[i]]
     close = [errors[i] for i in chosen]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     moved, reach = _separate_close_roots([first[i] for i in chosen], close, determinant)
@@ -53,16 +53,16 @@ def refine_mesh_eigenvalues(
         for k, i in enumerate(chosen)
         if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.largest_correction * scale[i]
     ]
-    found = _refined_all([(moved[k], reach[k]) for k in stands], determinant)
+    found = _refine_guesses([(moved[k], reach[k]) for k in stands], determinant)
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))
-    kept = np.array([chosen[stands[root.place]] for root in found], np.int64)
+    kept = np.array([chosen[stands[root.guess_index]] for root in found], np.int64)
     w: Complex = np.array([root.w for root in found], complex)
     wave = determinant.scales_of_all(w)[0]
-    error = _with_equal_roots(found, determinant)
+    error = _errors_of_located_roots(found, determinant)
     length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
     axis = np.abs(w.real) <= np.maximum(
-        ROOT_SETTINGS.axis_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
+        ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
     leader = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
@@ -79,7 +79,7 @@ def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list
     return values
 
 
-def _make_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
+def _prepare_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
     """Makes elements for all |w| up to `largest` if `largest` is at most `max_w_ratio` times `size`, else for
     all |w| up to `size`."""
     if size < largest <= ARM_ROOT_SETTINGS.max_w_ratio * size:
@@ -126,14 +126,14 @@ def _separate_close_roots(
 
 
 class _LocatedRoot(NamedTuple):
-    """A root w of D with its error; place: index of the guess from which it was refined."""
+    """A root w of D with its error; guess_index: index of the guess from which it was refined."""
 
     w: complex
     error: float
-    place: int
+    guess_index: int
 
 
-def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
+def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
     """The root of D near each guess (w, reach), a pair of results of `_separate_close_roots`. For conjugate
     guesses only the first is refined.
     """
@@ -146,7 +146,7 @@ def _refined_all(guesses: list[tuple[complex, float]], determinant: ArmDetermina
     return found
 
 
-def _with_equal_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
+def _errors_of_located_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
     """Errors of the roots `found`, (n,). For two entries that are the same root of D, the error is at least
     the distance 2 |D'/D''| of the next root."""
     error = [root.error for root in found]

@@ -22,13 +22,13 @@ from .elements.evaluation import (
     fill_real_propagator,
     fill_real_value,
     fill_value,
+    modulus_sum_of_products,
+    modulus_sum_of_real_products,
     multiply,
-    multiply_both,
     multiply_real,
-    multiply_real_both,
-    powers_of,
-    size_of_products,
-    size_of_real_products,
+    multiply_real_with_change,
+    multiply_with_change,
+    powers_and_derivatives,
 )
 from .elements.minor_rates import PADDED, SM
 from .elements.settings import MINORS
@@ -45,7 +45,7 @@ class ArmValueSettings(CompiledSettings):
     """Factor of |D|, the residual after Newton's method, in the bound of `root_noise`. Of 3800 eigenvalues
     and 520 crossings of random arms, compared with 34 digits, two exceed the resulting error estimate, by
     less than a factor of 2."""
-    large: float = 1e100
+    max_norm_ratio: float = 1e100
     """Minors are divided by their norm if the norm is not between 1/large and large."""
 
 
@@ -71,22 +71,22 @@ def _real_norm(x: Array) -> float:
 
 
 @compiled
-def _out_of_scale(size: float) -> bool:
+def _needs_rescaling(size: float) -> bool:
     """Whether minors of the norm `size` must be divided by it."""
-    return not 1 / ARM_VALUE_SETTINGS.large < size < ARM_VALUE_SETTINGS.large
+    return not 1 / ARM_VALUE_SETTINGS.max_norm_ratio < size < ARM_VALUE_SETTINGS.max_norm_ratio
 
 
 @compiled
 def _multiply_along_chain(
     z: complex, W: float, polynomials: Array, changes: Array
 ) -> tuple[complex, complex, complex, float]:
-    """(D, dD/dw, dD/dp, S) of `chain_along` at w = z W; dD/dp is 0 if `changes` is empty.
+    """(D, dD/dw, dD/dp, S) of `path_value_by_chain` at w = z W; dD/dp is 0 if `changes` is empty.
 
     polynomials, changes: propagators and their derivatives by p, (elements, terms, PADDED).
     """
     elements, terms, _ = polynomials.shape
     along = len(changes) > 0
-    powers = powers_of(z, terms)
+    powers = powers_and_derivatives(z, terms)
     C = np.empty((4, PADDED))
     change = np.empty((2, PADDED))
     # minors and their derivatives by w and p, here and at the end of the element
@@ -97,14 +97,14 @@ def _multiply_along_chain(
     for e in range(elements):
         fill_propagator(polynomials[e], powers, C)
         multiply(C, here[0], ahead[0])
-        multiply_both(C, here[1], C[2:], here[0], ahead[1])
+        multiply_with_change(C, here[1], C[2:], here[0], ahead[1])
         if along:
             fill_value(changes[e], powers, change)
-            multiply_both(C, here[2], change, here[0], ahead[2])
+            multiply_with_change(C, here[2], change, here[0], ahead[2])
         size = _norm(ahead[0])
         if e == elements - 1:
-            size = max(size, size_of_products(C, here[0]))
-        if _out_of_scale(size) or e == elements - 1:
+            size = max(size, modulus_sum_of_products(C, here[0]))
+        if _needs_rescaling(size) or e == elements - 1:
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
@@ -114,13 +114,13 @@ def _multiply_along_chain(
 
 
 @compiled
-def _real_swept(
+def _multiply_along_real_chain(
     z: float, W: float, polynomials: Array, changes: Array
 ) -> tuple[complex, complex, complex, float]:
     """`_multiply_along_chain` at real z, where D and its derivatives are real."""
     elements, terms, _ = polynomials.shape
     along = len(changes) > 0
-    powers = powers_of(complex(z, 0.0), terms)
+    powers = powers_and_derivatives(complex(z, 0.0), terms)
     C = np.empty((2, PADDED))
     change = np.empty(PADDED)
     here = np.zeros((3, MINORS))
@@ -130,14 +130,14 @@ def _real_swept(
     for e in range(elements):
         fill_real_propagator(polynomials[e], powers, C)
         multiply_real(C[0], here[0], ahead[0])
-        multiply_real_both(C[0], here[1], C[1], here[0], ahead[1])
+        multiply_real_with_change(C[0], here[1], C[1], here[0], ahead[1])
         if along:
             fill_real_value(changes[e], powers, change)
-            multiply_real_both(C[0], here[2], change, here[0], ahead[2])
+            multiply_real_with_change(C[0], here[2], change, here[0], ahead[2])
         size = _real_norm(ahead[0])
         if e == elements - 1:
-            size = max(size, size_of_real_products(C[0], here[0]))
-        if _out_of_scale(size) or e == elements - 1:
+            size = max(size, modulus_sum_of_real_products(C[0], here[0]))
+        if _needs_rescaling(size) or e == elements - 1:
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
@@ -148,7 +148,7 @@ def _real_swept(
 def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
     """(D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements, terms,
     PADDED)."""
-    powers = powers_of(w / W, polynomials.shape[1])
+    powers = powers_and_derivatives(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
     here = np.zeros((2, MINORS))
     ahead = np.empty((2, MINORS))
@@ -158,7 +158,7 @@ def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, floa
         fill_value(polynomials[e], powers, C)
         multiply(C, here, ahead)
         size = _norm(ahead)
-        if _out_of_scale(size):
+        if _needs_rescaling(size):
             ahead /= size
             S += math.log(size)
         here, ahead = ahead, here
@@ -166,21 +166,21 @@ def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, floa
 
 
 @compiled
-def chain_size(w: complex, W: float, polynomials: Array) -> float:
+def log_modulus_by_chain(w: complex, W: float, polynomials: Array) -> float:
     """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
     D, S = chain_value(w, W, polynomials)
     return S + math.log(abs(D)) if D != 0 else -math.inf
 
 
 @compiled
-def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> ValueAlong:
+def path_value_by_chain(w: complex, W: float, polynomials: Array, changes: Array) -> ValueAlong:
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
     polynomials, changes: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
     PADDED). dD/dp is 0 if `changes` is empty.
     """
     if w.imag == 0:
-        D, D_w, D_p, S = _real_swept(w.real / W, W, polynomials, changes)
+        D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, changes)
     else:
         D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, changes)
     return ValueAlong(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
@@ -190,5 +190,5 @@ def chain_along(w: complex, W: float, polynomials: Array, changes: Array) -> Val
 def determinant_along_chain(w: complex, W: float, polynomials: Array) -> DeterminantValue:
     """D and dD/dw at w, times exp(-S). polynomials: propagators valid for |w| <= W, (elements, terms,
     PADDED)."""
-    D, D_w, _, S, noise = chain_along(w, W, polynomials, polynomials[:0])
+    D, D_w, _, S, noise = path_value_by_chain(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, noise)

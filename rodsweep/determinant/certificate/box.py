@@ -35,7 +35,7 @@ class BoxSettings(CompiledSettings):
     least_padding: float = 1e-6
     """Length added to both bounds of the box, in 1/tau2; far below |w| of the first eigenvalue of a rod at
     rest, 12."""
-    margin: float = 0.01
+    bound_excess: float = 0.01
     """Relative excess of every bound, for the rounding errors of the bound itself."""
 
 
@@ -68,7 +68,7 @@ def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
     pad = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
-    return (1 + BOX_SETTINGS.margin) * a * a / 4 + pad, (1 + BOX_SETTINGS.margin) * a * n + pad
+    return (1 + BOX_SETTINGS.bound_excess) * a * a / 4 + pad, (1 + BOX_SETTINGS.bound_excess) * a * n + pad
 
 
 @lru_cache(maxsize=1)

@@ -29,7 +29,7 @@ from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along
-from ..roots.newton import FAILED, LocatedZero, crossing_newton
+from ..roots.newton import FAILED_ZERO, LocatedZero, crossing_newton
 from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
 
@@ -97,8 +97,8 @@ def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
     """(L, K): the rates d sqrt(z)/dw and d sqrt(z)/dp, averaged over the two exponentials of D with their
     moduli as weights.
     """
-    root_plus = cmath.sqrt(centre.plus)
-    root_minus = cmath.sqrt(centre.minus)
+    root_plus = cmath.sqrt(centre.z_plus)
+    root_minus = cmath.sqrt(centre.z_minus)
     # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.
     size_plus = math.exp(root_plus.real - centre.S)
     size_minus = math.exp(root_minus.real - centre.S)
@@ -152,7 +152,7 @@ def examine_box(
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            room = DISC_BOUND_SETTINGS.clearance * distance_from_zero_bound(D, a, b) - rounding
+            room = DISC_BOUND_SETTINGS.max_relative_change * distance_from_zero_bound(D, a, b) - rounding
             if room > 0 and is_remainder_below(centre, rates, half, room, 1):
                 return EMPTY, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
@@ -162,7 +162,7 @@ def examine_box(
         # The smallest singular value of the linear map is at least |det| over the sum of its columns: at most
         # one zero.
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
-        room = (DISC_BOUND_SETTINGS.clearance * least - rounding) / 3
+        room = (DISC_BOUND_SETTINGS.max_relative_change * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
         if room > 0 and is_remainder_below(centre, mean, double, room, 2):
             return REGULAR, 0.0, 0.0
@@ -175,8 +175,8 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     """Changes of the exponents of D across a box in eta and in p; half: half-widths of the box."""
     F, nu, c2, gamma3 = centre.coefficients
     size = abs(centre.w)
-    root_plus = math.sqrt(max(abs(centre.plus), 1.0))
-    root_minus = math.sqrt(max(abs(centre.minus), 1.0))
+    root_plus = math.sqrt(max(abs(centre.z_plus), 1.0))
+    root_minus = math.sqrt(max(abs(centre.z_minus), 1.0))
     plus = centre.slopes_plus
     minus = centre.slopes_minus
     in_w = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
@@ -199,7 +199,7 @@ def cover_with_boxes(
     """
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
-    zeros = [FAILED for _ in range(0)]
+    zeros = [FAILED_ZERO for _ in range(0)]
     left = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     examined = 0
     while len(stack) > 0:

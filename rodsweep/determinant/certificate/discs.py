@@ -25,7 +25,7 @@ class DiscBoundSettings(CompiledSettings):
     rounding_over_noise: float = 4.0
     """|rounding error of D| <= this number times `noise`; the largest ratio of 20 000 unfavourable values was
     0.7."""
-    clearance: float = 0.9
+    max_relative_change: float = 0.9
     """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
     max_expansion_change: float = 0.5
     """sqrt(z) is expanded about the centre of a disc if the relative change x of z over the disc is below
@@ -33,7 +33,7 @@ class DiscBoundSettings(CompiledSettings):
     max_factor_change: float = 0.98
     """If either factor of P^2 changes over a disc by more than this fraction, the bound is inf."""
     ranges: ClassVar = {
-        "clearance": (0.0, 1.0),
+        "max_relative_change": (0.0, 1.0),
         "max_expansion_change": (0.0, 1.0),
         "max_factor_change": (0.0, 1.0),
     }
@@ -44,15 +44,15 @@ DISC_BOUND_SETTINGS = DiscBoundSettings()
 
 DerivativePair = tuple[complex, complex]
 """(derivative by w, derivative by p)."""
-Radii = tuple[float, float]
+BidiscRadii = tuple[float, float]
 """(radius in w, radius in p) of a bidisc; also a pair of real bounds."""
 
 
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D at the centre.
 
-    coefficients: (F, nu, c2, gamma3) at p. derivatives: of T, N, G and X by p. S: scale of D. P, plus, minus:
-    P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
+    coefficients: (F, nu, c2, gamma3) at p. derivatives: of T, N, G and X by p. S: scale of D. P, z_plus,
+    z_minus: P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
     """
 
     w: complex
@@ -60,8 +60,8 @@ class BidiscCentre(NamedTuple):
     derivatives: CoefficientDerivatives
     S: float
     P: complex
-    plus: complex
-    minus: complex
+    z_plus: complex
+    z_minus: complex
     slopes_plus: DerivativePair
     slopes_minus: DerivativePair
 
@@ -76,7 +76,7 @@ def bidisc_centre(
     drag = coefficients.c2 + coefficients.gamma3
     slopes_plus = (drag + 2 * at.P_w, along_plus)
     slopes_minus = (drag - 2 * at.P_w, along_minus)
-    return BidiscCentre(w, coefficients, change, S, at.P, at.plus, at.minus, slopes_plus, slopes_minus)
+    return BidiscCentre(w, coefficients, change, S, at.P, at.z_plus, at.z_minus, slopes_plus, slopes_minus)
 
 
 @compiled
@@ -90,8 +90,8 @@ def nonlinear_root_bound(root: complex, bend: float, x: float) -> float:
 
 @compiled
 def bounds_of_E_on_bidisc(
-    z: complex, slopes: DerivativePair, rates: DerivativePair, radii: Radii, bend: float, S: float
-) -> Radii:
+    z: complex, slopes: DerivativePair, rates: DerivativePair, radii: BidiscRadii, bend: float, S: float
+) -> BidiscRadii:
     """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
     slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. S: scale of D. The
@@ -129,7 +129,7 @@ def bounds_of_E_on_bidisc(
 
 
 @compiled
-def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
+def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
     """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
     w = centre.w
     S = centre.S
@@ -152,7 +152,7 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
 
 
 @compiled
-def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
+def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
     """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K)."""
     F, nu, c2, _ = centre.coefficients
     apart = bound_for_distinct_exponents(centre, rates, radii)
@@ -162,7 +162,7 @@ def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -
 
 
 @compiled
-def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, radii: Radii) -> float:
+def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
     """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-); inf if the bidisc is
     too large.
 
@@ -200,7 +200,7 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
         bend += 2 * abs(P) * (majorant + second * sigma / base / 2)
         least = abs(P) * math.sqrt((1 - e1) * (1 - e2))
         steepest += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / least
-    terms = bounds_of_E_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
-    terms += bounds_of_E_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
+    terms = bounds_of_E_on_bidisc(centre.z_plus, centre.slopes_plus, rates, radii, bend, S)[0]
+    terms += bounds_of_E_on_bidisc(centre.z_minus, centre.slopes_minus, rates, radii, bend, S)[0]
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     return math.exp(min(drift - S, EXPONENT_SETTINGS.max_exponent)) + (abs(w) + rho) / 2 * steepest * terms

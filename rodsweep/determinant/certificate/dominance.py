@@ -56,7 +56,7 @@ class Exponent(NamedTuple):
 
 
 @compiled
-def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
+def _dominant_and_recessive(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
     """(P, dominant exponent, recessive exponent) at w; the dominant exponent has the larger Re sqrt(z)."""
     P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
@@ -68,7 +68,9 @@ def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent,
 
 
 @compiled
-def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
+def _nonlinearity_bounds(
+    w: complex, rho: float, P: complex, coefficients: Coefficients
+) -> tuple[float, float]:
     """Returns upper bounds (nonlinear part of z+-, change of dz+-/dw) over the disc |dw| <= rho about w; inf
     if the disc is too large.
 
@@ -94,10 +96,10 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, on the disc of radius rho about
     w.
     """
-    P, (z, slope, root), (z_other, slope_other, root_other) = _ordered(w, coefficients)
+    P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
-    bend, turn = _bend_and_turn(w, rho, P, coefficients)
+    bend, turn = _nonlinearity_bounds(w, rho, P, coefficients)
     change = abs(slope) * rho + bend
     x = change / abs(z)
     if x > DOMINANCE_SETTINGS.largest_factor_change or turn > DOMINANCE_SETTINGS.largest_factor_change * abs(
@@ -128,7 +130,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     )
     E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
     rest += far / 2 * (abs(slope_other) + turn) * E
-    return rest < DISC_BOUND_SETTINGS.clearance * A
+    return rest < DISC_BOUND_SETTINGS.max_relative_change * A
 
 
 @compiled
@@ -136,12 +138,12 @@ def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, c
     """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant exponential A
     of D.
     """
-    _, dominant, _ = _ordered(w, coefficients)
+    _, dominant, _ = _dominant_and_recessive(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled
-def _phase_beside(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
+def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
     """arg(1 + e) = arg(D/A), the phase of D minus the phase of A, at w. factors: `dominant_factors` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
@@ -192,5 +194,7 @@ def phase_over_dominated_segment(
         total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])
         here = after
     if t > 0.0:
-        total += _phase_beside(w, here, coefficients) - _phase_beside(start, first, coefficients)
+        total += _phase_beyond_dominant(w, here, coefficients) - _phase_beyond_dominant(
+            start, first, coefficients
+        )
     return t, total, discs

@@ -64,7 +64,9 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):
-        top = (1 + BOX_SETTINGS.margin) * squared_amplification_over(path, a, b) + COVERING_SETTINGS.padding
+        top = (1 + BOX_SETTINGS.bound_excess) * squared_amplification_over(
+            path, a, b
+        ) + COVERING_SETTINGS.padding
         if not math.isfinite(top):
             return None
         low = zero_free_radius(path, a, b, top)

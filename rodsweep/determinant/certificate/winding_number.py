@@ -66,13 +66,13 @@ NO_INTEGER = "the winding number of D is not an integer within rounding errors"
 class EigenvalueCount:
     """Number of eigenvalues right of a vertical line.
 
-    number: None if the count failed. nodes: number of nodes and discs on the contour. why_not: reason of the
-    failure.
+    number: None if the count failed. node_count: of nodes and discs on the contour. failure_reason: reason of
+    the failure.
     """
 
     number: int | None
-    nodes: int
-    why_not: str = ""
+    node_count: int
+    failure_reason: str = ""
 
 
 @compiled
@@ -175,7 +175,7 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
     1/tau2.
 
-    A failed proof raises no exception: `number` is then None and `why_not` the reason.
+    A failed proof raises no exception: `number` is then None and `failure_reason` the reason.
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):

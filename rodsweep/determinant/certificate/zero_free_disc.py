@@ -23,7 +23,7 @@ from ..parameter_path import CoefficientDerivatives
 from ..value import exponent_derivatives, scaled_determinant
 from .discs import DISC_BOUND_SETTINGS, bidisc_centre, bound_on_bidisc
 
-ZERO_CHANGES = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_COEFFICIENT_CHANGE = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Derivatives of the coefficients along a path, all 0: bounds then apply to a single rod."""
 
 
@@ -90,12 +90,12 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     less than pi/2. Reach and L are 0 if |D| is not above its rounding error.
     """
     D, D_w, S, noise = scaled_determinant(w, coefficients)
-    room = DISC_BOUND_SETTINGS.clearance * abs(D) - DISC_BOUND_SETTINGS.rounding_over_noise * noise
+    room = DISC_BOUND_SETTINGS.max_relative_change * abs(D) - DISC_BOUND_SETTINGS.rounding_over_noise * noise
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
     if not room > 0:
         return ZeroFreeDiscNode(w, D, 0j, 0.0)
     L = D_w / D
-    centre = bidisc_centre(w, coefficients, ZERO_CHANGES, S)
+    centre = bidisc_centre(w, coefficients, NO_COEFFICIENT_CHANGE, S)
     best = 0.0
     rho = trial_radius(w, coefficients, L, S)
     for _ in range(2):

@@ -27,7 +27,7 @@ class RootNewtonSettings(CompiledSettings):
     """Maximum number of Newton steps to a crossing, and half the maximum number to a double eigenvalue."""
     max_refinements: int = 12
     """Maximum number of Newton steps to an eigenvalue."""
-    largest_step: float = 20.0
+    max_relative_step: float = 20.0
     """Newton's method for a crossing fails after a step larger than this number times the expected sizes of
     eta and p."""
     converged_step: float = 4.0
@@ -57,7 +57,7 @@ class LocatedZero(NamedTuple):
     error_of_p: float
 
 
-FAILED = LocatedZero(math.nan, math.nan, math.nan, math.nan)
+FAILED_ZERO = LocatedZero(math.nan, math.nan, math.nan, math.nan)
 """Returned when Newton's method fails: all fields are nan."""
 
 
@@ -68,8 +68,8 @@ def crossing_newton(
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
     origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
-    Returns `FAILED` if a step exceeds `ROOT_NEWTON_SETTINGS.largest_step`, if eta <= 0, if the Jacobian is
-    singular, or if the method does not converge."""
+    Returns `FAILED_ZERO` if a step exceeds `ROOT_NEWTON_SETTINGS.max_relative_step`, if eta <= 0, if the
+    Jacobian is singular, or if the method does not converge."""
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)
@@ -79,7 +79,7 @@ def crossing_newton(
         # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
         cross = (a * D_p.conjugate()).imag
         if cross == 0:
-            return FAILED
+            return FAILED_ZERO
         in_eta = -(D * D_p.conjugate()).imag / cross
         in_p = (D * a.conjugate()).imag / cross
         # The rounding errors of p and eta add to the rounding error of D.
@@ -88,8 +88,8 @@ def crossing_newton(
         e_p = blur * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
         # Negated comparisons are also true for NaN.
-        if not step < ROOT_NEWTON_SETTINGS.largest_step or not eta + in_eta > 0:
-            return FAILED
+        if not step < ROOT_NEWTON_SETTINGS.max_relative_step or not eta + in_eta > 0:
+            return FAILED_ZERO
         eta += in_eta
         p += in_p
         if (
@@ -98,7 +98,7 @@ def crossing_newton(
         ) or (step > last / 2 and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)):
             return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
-    return FAILED
+    return FAILED_ZERO
 
 
 @compiled
@@ -108,25 +108,25 @@ def double_newton(
     """The double real eigenvalue D = D_w = 0 near the guess (x, p).
 
     origin, direction: coefficients at p = 0 and their derivative by p. reach: expected distance of p from the
-    guess. Returns `FAILED` if p moves by more than twice `reach`, if the sign of x changes, if the Jacobian
-    is singular, or without convergence.
+    guess. Returns `FAILED_ZERO` if p moves by more than twice `reach`, if the sign of x changes, if the
+    Jacobian is singular, or without convergence.
     """
     start = x
     first = p
     last = math.inf
     for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
-        D, D_w, D_p, S, noise = _real(x, p, origin, direction)
+        D, D_w, D_p, S, noise = _real_determinant(x, p, origin, direction)
         h = ROOT_NEWTON_SETTINGS.jacobian_step * abs(x)
         k = ROOT_NEWTON_SETTINGS.jacobian_step * reach
-        _, right, _, S_right, _ = _real(x + h, p, origin, direction)
-        _, left, _, S_left, _ = _real(x - h, p, origin, direction)
-        _, after, _, S_after, _ = _real(x, p + k, origin, direction)
-        _, before, _, S_before, _ = _real(x, p - k, origin, direction)
+        _, right, _, S_right, _ = _real_determinant(x + h, p, origin, direction)
+        _, left, _, S_left, _ = _real_determinant(x - h, p, origin, direction)
+        _, after, _, S_after, _ = _real_determinant(x, p + k, origin, direction)
+        _, before, _, S_before, _ = _real_determinant(x, p - k, origin, direction)
         D_ww = (right * math.exp(S_right - S) - left * math.exp(S_left - S)) / (2 * h)
         D_wp = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * k)
         cross = D_w * D_wp - D_p * D_ww
         if cross == 0 or not math.isfinite(cross):
-            return FAILED
+            return FAILED_ZERO
         in_x = (D_p * D_w - D_wp * D) / cross
         in_p = (D_ww * D - D_w * D_w) / cross
         blur = noise + ROUND_OFF * abs(p * D_p)
@@ -138,17 +138,17 @@ def double_newton(
         p += in_p
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * reach or not x * start > 0:
-            return FAILED
+            return FAILED_ZERO
         if abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
             abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2
         ):
             return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
-    return FAILED
+    return FAILED_ZERO
 
 
 @compiled
-def _real(
+def _real_determinant(
     x: float, p: float, origin: Coefficients, direction: Coefficients
 ) -> tuple[float, float, float, float, float]:
     """D, D_w, D_p, S and the rounding error of D at real w = x and p, where D and its derivatives are

@@ -33,13 +33,13 @@ class Roots(NamedTuple):
     """Eigenvalues of a mesh refined to roots w of D, sorted by descending real part, then frequency; all
     arrays are (k,).
 
-    indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
+    mesh_indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
     displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes). wave_number:
     largest |q|, in 1/L. on_the_axis: whether the root is imaginary within its error. unmatched_ahead: number
     of eigenvalues of the mesh that lie in the a-priori box right of all roots and do not approximate a root.
     """
 
-    indices: NDArray[np.int64]
+    mesh_indices: NDArray[np.int64]
     w: Complex
     error: Array
     displacement: Array
@@ -94,7 +94,7 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 
 @compiled
-def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
+def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) -> Array:
     """Replaces, in w, every two eigenvalues closer than their errors by estimates of two roots of D.
 
     w, error: eigenvalues and their errors, (n,). Returns for each eigenvalue half its distance from its
@@ -122,7 +122,7 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> Array:
 
 
 @compiled
-def _descending(w: Complex) -> NDArray:
+def _descending_order(w: Complex) -> NDArray:
     """Indices that sort w, (n,), by descending real part, then descending frequency."""
     order = np.arange(len(w))
     sort_descending(w, order)
@@ -150,7 +150,7 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 
 @compiled
-def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
+def refined_roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
     """Roots of D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
     amplification: square root of `rodsweep.determinant.certificate.box.squared_amplification`. most_waves:
@@ -173,18 +173,18 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
         real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
         near[i] = (
-            inside[i] and wave[i] <= most_waves and error[i] <= ROOT_SETTINGS.largest_of_pair * length[i]
+            inside[i] and wave[i] <= most_waves and error[i] <= ROOT_SETTINGS.max_pair_correction * length[i]
         )
     chosen = np.flatnonzero(near)
     first = first[chosen]
     error = error[chosen]
     length = length[chosen]
     wave = wave[chosen]
-    w, stands = _refined_all(
+    w, stands = _refine_candidates(
         first, error, wave, error <= ROOT_SETTINGS.largest_correction * length, coefficients
     )
     order = np.flatnonzero(stands)
-    order = order[_descending(w[order])]
+    order = order[_descending_order(w[order])]
     displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
     chosen = chosen[order]
     w = w[order]
@@ -192,14 +192,14 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     wave = wave[order]
     _raise_errors_of_equal_roots(w, error, coefficients)
     axis = np.abs(w.real) <= np.maximum(
-        ROOT_SETTINGS.axis_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
+        ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
     ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
     return Roots(chosen, w, error, displacement, wave, axis, ahead)
 
 
 @compiled
-def _refined_all(
+def _refine_candidates(
     first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
     """Returns (w, mask), both (k,). w: eigenvalues refined to roots of D. mask: whether w[i] is a root.
@@ -208,7 +208,7 @@ def _refined_all(
     errors and wave numbers, (k,), updated in place.
     """
     w = first.copy()
-    reach = _separate(w, error, coefficients)
+    reach = _separate_close_pairs(w, error, coefficients)
     moved = np.isfinite(reach)
     stands = moved | near
     for i in range(len(w)):

@@ -12,7 +12,7 @@ class RootSettings(CompiledSettings):
     largest_correction: float = 1e-2
     """An eigenvalue of the mesh approximates a root of D if |D/D'| <= this number times the length over which
     D changes; otherwise, unless it belongs to a close pair, it is an artefact of the mesh."""
-    largest_of_pair: float = 0.1
+    max_pair_correction: float = 0.1
     """Two close eigenvalues of the mesh approximate two roots of D if |D/D'| of each eigenvalue is at most
     this number times the length over which D changes."""
     pair_distance: float = 4.0
@@ -23,7 +23,7 @@ class RootSettings(CompiledSettings):
     of the two roots of its predecessor."""
     axis_tolerance: float = 1e-13
     """An eigenvalue is taken to be imaginary if |Re w| <= this number times |w|."""
-    axis_errors: float = 4.0
+    axis_tolerance_in_errors: float = 4.0
     """An eigenvalue is also taken to be imaginary if |Re w| <= this number times the error of w."""
     double_root_correction: float = 1e-11
     """An eigenvalue w is checked for a double root if |D/D'| > this number times |w|."""

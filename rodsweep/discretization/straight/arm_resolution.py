@@ -6,7 +6,7 @@ from math import ceil, hypot, log, pi
 import numpy as np
 
 from ...arrays import Array
-from ...model.dispersion import local_growth, sampled
+from ...model.dispersion import most_amplified_local_waves, sampled_arm
 from ...model.rod import Rod
 from ..elements.elements import Elements
 from ..elements.resolution import RESOLUTION_SETTINGS, required_order
@@ -39,8 +39,8 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """The mesh that is expected to give `modes` leading eigenvalues of the arm `rod` to the relative accuracy
     `accuracy`.
     """
-    weights = sampled(rod).weights
-    _, amplified = local_growth(rod)
+    weights = sampled_arm(rod).weights
+    _, amplified = most_amplified_local_waves(rod)
     at_rest = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
     waves = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified, at_rest)
     elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION_SETTINGS.max_order)
@@ -55,7 +55,7 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: i
     """
     waves = wave_number * _relative_wave_number(rod)
     return _elements_for_wave(
-        rod, waves * sampled(rod).weights, accuracy, largest_order or RESOLUTION_SETTINGS.max_order
+        rod, waves * sampled_arm(rod).weights, accuracy, largest_order or RESOLUTION_SETTINGS.max_order
     )
 
 
@@ -63,7 +63,7 @@ def _relative_wave_number(rod: Rod) -> Array:
     """Wave number at each sample of an arm, divided by the mean wave number, (points,), for a bending wave of
     the same frequency along the arm.
     """
-    _, weights, local = sampled(rod)
+    _, weights, local = sampled_arm(rod)
     at_rest: Array = (local.gamma2 * local.c3) ** 0.25
     return at_rest / (weights @ at_rest)
 

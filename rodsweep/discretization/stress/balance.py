@@ -86,7 +86,7 @@ def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: Nod
                 out[a, i] += slope * s[a]
     for i in range(size):
         force = [out[a, i] for a in g.components]
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             # Minus: ad*_E is minus the transpose of (ad_E V)_a = sum s_abo E_b V_o. The tip stress is
             # constant along the rod, so it enters only here.
             force[o] -= sign * E[b, i] * (c.tip_stress[a] + S[a, i])
@@ -103,7 +103,7 @@ def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices
     size = len(m.weights)
     for i in range(size):
         rate = [0.0 for _ in g.components]
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             rate[a] += sign * E[b, i] * V[o, i]
         for a in g.components:
             G[a, i] = m.weights[i] * rate[a]
@@ -210,12 +210,12 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
             for j in range(size):
                 for a in g.components:
                     force[a] += m.D[i, j] * dS[a, j]
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             along = change.tip_stress[a] + dS[a, i]
             force[o] -= sign * (dE[b] * (c.tip_stress[a] + S[a, i]) + E[b, i] * along)
         dV = [c.mobility[a, i] * force[a] for a in g.components]
         rate = [0.0 for _ in g.components]
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             rate[a] += sign * (dE[b] * V[o, i] + E[b, i] * dV[o])
         for a in g.components:
             out[0, a, i] = force[a]

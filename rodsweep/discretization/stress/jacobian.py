@@ -112,13 +112,13 @@ def _velocity_slopes(
     E, S, _ = at
     for i in range(slopes.shape[2]):
         B = [[0.0 for _ in g.components] for _ in g.components]
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             B[o][a] -= sign * E[b, i]
             # Product rule: E = E0 + C S depends on S as well.
             B[o][b] -= sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])
         for o in g.components:
             for b in g.components:
-                if g.backward[o][b]:
+                if g.coad_pattern[o][b]:
                     slopes[o, b, i] = c.mobility[o, i] * B[o][b]
 
 
@@ -141,7 +141,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
     E, _, V = at
     for i in range(n + 1):
         A = [[0.0 for _ in g.components] for _ in g.components]  # weighted
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             A[a][o] += sign * m.weights[i] * E[b, i]
         ahead = [[A[a][o] * c.mobility[o, i] for o in g.components] for a in g.components]
         rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
@@ -152,18 +152,18 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
         for j in range(n):
             weak = m.weak[i, j]
             slope = m.D[i, j]
-            for a, b in g.pairs:
-                back = weak * slopes[a, b, j] if g.backward[a][b] else 0.0
-                rows[a][stress_index(b, j, n)] = back + (ahead[a][b] * slope if g.forward[a][b] else 0.0)
+            for a, b in g.distinct_pairs:
+                back = weak * slopes[a, b, j] if g.coad_pattern[a][b] else 0.0
+                rows[a][stress_index(b, j, n)] = back + (ahead[a][b] * slope if g.ad_pattern[a][b] else 0.0)
         # The stress of the tip is prescribed and has no column.
         if i < n:
             same = [[0.0 for _ in g.components] for _ in g.components]
-            for a, b, o, sign in g.terms:
+            for a, b, o, sign in g.structure_constants:
                 same[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
-            for a, o in g.pairs:
+            for a, o in g.distinct_pairs:
                 for b in g.components:
                     # Unrolling leaves out pairs that are 0 for every strain.
-                    if g.forward[a][o] and g.backward[o][b]:
+                    if g.ad_pattern[a][o] and g.coad_pattern[o][b]:
                         same[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:
                 for b in g.components:
@@ -188,7 +188,7 @@ def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
         for a in g.components:
             for j in range(size):
                 rows[a][first + j] = m.weak[i, j] if of == a else 0.0
-        for a, b, o, sign in g.terms:
+        for a, b, o, sign in g.structure_constants:
             if o == of:
                 rows[a][first + i] += sign * m.weights[i] * E[b, i]
 
@@ -220,7 +220,7 @@ def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
             row[stress_index(of, j, n)] = w * m.D[i, j]
         row[first + i] = -w * c.drag[of, i]
         if i < n:
-            for a, b, o, sign in g.terms:
+            for a, b, o, sign in g.structure_constants:
                 if o == of:
                     row[stress_index(a, i, n)] -= w * sign * E[b, i]
                     row[stress_index(b, i, n)] -= w * sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])

@@ -16,11 +16,11 @@ from ..material.build import STANDARD, Build
 from ..parameters import PARAMETERS
 from ..units import Given, share_of_flutter
 from .drag import DRAGS, Drag
-from .quantities import LOADS, UNITS, number_in_si, quoted
-from .refusals import refuse_crushed, refuse_out_of_range, refuse_words, refuse_wrong_combinations
+from .quantities import LOADS, UNITS, number_in_si, quoted_quantity
+from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
-from .shape import Shape, Station, cone, in_segments
+from .shape import Shape, Station, shape_of_cone, shape_of_segments
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +56,7 @@ class SlenderArm:
     drag: str = DRAGS[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Quantities of UNITS in SI units; nan if not given. `length`, `young` (base): of segments, if any."""
-    pieces: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
+    si_segments: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
     """The segments of the arm in SI units; empty for an arm without segments."""
 
     def __post_init__(self) -> None:
@@ -66,8 +66,8 @@ class SlenderArm:
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**numbers))
         object.__setattr__(self, "segments", texts)
-        object.__setattr__(self, "pieces", segments_of(texts or ()))
-        refuse_words(self)
+        object.__setattr__(self, "si_segments", segments_of(texts or ()))
+        refuse_wrong_choices(self)
         refuse_wrong_combinations(self)
         self.si.length = self.shape.length
         self.si.young = self.shape.base.young
@@ -76,20 +76,20 @@ class SlenderArm:
 
     def parameter(self, name: str) -> float:
         """Value of the rod parameter `name`; the neutral value if an arm does not determine the parameter."""
-        return float(getattr(self, name, PARAMETERS[name].neutral))
+        return float(getattr(self, name, PARAMETERS[name].neutral_value))
 
     def text_of(self, name: str) -> str:
-        """Name and value of the quantity `name` for messages, like "length = '10 cm'", see `quoted`."""
-        return quoted(name, getattr(self, name))
+        """Name and value of the quantity `name` for messages: see `quoted_quantity`."""
+        return quoted_quantity(name, getattr(self, name))
 
     @cached_property
     def shape(self) -> Shape:
         """Cross-sections and Young's moduli along the arm."""
-        if self.pieces:
+        if self.si_segments:
             own = self.si.young
-            return in_segments([(L, each, own if E is None else E) for L, each, E in self.pieces])
+            return shape_of_segments([(L, each, own if E is None else E) for L, each, E in self.si_segments])
         if self.tip_radius is not None:
-            return cone(self.si.length, self.si.radius, self.si.tip_radius, self.si.young)
+            return shape_of_cone(self.si.length, self.si.radius, self.si.tip_radius, self.si.young)
         return Shape(self.si.length, (Station(1.0, self._uniform_section, self.si.young),))
 
     @property
@@ -115,14 +115,14 @@ class SlenderArm:
         """Tip radius over base radius of a cone; 1 for other arms."""
         return self.shape.taper
 
-    def build_with(self, drag: Drag) -> Build:
+    def build_with_drag(self, drag: Drag) -> Build:
         """Constitutive law and profile of the arm as a rod, for the drag estimate `drag`, one of `drags`."""
         return Build(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
 
     @cached_property
     def build(self) -> Build:
-        """Constitutive law and profile of the arm as a rod, for the drag estimate `own_drag`."""
-        return self.build_with(self.own_drag)
+        """Constitutive law and profile of the arm as a rod, for the drag estimate `chosen_drag`."""
+        return self.build_with_drag(self.chosen_drag)
 
     @property
     def standard(self) -> bool:
@@ -217,7 +217,7 @@ class SlenderArm:
         return tuple(self.shape.drags(each, self.si.viscosity)[index] for each in self.shape.stations)
 
     @property
-    def own_drag(self) -> Drag:
+    def chosen_drag(self) -> Drag:
         """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
         return self.drags[DRAGS.index(self.drag)]
 
@@ -232,17 +232,17 @@ class SlenderArm:
     @property
     def gamma3(self) -> float:
         """Dimensionless rotational drag gamma3/(gamma2 L^2) at the base (Sec. VI)."""
-        return self.gamma3_with(self.own_drag)
+        return self.gamma3_with(self.chosen_drag)
 
     @property
     def gamma1(self) -> float:
         """Dimensionless axial drag gamma1/gamma2 at the base (Sec. VI)."""
-        return self.own_drag.axial / self.own_drag.across
+        return self.chosen_drag.axial / self.chosen_drag.across
 
     @property
     def tau2(self) -> float:
         """Longest time scale of the arm, gamma2 L^4/k3, in s (Sec. VI)."""
-        return self.tau2_with(self.own_drag)
+        return self.tau2_with(self.chosen_drag)
 
     @property
     def tau1(self) -> float:

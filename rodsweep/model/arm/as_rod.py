@@ -3,7 +3,7 @@
 from typing import Any
 
 from ..material.build import STANDARD
-from ..material.profile import FACTORS
+from ..material.profile import FACTOR_NAMES
 from ..parameters import NONLINEAR_PARAMETERS
 from .arm import SlenderArm
 
@@ -28,5 +28,5 @@ def material_of(arm: SlenderArm) -> dict[str, Any]:
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}
     if build.profile is not None:
         columns = (build.profile.u, *zip(*build.profile.rows, strict=True))
-        material["profile"] = dict(zip(("u", *FACTORS), map(list, columns), strict=True))
+        material["profile"] = dict(zip(("u", *FACTOR_NAMES), map(list, columns), strict=True))
     return material

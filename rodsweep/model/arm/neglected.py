@@ -19,11 +19,11 @@ from ...arrays import Array
 from .arm import SlenderArm
 from .drag import Drag
 from .section import Tube
-from .unsteady_drag import frequency_of_phase, unsteady_phase
+from .unsteady_drag import drag_phase_lag, frequency_of_phase_lag
 
 GRAVITY = 9.81
 """Acceleration of gravity, in m/s^2."""
-DOUBTFUL_FROM = 0.1
+DOUBTFUL_RATIO = 0.1
 """Results are doubtful if `value`/`limit` of a neglected effect is larger than this."""
 INERTIA_LIMIT = 0.1
 """Limit of the phase lag of the drag caused by inertia, in radians. The lag lowers the flutter threshold of a
@@ -37,18 +37,18 @@ horizontal arm sags by a tenth of its length, at 0.01 by a hundredth."""
 WALL_LIMIT = 0.1
 """Limit of the fraction of bending stiffness that a tube loses as its section flattens in a large-amplitude
 cycle. An infinitely long tube buckles after losing a third of its stiffness."""
-WIDE_CURVATURE = 6.0
+CURVATURE_OVER_AMPLITUDE = 6.0
 """Largest curvature of an arm in a limit cycle, in 1/L, divided by the amplitude of the tip, in L. For cycles
 from 2 % to 50 % above the flutter force the ratio is 5.8 to 6.7."""
 REYNOLDS_LIMIT = 1.0
 """Limit of the Reynolds number of a large-amplitude cycle: inertia of the flow past the section then equals
 viscous drag."""
-SELF_BUCKLING = 7.837
+SELF_BUCKLING_WEIGHT = 7.837
 """Weight in k3/L^2 at which an upright rod buckles under its own weight (Greenhill 1881)."""
 FLUTTER_WAVENUMBER = 4.694
 """Wavenumber of the second bending mode of a clamped rod, in 1/L. The mode approximates the shape of
 flutter."""
-HALF_LENGTH = 0.5
+LARGE_AMPLITUDE = 0.5
 """Amplitude of the tip in a large-amplitude cycle, in L."""
 
 
@@ -85,23 +85,23 @@ class Effect:
     @property
     def validity(self) -> NDArray[np.int8]:
         """`Validity` of the model in view of this effect, integers, (...,); `applies` for an arm at rest."""
-        return (self.excess > DOUBTFUL_FROM).astype(np.int8) + (self.excess > 1.0)
+        return (self.excess > DOUBTFUL_RATIO).astype(np.int8) + (self.excess > 1.0)
 
 
-def effects_of(
+def neglected_effects(
     arm: SlenderArm,
     rate: ArrayLike,
     F: ArrayLike,
     *,
     drag: Drag | None = None,
-    amplitude: ArrayLike = HALF_LENGTH,
+    amplitude: ArrayLike = LARGE_AMPLITUDE,
 ) -> tuple[Effect, ...]:
     """All neglected effects on a moving arm.
 
-    rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `weakest_load` of the follower
-    force, in k3/L^2; nan without load. drag: the drag estimate for which `rate` was computed; by default the
-    smallest estimate, for which inertia is largest. amplitude: amplitude of the tip divided by L. Weight is
-    included if the arm has a density difference, flattening of the wall if the arm has a bore.
+    rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `weakest_section_force` of the
+    follower force, in k3/L^2; nan without load. drag: the drag estimate for which `rate` was computed; by
+    default the smallest estimate, for which inertia is largest. amplitude: amplitude of the tip divided by L.
+    Weight is included if the arm has a density difference, flattening of the wall if the arm has a bore.
     """
     drag = least_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
@@ -109,11 +109,11 @@ def effects_of(
     effects = [
         inertia_of_arm(arm, motion, drag),
         inertia_of_fluid(arm, motion, drag),
-        compression(arm, force),
+        compression_effect(arm, force),
         reynolds_number(arm, motion, wide),
     ]
     if not isnan(arm.si.density_difference):
-        effects.append(weight(arm, force))
+        effects.append(weight_effect(arm, force))
     tubes = [each.section for each in arm.shape.stations if isinstance(each.section, Tube)]
     if tubes:
         walls = [wall_effect(arm.si.length, t.radius, t.inner_radius, arm.poisson, wide) for t in tubes]
@@ -135,7 +135,7 @@ def least_drag(arm: SlenderArm) -> Drag:
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
-def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
+def largest_angular_frequency(arm: SlenderArm, frequency: ArrayLike) -> Array:
     """Angular frequency in rad/s for the smallest drag of the arm. frequency: in rad/tau2, (...,)."""
     return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
 
@@ -158,20 +158,20 @@ def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
     return Effect(
         name="inertia of the fluid",
-        value=unsteady_phase(s, logarithm),
+        value=drag_phase_lag(s, logarithm),
         limit=INERTIA_LIMIT,
-        viscosity_factor=np.sqrt(s / frequency_of_phase(INERTIA_LIMIT, logarithm)),
+        viscosity_factor=np.sqrt(s / frequency_of_phase_lag(INERTIA_LIMIT, logarithm)),
     )
 
 
-def compression(arm: SlenderArm, F: Array) -> Effect:
+def compression_effect(arm: SlenderArm, F: Array) -> Effect:
     """Relative change of the length of the arm by compression or tension, abs(F)/k1, in the shape of F,
     (...,).
     """
     return _independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
-def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
+def weakest_section_force(arm: SlenderArm, F: ArrayLike) -> Array:
     """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
 
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression.
@@ -180,13 +180,13 @@ def weakest_load(arm: SlenderArm, F: ArrayLike) -> Array:
     return np.asarray(F, float) / share if share < inf else np.full(np.shape(F), np.nan)
 
 
-def weight(arm: SlenderArm, F: Array) -> Effect:
+def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     """Ratio of weight minus buoyancy to the weight that buckles the upright arm, in the shape of F,
     (...,).
     """
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
-    uniform = load / (SELF_BUCKLING * arm.force_scale)
+    uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)
     value = arm.shape.relative_weight(heaviness) if arm.shape.varies else uniform
     return _independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
@@ -196,7 +196,7 @@ def wall_effect(
     radius: ArrayLike,
     bore: ArrayLike,
     poisson: ArrayLike,
-    amplitude: ArrayLike = HALF_LENGTH,
+    amplitude: ArrayLike = LARGE_AMPLITUDE,
 ) -> Effect:
     """Fraction of the bending stiffness that a beating tube loses, in the common shape (...,) of the
     arguments.
@@ -207,7 +207,7 @@ def wall_effect(
     zeta/2 (Brazier 1927).
     """
     outer, inner, ratio = (np.asarray(x, float) for x in (radius, bore, poisson))
-    curvature = WIDE_CURVATURE * np.asarray(amplitude, float) / np.asarray(length, float)
+    curvature = CURVATURE_OVER_AMPLITUDE * np.asarray(amplitude, float) / np.asarray(length, float)
     middle = (outer + inner) / 2
     thickness = outer - inner
     value = 1.5 * (1 - ratio**2) * (curvature * middle**2 / thickness) ** 2

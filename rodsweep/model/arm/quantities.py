@@ -56,7 +56,7 @@ QUANTITIES = {
 """All quantities of an arm that a user may give, by name."""
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
 """(SI unit, example) of each quantity with a unit, by name."""
-RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
+RELATIVE_LOADS = {f"{load}_over_flutter": load for load in LOADS}
 """Name of the load, "pressure" or "force", by name of the relative load: the load divided by the load at
 first flutter with the likeliest drag."""
 SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
@@ -67,7 +67,7 @@ ARM_UNITS = {
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
-SCALE_OF = {load: f"{load}_scale" for load in LOADS}
+SCALE_NAME = {load: f"{load}_scale" for load in LOADS}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
 ALL_QUANTITIES = QUANTITIES | ARM_UNITS
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
@@ -83,11 +83,11 @@ def number_in_si(name: str, given: Given | None) -> float:
         return float("nan")
     value = in_si(name, given, *UNITS[name])
     if not (QUANTITIES[name].signed or value > 0):
-        raise InputError(f"{quoted(name, given)} is not above 0")
+        raise InputError(f"{quoted_quantity(name, given)} is not above 0")
     return value
 
 
-def quoted(name: str, given: Given) -> str:
+def quoted_quantity(name: str, given: Given) -> str:
     """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
     user wrote it, a number with its SI unit.
     """

@@ -10,21 +10,21 @@ from ...errors import InputError
 from ..material.laws import law_of
 from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
-from ..units import unit_of, written_in
+from ..units import unit_of, value_in_unit
 from .drag import DRAGS, LEAST_SLENDERNESS, RANGE_OF_DRAG
 from .quantities import QUANTITIES, SECTION_SIDES, UNITS
-from .section import NoWall
+from .section import BoreTooWide
 
 if TYPE_CHECKING:
     from .arm import SlenderArm
 
-CRUSHED_FROM = 1 - 1e-14
+CRUSHED_FORCE_RATIO = 1 - 1e-14
 """An arm is refused as crushed if F divided by the crushing force is at least this. The limit is below 1
 because unit conversion has rounding errors."""
 LENGTH_TOLERANCE = 1e-9
 """A given length may differ from the sum of the segment lengths by this relative difference, which allows for
 rounding errors."""
-INCOMPRESSIBLE = 0.5
+INCOMPRESSIBLE_POISSON = 0.5
 """Poisson's ratio of incompressible material, which a swelling section requires."""
 
 
@@ -32,14 +32,14 @@ class NotSlender(InputError):
     """The arm is too short, relative to its radius, for the drag formulas of slender bodies."""
 
 
-def refuse_words(arm: "SlenderArm") -> None:
+def refuse_wrong_choices(arm: "SlenderArm") -> None:
     """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm.
 
     A swelling section requires a Poisson's ratio of 0.5.
     """
     ratio: Any = arm.poisson
     is_number = isinstance(ratio, Real) and not isinstance(ratio, bool | np.bool_)
-    if not is_number or not -1 < ratio <= INCOMPRESSIBLE:
+    if not is_number or not -1 < ratio <= INCOMPRESSIBLE_POISSON:
         try:
             text = repr(ratio) if isinstance(ratio, str) else str(ratio)
         except ValueError:  # an integer of thousands of digits
@@ -60,10 +60,10 @@ def refuse_words(arm: "SlenderArm") -> None:
         law_of(arm.law, arm.section)
     except ValueError as error:
         raise InputError(str(error)) from None
-    if arm.section == "swelling" and ratio != INCOMPRESSIBLE:
+    if arm.section == "swelling" and ratio != INCOMPRESSIBLE_POISSON:
         raise InputError(
             f"poisson = {ratio} contradicts section = swelling, which is for incompressible rubber; "
-            f"poisson must be {INCOMPRESSIBLE:g}, or section fixed"
+            f"poisson must be {INCOMPRESSIBLE_POISSON:g}, or section fixed"
         )
 
 
@@ -90,7 +90,7 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
 
 def _refuse_sections(arm: "SlenderArm") -> None:
     """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii;
-    NoWall if the bore is too wide.
+    BoreTooWide if the bore is too wide.
     """
     sides = (arm.width, arm.height)
     for name, why in (
@@ -106,7 +106,7 @@ def _refuse_sections(arm: "SlenderArm") -> None:
             f"radius: give either a radius, or width and height, or segments; the arm has {given}"
         )
     if arm.si.inner_radius >= arm.si.radius:
-        raise NoWall(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
+        raise BoreTooWide(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
     if arm.tip_radius is None:
         return
     if arm.inner_radius is not None:
@@ -134,7 +134,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
                 f"{arm.text_of(name)} and segments are both given; give one of them, because every segment "
                 "has its own radius"
             )
-    pieces = arm.pieces
+    pieces = arm.si_segments
     total = sum(piece.length for piece in pieces)
     for number, piece in enumerate(pieces, 1):
         if piece.young is None and arm.young is None:
@@ -148,7 +148,7 @@ def _refuse_beside_segments(arm: "SlenderArm") -> None:
             )
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
         unit = unit_of(arm.length, "m")
-        summed = f"{written_in(total, unit, 'm'):.6g} {unit}"
+        summed = f"{value_in_unit(total, unit, 'm'):.6g} {unit}"
         raise InputError(
             f"{arm.text_of('length')} is not the sum of the segment lengths, {summed}; leave out length"
         )
@@ -183,9 +183,12 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
 
 
 def refuse_crushed(arm: "SlenderArm") -> None:
-    """Raises InputError if the load crushes the arm at its weakest cross-section."""
+    """Raises InputError if the load crushes the arm at its weakest cross-section.
+
+    An arm without load, or with a load given relative to flutter, is not checked.
+    """
     loaded = arm.load
-    if loaded is None or arm.share_of_flutter is not None or CRUSHED_FROM * arm.crushing_force > arm.F:
+    if loaded is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return
     limit = arm.crushing_force * arm.load_scale
     si = UNITS[loaded][0]
@@ -193,5 +196,5 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     where = "the weakest section of" if arm.shape.varies else ""
     raise InputError(
         f"{arm.text_of(loaded)} crushes {f'{where} the arm'.strip()}; the load on a linear material must be "
-        f"below {float(f'{written_in(limit, unit, si):.4g}'):g} {unit}"
+        f"below {float(f'{value_in_unit(limit, unit, si):.4g}'):g} {unit}"
     )

@@ -7,7 +7,7 @@ from typing import ClassVar
 from ...errors import InputError
 
 
-class NoWall(InputError):
+class BoreTooWide(InputError):
     """The bore of a tube is at least as wide as the tube."""
 
 

@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 
 from ...errors import InputError
 from ..units import Given
-from .quantities import number_in_si, quoted
-from .section import Circle, NoWall, Tube
+from .quantities import number_in_si, quoted_quantity
+from .section import BoreTooWide, Circle, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
 """Names of the quantities of a segment. The default of `young` is Young's modulus of the arm."""
-EXAMPLE = "4 cm: radius 6 mm, young 80 kPa"
+EXAMPLE_SEGMENT = "4 cm: radius 6 mm, young 80 kPa"
 """Text of a valid segment, for messages."""
-PART = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
+SEGMENT_QUANTITY = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
 """Pattern of name and value of one quantity in the text of a segment, like "radius 6 mm"."""
 MAX_SEGMENTS = 100
 """Maximum number of segments of an arm; more segments are refused. Every segment needs at least one element
@@ -33,11 +33,11 @@ class ArmSegment(NamedTuple):
 class WrittenSegment:
     """Quantities of a segment by name, as the user wrote them."""
 
-    given: Mapping[str, Given]
+    quantities: Mapping[str, Given]
 
     def __str__(self) -> str:
         """The segment as a text that `written_segment` accepts."""
-        texts = {name: _text(name, value) for name, value in self.given.items()}
+        texts = {name: _value_with_unit(name, value) for name, value in self.quantities.items()}
         length = texts.pop("length")
         return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"
 
@@ -52,20 +52,24 @@ def segment_texts(given: Any) -> tuple[str, ...]:
     if hasattr(given, "tolist"):  # an array of texts
         given = given.tolist()
     if isinstance(given, Sequence) and not given:
-        raise InputError(f"segments has no segment; write each segment as in '{EXAMPLE}'")
+        raise InputError(f"segments has no segment; write each segment as in '{EXAMPLE_SEGMENT}'")
     if not isinstance(given, Sequence):
-        raise InputError(f"segments = {str(given):.60} is not a list; write each segment as in '{EXAMPLE}'")
+        raise InputError(
+            f"segments = {str(given):.60} is not a list; write each segment as in '{EXAMPLE_SEGMENT}'"
+        )
     if len(given) > MAX_SEGMENTS:
         raise InputError(f"segments: {len(given)} are given; an arm has at most {MAX_SEGMENTS}")
     written = [written_segment(number, each) for number, each in enumerate(given, 1)]
     for number, each in enumerate(written, 1):
-        _segment(number, each)
+        _segment_in_si(number, each)
     return tuple(map(str, written))
 
 
 def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
     """Segments in SI units. texts: result of `segment_texts`."""
-    return tuple(_segment(number, written_segment(number, text)) for number, text in enumerate(texts, 1))
+    return tuple(
+        _segment_in_si(number, written_segment(number, text)) for number, text in enumerate(texts, 1)
+    )
 
 
 def written_segment(number: int, given: Any) -> WrittenSegment:
@@ -74,17 +78,17 @@ def written_segment(number: int, given: Any) -> WrittenSegment:
     number: position of the segment, counted from 1 at the base, for messages.
     """
     where = f"segments, number {number}"
-    found = dict(_mapping(where, given))
+    found = dict(_quantities_by_name(where, given))
     for name in found:
         if name not in SEGMENT_KEYS:
             raise InputError(f"{where}: unknown key {name}; a segment has {', '.join(SEGMENT_KEYS)}")
     for name in ("length", "radius"):
         if found.get(name) is None:
-            raise InputError(f"{where}: {name} is missing; write a segment as in '{EXAMPLE}'")
+            raise InputError(f"{where}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")
     return WrittenSegment({name: found[name] for name in SEGMENT_KEYS if found.get(name) is not None})
 
 
-def _mapping(where: str, given: Any) -> Mapping[str, Given]:
+def _quantities_by_name(where: str, given: Any) -> Mapping[str, Given]:
     """Quantities of a segment by name. given: a mapping or a text. Raises InputError, beginning with `where`,
     if invalid.
     """
@@ -92,13 +96,15 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
         return {str(name): value for name, value in given.items()}
     length, colon, parts = str(given).partition(":")
     if not isinstance(given, str) or not colon:
-        raise InputError(f"{where}: {str(given)!r:.60} is not a segment; write a segment as in '{EXAMPLE}'")
+        raise InputError(
+            f"{where}: {str(given)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
+        )
     found: dict[str, Given] = {"length": length.strip()}
     for part in parts.split(","):
-        text_of = PART.fullmatch(part)
+        text_of = SEGMENT_QUANTITY.fullmatch(part)
         if text_of is None:
             raise InputError(
-                f"{where}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE}'"
+                f"{where}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
             )
         name = text_of[1].replace("-", "_").replace(" ", "_")
         if name in found:
@@ -107,11 +113,11 @@ def _mapping(where: str, given: Any) -> Mapping[str, Given]:
     return found
 
 
-def _segment(number: int, written: WrittenSegment) -> ArmSegment:
+def _segment_in_si(number: int, written: WrittenSegment) -> ArmSegment:
     """The segment `written` in SI units. number: its position, for messages. Raises InputError for a value
-    out of range, and NoWall if the bore is too wide.
+    out of range, and BoreTooWide if the bore is too wide.
     """
-    given = written.given
+    given = written.quantities
     where = f"segments, number {number}"
     try:
         length, radius, inner, young = (number_in_si(name, given.get(name)) for name in SEGMENT_KEYS)
@@ -120,12 +126,12 @@ def _segment(number: int, written: WrittenSegment) -> ArmSegment:
     if "inner_radius" not in given:
         return ArmSegment(length, Circle(radius), young if "young" in given else None)
     if inner >= radius:
-        bore, outer = (quoted(name, given[name]) for name in ("inner_radius", "radius"))
-        raise NoWall(f"{where}: {bore} is not below {outer}")
+        bore, outer = (quoted_quantity(name, given[name]) for name in ("inner_radius", "radius"))
+        raise BoreTooWide(f"{where}: {bore} is not below {outer}")
     return ArmSegment(length, Tube(radius, inner), young if "young" in given else None)
 
 
-def _text(name: str, given: Given) -> str:
+def _value_with_unit(name: str, given: Given) -> str:
     """Value of the quantity `name` as text with its unit."""
     from .quantities import UNITS
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ..material.profile import FACTORS, RADIUS_POWERS, Profile
+from ..material.profile import FACTOR_NAMES, RADIUS_POWERS, Profile
 from .drag import Drag, range_of_drag
 from .section import Circle, Section, Tube
 
@@ -90,12 +90,12 @@ class Shape:
         if not self.varies:
             return None
         if self.taper != 1:
-            return self._logarithms(drag)
+            return self._cone_profile(drag)
         ends = [0.0, *(each.end for each in self.stations)]
         u = list[float]()
         rows = list[tuple[float, ...]]()
         for start, station in zip(ends, self.stations, strict=False):
-            row = self._factors(station, poisson, drag)
+            row = self._factors_at_station(station, poisson, drag)
             # Equal neighbouring segments are merged, because every jump, even of size 0, splits elements.
             if rows and rows[-1] == row:
                 u[-1] = station.end
@@ -104,7 +104,7 @@ class Shape:
                 rows += [row, row]
         return Profile(tuple(u), tuple(rows))
 
-    def _logarithms(self, drag: int) -> Profile:
+    def _cone_profile(self, drag: int) -> Profile:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
         `taper` implies them.
 
@@ -119,19 +119,21 @@ class Shape:
         for radius in (radii * self.base.section.drag_radius).tolist():
             own = range_of_drag(1.0, self.length, radius, radius)[drag]
             factors = {"gamma1": own.axial / base.axial, "gamma2": own.across / base.across}
-            rows.append(tuple(factors.get(name, 1.0) for name in FACTORS))
+            rows.append(tuple(factors.get(name, 1.0) for name in FACTOR_NAMES))
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
-    def _factors(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
+    def _factors_at_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
         """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base.
 
         poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
         """
-        own, base = (np.array(self._of_station(each, poisson, drag)) for each in (station, self.base))
+        own, base = (
+            np.array(self._stiffnesses_and_drags(each, poisson, drag)) for each in (station, self.base)
+        )
         with np.errstate(all="ignore"):
             return tuple((own / base).tolist())
 
-    def _of_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
+    def _stiffnesses_and_drags(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
         viscosity.
 
@@ -158,7 +160,7 @@ class Shape:
         iteration converges fast: the kernel of the operator is positive, and the second eigenvalue of a
         uniform arm is a seventh of the largest.
         """
-        h, area, stiffness = self._at_midpoints()
+        h, area, stiffness = self._sections_at_midpoints()
         # Integrals up to a midpoint include half of the interval around the midpoint.
         own = area * h
         beyond = np.cumsum(own[::-1])[::-1] - own / 2
@@ -174,7 +176,7 @@ class Shape:
                 break
         return weight * ratio
 
-    def _at_midpoints(self) -> tuple[Array, Array, Array]:
+    def _sections_at_midpoints(self) -> tuple[Array, Array, Array]:
         """Returns (length, A, E I) of the subintervals of the quadrature, (subintervals,) each, in m, m^2, N
         m^2.
         """
@@ -192,13 +194,13 @@ class Shape:
         return np.repeat(lengths / each, each), np.repeat(areas, each), np.repeat(stiffnesses, each)
 
 
-def cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
+def shape_of_cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
     """Shape of a solid cone. length, radius, tip_radius: in m. young: Young's modulus, in Pa."""
     ends = (Station(0.0, Circle(radius), young), Station(1.0, Circle(tip_radius), young))
     return Shape(length, ends, tip_radius / radius)
 
 
-def in_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
+def shape_of_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
     """Shape of an arm made of segments.
 
     pieces: (length in m, section, Young's modulus in Pa) of each segment, from the base to the tip.

@@ -7,17 +7,17 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-MIN_S = 1e-6
+MIN_FLOW_FREQUENCY = 1e-6
 """Smallest frequency s of the flow, in eta k^2/rho. Smaller frequencies are replaced by this value, since
 rounding errors would exceed the phase lag, about 1e-6."""
 SUBINTERVAL_COUNT = 64
-"""Number of subintervals into which `frequency_of_phase` divides the current interval of ln s."""
+"""Number of subintervals into which `frequency_of_phase_lag` divides the current interval of ln s."""
 REFINEMENT_COUNT = 10
-"""Number of divisions in `frequency_of_phase`. 64^10 = 2^60 subintervals of an initial interval of width 20
-to 30 reach rounding error with few calls on arrays."""
+"""Number of divisions in `frequency_of_phase_lag`. 64^10 = 2^60 subintervals of an initial interval of width
+20 to 30 reach rounding error with few calls on arrays."""
 
 
-def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
+def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
     """Phase lag, in radians, of the drag on a line of forces of wavenumber k in unsteady Stokes flow.
 
     s = rho omega/(eta k^2), any shape. logarithm: Lambda = 4 pi eta/gamma2.
@@ -29,23 +29,23 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
 
     and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
-    z = 1j * np.maximum(np.asarray(s, float), MIN_S)
+    z = 1j * np.maximum(np.asarray(s, float), MIN_FLOW_FREQUENCY)
     with np.errstate(invalid="ignore"):  # nan where nothing moves
         mobility = logarithm - 0.5 - (1 - 1 / z) * np.log1p(z) / 2
     return np.asarray(-np.angle(mobility))
 
 
-def frequency_of_phase(phase: float, logarithm: float) -> float:
-    """Frequency s at which `unsteady_phase` equals `phase` < pi/2, by repeated subdivision of the interval of
+def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
+    """Frequency s at which `drag_phase_lag` equals `phase` < pi/2, by repeated subdivision of the interval of
     ln s.
 
     logarithm: Lambda = 4 pi eta/gamma2.
     """
-    low = log(MIN_S)
+    low = log(MIN_FLOW_FREQUENCY)
     high = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
     for _ in range(REFINEMENT_COUNT):
         edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
-        below = np.count_nonzero(unsteady_phase(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
+        below = np.count_nonzero(drag_phase_lag(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
         low = float(edges[below])
         high = float(edges[below + 1])
     return exp(high)

@@ -31,15 +31,15 @@ from numba.core.sigutils import normalize_signature
 
 from ...watch import report
 from .digest import FunctionText, digest, kernel_of, type_text
-from .slice_assignment import shorten_message
+from .slice_assignment import use_fixed_message
 
-VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
+COMPILER_VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions of Python, numba, llvmlite and NumPy. They are part of the name of a cache file, because compiled
 code is valid for one combination of versions only."""
 DIGEST_BYTES = 32
 """Length, in bytes, of the SHA-256 checksum at the start of a cache file. The checksum reveals a truncated
 file."""
-_first_parts: dict[FunctionType, FunctionText] = {}
+_texts_at_first_use: dict[FunctionType, FunctionText] = {}
 """Text of each function at its first use in this process, which is the code that numba compiled."""
 
 
@@ -65,12 +65,12 @@ class KernelCache(_Cache):
         # Defines symbols that loaded code may use. numba's own cache calls refresh(), which would import the
         # compiler.
         rtsys.initialize(target_context)
-        name = self._name(sig, target_context.codegen(), _first_parts)
+        name = self._cache_file_name(sig, target_context.codegen(), _texts_at_first_use)
         for directory in self._directories:
             content = _read(directory / name)
             if content is not None:
                 return CompileResult._rebuild(target_context, *pickle.loads(content))
-        shorten_message()  # numba compiles the function next
+        use_fixed_message()  # numba compiles the function next
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -79,8 +79,8 @@ class KernelCache(_Cache):
         Nothing is written if the code contains memory addresses, or if a global value that the code reads has
         changed since the first use of the function.
         """
-        name = self._name(sig, data.codegen, {})
-        changed = name != self._name(sig, data.codegen, _first_parts)
+        name = self._cache_file_name(sig, data.codegen, {})
+        changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)
         if data.library.has_dynamic_globals or data.lifted or changed:
             return
         content = dumps(data._reduce())
@@ -97,10 +97,10 @@ class KernelCache(_Cache):
                 "to compile the formulas again; set NUMBA_CACHE_DIR to another directory"
             )
 
-    def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:
+    def _cache_file_name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:
         arguments, result = normalize_signature(sig)
         kinds = [type_text(kind) for kind in (*arguments, *([] if result is None else [result]))]
-        content = repr((VERSIONS, codegen.magic_tuple(), kinds, digest(self._kernel, parts)))
+        content = repr((COMPILER_VERSIONS, codegen.magic_tuple(), kinds, digest(self._kernel, parts)))
         function = self._kernel.function
         name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
         return f"{name}-{sha256(content.encode()).hexdigest()[:32]}.kernel"

@@ -20,19 +20,20 @@ from numba.core.dispatcher import Dispatcher
 
 from .settings import CompiledSettings
 
-VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
+VARIADIC_FLAGS = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 """Flags of a code object for *args and **kwargs; no other flags change the compiled code."""
-READS = ("LOAD_GLOBAL", "LOAD_NAME")
+GLOBAL_READ_INSTRUCTIONS = ("LOAD_GLOBAL", "LOAD_NAME")
 """Names of the bytecode instructions that read a global value."""
-PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
+REPR_STABLE_TYPES = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
 """Types whose values have the same `repr` in every process."""
 
 
 class FunctionText(NamedTuple):
-    """A Python function in the digest. text: its code and constants. called: the kernels that it calls."""
+    """A Python function in the digest. text: its code and constants. called_kernels: the kernels that it
+    calls."""
 
     text: str
-    called: list["Kernel"]
+    called_kernels: list["Kernel"]
 
 
 class Kernel(NamedTuple):
@@ -42,16 +43,16 @@ class Kernel(NamedTuple):
     options: str
 
 
-Parts = MutableMapping[FunctionType, FunctionText]
+TextCache = MutableMapping[FunctionType, FunctionText]
 """Cache of the text of every function."""
 
 
 def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
     """The kernel of `function`. options: numba's compiler options, by name."""
-    return Kernel(function, repr(sorted((name, _ordered(value)) for name, value in options.items())))
+    return Kernel(function, repr(sorted((name, _in_fixed_order(value)) for name, value in options.items())))
 
 
-def digest(kernel: Kernel, parts: Parts) -> str:
+def digest(kernel: Kernel, parts: TextCache) -> str:
     """SHA-256 of a kernel and of all functions that it calls, directly or indirectly. parts: cache of the
     texts of functions, which is filled.
     """
@@ -60,10 +61,10 @@ def digest(kernel: Kernel, parts: Parts) -> str:
     while due:
         function, options = due.pop()
         if function not in texts:
-            part = parts.get(function) or _described(function, options)
+            part = parts.get(function) or _text_of_function(function, options)
             parts[function] = part
             texts[function] = part.text
-            due += part.called
+            due += part.called_kernels
     return sha256("\n".join(texts.values()).encode()).hexdigest()
 
 
@@ -79,12 +80,12 @@ def type_text(numba_type: Any) -> str:
     if hasattr(numba_type, "dtype") and numba_type.dtype is not numba_type:
         inner = (*inner, numba_type.dtype)
     fields = getattr(numba_type, "fields", "")
-    own = _name_of(numba_type.instance_class) if isinstance(numba_type, types.BaseNamedTuple) else ""
+    own = _qualified_name(numba_type.instance_class) if isinstance(numba_type, types.BaseNamedTuple) else ""
     return f"{type(numba_type).__name__} {own} {numba_type} {fields} ({', '.join(map(type_text, inner))})"
 
 
-def _described(function: FunctionType, options: str) -> FunctionText:
-    lines = [_name_of(function), options]
+def _text_of_function(function: FunctionType, options: str) -> FunctionText:
+    lines = [_qualified_name(function), options]
     values = _ValueTexts(function)
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
     lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cells))
@@ -93,7 +94,7 @@ def _described(function: FunctionType, options: str) -> FunctionText:
         lines += _code_lines(code, instructions)
         read = _values_read(function, instructions)
         lines += [f"{name} = {values.text(value)}" for name, value in read.items()]
-    return FunctionText("\n".join(lines), values.called)
+    return FunctionText("\n".join(lines), values.called_kernels)
 
 
 def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
@@ -104,14 +105,16 @@ def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]
     """
     read = {}
     for here, after in pairwise(instructions):
-        if here.opname in READS and here.argval in function.__globals__:
+        if here.opname in GLOBAL_READ_INSTRUCTIONS and here.argval in function.__globals__:
             value = function.__globals__[here.argval]
             if isinstance(value, CompiledSettings) and after.opname == "LOAD_ATTR":
                 read[f"{here.argval}.{after.argval}"] = getattr(value, after.argval)
             else:
                 read[here.argval] = value
-        elif here.opname in READS and not hasattr(builtins, here.argval):
-            raise NameError(f"{_name_of(function)} reads {here.argval}, which its module does not define")
+        elif here.opname in GLOBAL_READ_INSTRUCTIONS and not hasattr(builtins, here.argval):
+            raise NameError(
+                f"{_qualified_name(function)} reads {here.argval}, which its module does not define"
+            )
     return read
 
 
@@ -127,17 +130,17 @@ def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list
 
     The indices are left out because an added docstring changes them.
     """
-    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC
+    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC_FLAGS
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
     lines.append(code.co_exceptiontable.hex())
     for instruction in instructions:
         value = instruction.argval
-        shown = value.co_name if isinstance(value, CodeType) else repr(_ordered(value))
+        shown = value.co_name if isinstance(value, CodeType) else repr(_in_fixed_order(value))
         lines.append(f"{instruction.opname} {shown}")
     return lines
 
 
-def _ordered(value: Any) -> Any:
+def _in_fixed_order(value: Any) -> Any:
     """The value itself, or a sorted list for a set, because the order of a set differs between processes."""
     return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
 
@@ -145,16 +148,16 @@ def _ordered(value: Any) -> Any:
 class _ValueTexts:
     """Converter of the values that one function refers to into text that is equal in every process.
 
-    user: the function. called: kernels found among the converted values.
+    function: the function. called_kernels: kernels found among the converted values.
     """
 
     def __init__(self, user: FunctionType) -> None:
-        self.user = user
-        self.called: list[Kernel] = []
+        self.function = user
+        self.called_kernels: list[Kernel] = []
 
     def text(self, value: Any) -> str:
         """Text of a value. Raises TypeError for a type without reproducible text."""
-        if isinstance(value, PLAIN):
+        if isinstance(value, REPR_STABLE_TYPES):
             return repr(value)
         if isinstance(value, Mapping):
             return self.text(list(value.items()))
@@ -168,26 +171,28 @@ class _ValueTexts:
         if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn
         if isinstance(value, Dispatcher):
-            self.called.append(kernel_of(value.py_func, value.targetoptions))
-            return _name_of(value.py_func)
+            self.called_kernels.append(kernel_of(value.py_func, value.targetoptions))
+            return _qualified_name(value.py_func)
         if isinstance(value, ModuleType) and not self._is_ours(value.__name__):
             return value.__name__
         if isinstance(value, FunctionType) and self._is_ours(value.__module__):
-            self.called.append(Kernel(value, ""))
+            self.called_kernels.append(Kernel(value, ""))
         if isinstance(value, FunctionType | BuiltinFunctionType):
-            return _name_of(value)
-        raise TypeError(f"{_name_of(self.user)}: {value!r} has no digest; import the needed names from it")
+            return _qualified_name(value)
+        raise TypeError(
+            f"{_qualified_name(self.function)}: {value!r} has no digest; import the needed names from it"
+        )
 
     def _class_text(self, kind: type) -> str:
         fields = getattr(kind, "_fields", None)
         if fields is not None:
-            return f"{_name_of(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"
+            return f"{_qualified_name(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"
         if self._is_ours(kind.__module__):
-            raise TypeError(f"{_name_of(self.user)}: {kind} is not a NamedTuple")
-        return _name_of(kind)
+            raise TypeError(f"{_qualified_name(self.function)}: {kind} is not a NamedTuple")
+        return _qualified_name(kind)
 
     def _is_ours(self, module: str) -> bool:
-        return module.partition(".")[0] == self.user.__module__.partition(".")[0]
+        return module.partition(".")[0] == self.function.__module__.partition(".")[0]
 
 
 def _array_text(value: Any) -> str | None:
@@ -201,5 +206,5 @@ def _array_text(value: Any) -> str | None:
     return type_text(value) if isinstance(value, types.Type) else None
 
 
-def _name_of(value: Any) -> str:
+def _qualified_name(value: Any) -> str:
     return f"{value.__module__}.{value.__qualname__}"

@@ -38,7 +38,7 @@ class _SettingsType(types.Type):
         self.settings = settings
         super().__init__(name=repr(settings))
 
-    def field(self, name: str) -> Any:
+    def type_and_value(self, name: str) -> Any:
         """Returns (numba type, value) of the field `name`. An integer has a literal type, like a global
         integer.
         """
@@ -55,19 +55,21 @@ def _type_of(settings: CompiledSettings, context: Any) -> _SettingsType:
 
 
 @infer_getattr
-class _FieldTypes(AttributeTemplate):
+class _FieldTypeResolver(AttributeTemplate):
     key = _SettingsType
 
     def generic_resolve(self, settings: _SettingsType, name: str) -> types.Type:
-        kind: types.Type = settings.field(name)[0]
+        kind: types.Type = settings.type_and_value(name)[0]
         return kind
 
 
 @lower_constant(_SettingsType)
-def _no_value(context: Any, builder: Any, kind: _SettingsType, settings: CompiledSettings) -> Any:
+def _lower_settings_object(
+    context: Any, builder: Any, kind: _SettingsType, settings: CompiledSettings
+) -> Any:
     return context.get_dummy_value()
 
 
 @lower_getattr_generic(_SettingsType)
-def _constant(context: Any, builder: Any, kind: _SettingsType, value: Any, name: str) -> Any:
-    return context.get_constant_generic(builder, *kind.field(name))
+def _lower_settings_field(context: Any, builder: Any, kind: _SettingsType, value: Any, name: str) -> Any:
+    return context.get_constant_generic(builder, *kind.type_and_value(name))

@@ -11,17 +11,17 @@ from typing import Any
 
 from numba.core.extending import overload
 
-OTHER_SHAPE = "cannot assign an array to a slice of another shape"
+SHAPE_MISMATCH_MESSAGE = "cannot assign an array to a slice of another shape"
 """Message of the ValueError that compiled code raises."""
 
 
-def refuse_other_shape(source: tuple[int, ...], target: tuple[int, ...]) -> None:
+def refuse_shape_mismatch(source: tuple[int, ...], target: tuple[int, ...]) -> None:
     """Raises ValueError: an array of the shape `source` does not fit into a slice of the shape `target`."""
-    raise ValueError(OTHER_SHAPE)
+    raise ValueError(SHAPE_MISMATCH_MESSAGE)
 
 
 @cache
-def shorten_message() -> None:
+def use_fixed_message() -> None:
     """Makes numba use the fixed message in all later compilations; this function imports the compiler.
 
     Releases of numba with a fixed message are not changed.
@@ -29,12 +29,12 @@ def shorten_message() -> None:
     from numba.np import arrayobj
 
     if hasattr(arrayobj, "raise_with_shape_context"):
-        overload(refuse_other_shape)(_compiled_refusal)
-        arrayobj.raise_with_shape_context = refuse_other_shape
+        overload(refuse_shape_mismatch)(_compiled_refusal)
+        arrayobj.raise_with_shape_context = refuse_shape_mismatch
 
 
 def _compiled_refusal(source: Any, target: Any) -> Callable[[Any, Any], None]:
     def refusal(source: Any, target: Any) -> None:
-        raise ValueError(OTHER_SHAPE)
+        raise ValueError(SHAPE_MISMATCH_MESSAGE)
 
     return refusal

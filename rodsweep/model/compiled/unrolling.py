@@ -24,13 +24,13 @@ from .compilation import compiled_for_vectors
 P = ParamSpec("P")
 R = TypeVar("R")
 
-ALWAYS = {"range": range}
+ALWAYS_KNOWN = {"range": range}
 """Names with known values during unrolling, in addition to the algebra."""
 
 
 class UnrolledOverAlgebra(Generic[P, R]):
-    """Decorator of a function whose first argument is a Lie algebra; `of` unrolls the loops over this
-    argument.
+    """Decorator of a function whose first argument is a Lie algebra; `compiled_for` unrolls the loops over
+    this argument.
     """
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
@@ -41,13 +41,13 @@ class UnrolledOverAlgebra(Generic[P, R]):
         result: R = self.function(g, *args, **kwargs)
         return result
 
-    def of(self, g: Algebra) -> Callable[P, R]:
+    def compiled_for(self, g: Algebra) -> Callable[P, R]:
         """The function for the algebra `g`, unrolled and compiled, without the argument for the algebra."""
         if g not in self._compiled:
-            self._compiled[g] = compiled_for_vectors(self.written_out(g))
+            self._compiled[g] = compiled_for_vectors(self.unrolled_for(g))
         return self._compiled[g]
 
-    def written_out(self, g: Algebra) -> Callable[P, R]:
+    def unrolled_for(self, g: Algebra) -> Callable[P, R]:
         """The function unrolled for the algebra `g`, not compiled.
 
         All called functions that have this decorator too are unrolled and compiled.
@@ -66,46 +66,51 @@ class UnrolledOverAlgebra(Generic[P, R]):
             value = self.function.__globals__.get(name)
             if isinstance(value, UnrolledOverAlgebra):
                 others.add(name)
-                namespace[name] = value.of(g)
+                namespace[name] = value.compiled_for(g)
             elif name in self.function.__globals__:
                 namespace[name] = value
-        tree.body = [_Writer({first: g, **ALWAYS}, _WriterState(set(), others, {}, {})).visit(definition)]
+        tree.body = [
+            _UnrollingTransformer({first: g, **ALWAYS_KNOWN}, _SharedState(set(), others, {}, {})).visit(
+                definition
+            )
+        ]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
         written: Any = namespace[definition.name]
         return written
 
 
-class _WriterState(NamedTuple):
-    """State shared by all `_Writer` objects that unroll one function.
+class _SharedState(NamedTuple):
+    """State shared by all `_UnrollingTransformer` objects that unroll one function.
 
-    lists: names of lists with elements that became variables. others: names of called functions that are also
-    unrolled. names: cache of the names that a syntax node reads. code: cache of compiled expressions.
+    unrolled_lists: names of lists with elements that became variables. unrolled_functions: names of called
+    functions that are also unrolled. names_read: cache of the names that a syntax node reads.
+    compiled_expressions: cache of compiled expressions.
     """
 
-    lists: set[str]
-    others: set[str]
-    names: dict[ast.AST, frozenset[str]]
-    code: dict[ast.AST, CodeType]
+    unrolled_lists: set[str]
+    unrolled_functions: set[str]
+    names_read: dict[ast.AST, frozenset[str]]
+    compiled_expressions: dict[ast.AST, CodeType]
 
 
-class _Writer(ast.NodeVisitor):
-    """Copies a syntax tree. Names in `known` are replaced by their values, and loops over such values are
-    unrolled.
+class _UnrollingTransformer(ast.NodeVisitor):
+    """Copies a syntax tree. Names in `known_values` are replaced by their values, and loops over such values
+    are unrolled.
     """
 
-    def __init__(self, known: Mapping[str, Any], shared: _WriterState) -> None:
-        self.known = known
+    def __init__(self, known: Mapping[str, Any], shared: _SharedState) -> None:
+        self.known_values = known
         self.shared = shared
 
     def visit(self, node: ast.AST) -> Any:
         reads = isinstance(node, ast.expr) and not isinstance(getattr(node, "ctx", None), ast.Store)
-        if reads and self._is_known(node) and isinstance(value := self._value(node), int | float):
+        if reads and self._is_known(node) and isinstance(value := self._evaluate(node), int | float):
             return ast.copy_location(ast.Constant(value), node)
         return super().visit(node)
 
     def generic_visit(self, node: ast.AST) -> Any:
         fields = {
-            name: self._all(value) if isinstance(value, list) else self._one(value)
+            name: self._visit_all(value) if isinstance(value, list) else self._visit_if_node(value)
             for name, value in ast.iter_fields(node)
         }
         return ast.copy_location(type(node)(**fields), node)
@@ -116,85 +121,93 @@ class _Writer(ast.NodeVisitor):
         leaves = ast.Break | ast.Continue | ast.Return
         if node.orelse or any(isinstance(part, leaves) for part in ast.walk(node)):
             raise TypeError(f"line {node.lineno}: an unrolled loop has no break, continue, return or else")
-        turns = [self._with(node.target, item)._all(node.body) for item in self._value(node.iter)]
+        turns = [
+            self._with_loop_variable(node.target, item)._visit_all(node.body)
+            for item in self._evaluate(node.iter)
+        ]
         return [statement for turn in turns for statement in turn]
 
     def visit_If(self, node: ast.If) -> Any:
         if not self._is_known(node.test):
             return self.generic_visit(node)
-        return self._all(node.body if self._value(node.test) else node.orelse)
+        return self._visit_all(node.body if self._evaluate(node.test) else node.orelse)
 
     def visit_IfExp(self, node: ast.IfExp) -> Any:
         if not self._is_known(node.test):
             return self.generic_visit(node)
-        return self.visit(node.body if self._value(node.test) else node.orelse)
+        return self.visit(node.body if self._evaluate(node.test) else node.orelse)
 
     def visit_Assign(self, node: ast.Assign) -> Any:
         target = node.targets[0]
         value = node.value
         if not (isinstance(value, ast.ListComp) and isinstance(target, ast.Name)):
             return self.generic_visit(node)
-        self.shared.lists.add(target.id)
+        self.shared.unrolled_lists.add(target.id)
         loop = value.generators[0]
         written = []
-        for index, item in enumerate(self._value(loop.iter)):
+        for index, item in enumerate(self._evaluate(loop.iter)):
             name = ast.copy_location(ast.Name(f"{target.id}_{index}", ast.Store()), target)
             one = ast.copy_location(ast.Assign([name], value.elt), node)
-            made = self._with(loop.target, item).visit(one)
+            made = self._with_loop_variable(loop.target, item).visit(one)
             written += made if isinstance(made, list) else [made]
         return written
 
     def visit_Subscript(self, node: ast.Subscript) -> Any:
         inner = self.visit(node.value)
-        if isinstance(inner, ast.Name) and inner.id in self.shared.lists:
-            return ast.copy_location(ast.Name(f"{inner.id}_{self._value(node.slice)}", node.ctx), node)
+        if isinstance(inner, ast.Name) and inner.id in self.shared.unrolled_lists:
+            return ast.copy_location(ast.Name(f"{inner.id}_{self._evaluate(node.slice)}", node.ctx), node)
         return ast.copy_location(ast.Subscript(inner, self.visit(node.slice), node.ctx), node)
 
     def visit_Call(self, node: ast.Call) -> Any:
         made = self.generic_visit(node)
-        if isinstance(made.func, ast.Name) and made.func.id in self.shared.others:
+        if isinstance(made.func, ast.Name) and made.func.id in self.shared.unrolled_functions:
             made.args = made.args[1:]
         return made
 
-    def _with(self, target: ast.expr, item: Any) -> "_Writer":
-        """The writer for the body of one loop iteration, in which the loop variable `target` has the value
-        `item`.
+    def _with_loop_variable(self, target: ast.expr, item: Any) -> "_UnrollingTransformer":
+        """The transformer for the body of one loop iteration, in which the loop variable `target` has the
+        value `item`.
         """
-        return _Writer({**self.known, **_bound(target, item)}, self.shared)
+        return _UnrollingTransformer(
+            {**self.known_values, **_loop_variable_values(target, item)}, self.shared
+        )
 
-    def _all(self, parts: Iterable[Any]) -> list[Any]:
-        made = [self._one(part) for part in parts]
+    def _visit_all(self, parts: Iterable[Any]) -> list[Any]:
+        made = [self._visit_if_node(part) for part in parts]
         return [part for some in made for part in (some if isinstance(some, list) else [some])]
 
-    def _one(self, part: Any) -> Any:
+    def _visit_if_node(self, part: Any) -> Any:
         return self.visit(part) if isinstance(part, ast.AST) else part
 
     def _is_known(self, node: ast.AST) -> bool:
-        names = self._names(node)
-        return bool(names) and names <= self.known.keys()
+        names = self._names_read_by(node)
+        return bool(names) and names <= self.known_values.keys()
 
-    def _names(self, node: ast.AST) -> frozenset[str]:
-        names = self.shared.names.get(node)
+    def _names_read_by(self, node: ast.AST) -> frozenset[str]:
+        names = self.shared.names_read.get(node)
         if names is None:
             own = {node.id} if isinstance(node, ast.Name) else ()
-            names = frozenset(own).union(*map(self._names, ast.iter_child_nodes(node)))
-            self.shared.names[node] = names
+            names = frozenset(own).union(*map(self._names_read_by, ast.iter_child_nodes(node)))
+            self.shared.names_read[node] = names
         return names
 
-    def _value(self, node: Any) -> Any:
-        """Value of the expression `node`. Raises NameError if a name in the expression is not in `known`."""
-        code = self.shared.code.get(node)
+    def _evaluate(self, node: Any) -> Any:
+        """Value of the expression `node`. Raises NameError if a name in the expression is not in
+        `known_values`."""
+        code = self.shared.compiled_expressions.get(node)
         if code is None:
-            code = self.shared.code[node] = compile(ast.Expression(node), "<known>", "eval")
-        return eval(code, {"__builtins__": {}}, dict(self.known))
+            code = self.shared.compiled_expressions[node] = compile(ast.Expression(node), "<known>", "eval")
+        return eval(code, {"__builtins__": {}}, dict(self.known_values))
 
 
-def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
+def _loop_variable_values(target: ast.expr, item: Any) -> dict[str, Any]:
     """Values of the variables in the loop target `target`, by name, in the iteration with the value
     `item`.
     """
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
-        return {name: value for part, inner in pairs for name, value in _bound(part, inner).items()}
+        return {
+            name: value for part, inner in pairs for name, value in _loop_variable_values(part, inner).items()
+        }
     assert isinstance(target, ast.Name)
     return {target.id: item}

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from .laws import LAWS, LINEAR, Law, law_of
-from .profile import FACTORS, RADIUS_POWERS, Profile
+from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile
 
 FACTOR_SAMPLE_COUNT = 256
 """Number of samples between neighbouring u of a profile in the search for the smallest factor."""
@@ -197,9 +197,9 @@ class Build:
         shape of u. taper: a number, or an array for n arms, (n, 1, ...).
         """
         if self.profile is None:
-            factors = dict.fromkeys(FACTORS, np.ones(u.shape))
+            factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
         else:
-            factors = dict(zip(FACTORS, self.profile.factors(u), strict=True))
+            factors = dict(zip(FACTOR_NAMES, self.profile.factors(u), strict=True))
         if isinstance(taper, np.ndarray) or taper != 1:
             radius = 1 - (1 - taper) * u
             square = radius * radius  # a power of NumPy takes as long as ten products
@@ -219,7 +219,7 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     ends = min(1.0, taper**power)
     if profile is None:
         return ends
-    column = FACTORS.index(name)
+    column = FACTOR_NAMES.index(name)
     rows = [
         (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
     ]

@@ -10,9 +10,9 @@ where q are the unknowns of a linear rod that has the mean compliances and the m
 a = b = q. The weight of a side is proportional to the compliance times the quadrature weight of the side; the
 weights have a limit if both compliances tend to 0.
 
-The argument `sides` of all functions describes both sides of a jump, (2, 7), with the columns `COLUMNS`. The
-strains on both sides follow from a and b and the compliances of both sides. The shear stress q2 is equal on
-both sides.
+The argument `sides` of all functions describes both sides of a jump, (2, 7), with the columns `SIDE_COLUMNS`.
+The strains on both sides follow from a and b and the compliances of both sides. The shear stress q2 is equal
+on both sides.
 """
 
 from typing import NamedTuple
@@ -21,22 +21,22 @@ from ...arrays import Array
 from ..compiled.compilation import compiled
 from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress_beyond_rest, stress_change, tangent
 
-COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
+SIDE_COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
 """Columns of the array that describes both sides of a jump: fields of `LocalSection`, weights w of q1 and q3
 in the mean strain, weight of the quadrature, and c2."""
-SHEAR = COLUMNS.index("c2")
-"""Index of the shear compliance c2 in `COLUMNS`."""
-MOST_ITERATIONS = 40
+SHEAR_COLUMN = SIDE_COLUMNS.index("c2")
+"""Index of the shear compliance c2 in `SIDE_COLUMNS`."""
+MAX_ITERATIONS = 40
 """Maximum number of Newton iterations; without convergence the last iterate is used."""
-CONVERGED = 1e-9
+CONVERGED_STEP = 1e-9
 """Newton's method stops when |step| <= CONVERGED * |unknown|, because the next step would be below rounding
 error."""
-LEAST_STRETCH_KEPT = 0.1
+MIN_STRETCH_RATIO = 0.1
 """A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
 because the law is defined for h1 > 0 only."""
 
 
-class Unknowns(NamedTuple):
+class LawUnknowns(NamedTuple):
     """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in `response`."""
 
     q1: float
@@ -44,38 +44,38 @@ class Unknowns(NamedTuple):
 
 
 @compiled
-def _section(side: Array) -> LocalSection:
+def _section_of_side(side: Array) -> LocalSection:
     return LocalSection(side[0], side[1], side[2])
 
 
 @compiled
-def _solved(T: Tangent, N: float, M: float) -> Unknowns:
+def _solve_tangent_system(T: Tangent, N: float, M: float) -> LawUnknowns:
     """Solution x of the linear system T x = (N, M), with the 2 x 2 matrix T = ((N1, N3), (M1, M3))."""
     determinant = T.N1 * T.M3 - T.N3 * T.M1
-    return Unknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
+    return LawUnknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
 
 
 @compiled
-def _allowed(at: LocalSection, q1: float, step: float) -> float:
-    """Largest fraction, up to 1, of a step of q1 after which h1 >= LEAST_STRETCH_KEPT times h1 before the
+def _largest_step_fraction(at: LocalSection, q1: float, step: float) -> float:
+    """Largest fraction, up to 1, of a step of q1 after which h1 >= MIN_STRETCH_RATIO times h1 before the
     step.
 
     at, q1: section and unknown before the step. step: change of q1.
     """
     h = at.nu + at.c1 * q1
     change = at.c1 * step
-    if h + change >= LEAST_STRETCH_KEPT * h:
+    if h + change >= MIN_STRETCH_RATIO * h:
         return 1.0
-    return (LEAST_STRETCH_KEPT - 1) * h / change
+    return (MIN_STRETCH_RATIO - 1) * h / change
 
 
 @compiled
-def _small(step: Unknowns, at: Unknowns) -> bool:
-    return abs(step.q1) <= CONVERGED * abs(at.q1) and abs(step.q3) <= CONVERGED * abs(at.q3)
+def _is_negligible(step: LawUnknowns, at: LawUnknowns) -> bool:
+    return abs(step.q1) <= CONVERGED_STEP * abs(at.q1) and abs(step.q3) <= CONVERGED_STEP * abs(at.q3)
 
 
 @compiled
-def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
+def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
     law. sides: (2, 7).
 
@@ -83,13 +83,13 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
     """
     if law == LINEAR_LAW:
         return q
-    one = _section(sides[0])
-    other = _section(sides[1])
+    one = _section_of_side(sides[0])
+    other = _section_of_side(sides[1])
     # The mean is prescribed, so db = -ratio da.
     ratio1 = sides[0, 3] / sides[1, 3]
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         b = unknowns_behind_jump(sides, q, a)
         s = stress_beyond_rest(law, one, a.q1, a.q3)
         t = stress_beyond_rest(law, other, b.q1, b.q3)
@@ -97,21 +97,23 @@ def unknowns_before_jump(law: int, sides: Array, q: Unknowns) -> Unknowns:
         T = tangent(law, other, b.q1, b.q3)
         # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
-        step = _solved(J, t.N - s.N, t.M - s.M)
+        step = _solve_tangent_system(J, t.N - s.N, t.M - s.M)
         # No side may be crushed by a step, since the neo-Hookean stress is infinite at h1 = 0.
-        share = min(_allowed(one, a.q1, step.q1), _allowed(other, b.q1, -ratio1 * step.q1))
-        a = Unknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
-        if _small(step, a):
+        share = min(
+            _largest_step_fraction(one, a.q1, step.q1), _largest_step_fraction(other, b.q1, -ratio1 * step.q1)
+        )
+        a = LawUnknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
+        if _is_negligible(step, a):
             break
     return a
 
 
 @compiled
-def unknowns_behind_jump(sides: Array, q: Unknowns, a: Unknowns) -> Unknowns:
+def unknowns_behind_jump(sides: Array, q: LawUnknowns, a: LawUnknowns) -> LawUnknowns:
     """The unknowns b on the tip side of a jump, from the mean unknowns q and the unknowns a; sides:
     (2, 7).
     """
-    return Unknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
+    return LawUnknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
@@ -119,18 +121,18 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
     the constitutive law. sides: (2, 7).
     """
-    a = unknowns_before_jump(law, sides, Unknowns(q1, q3))
-    return stress_beyond_rest(law, _section(sides[0]), a.q1, a.q3)
+    a = unknowns_before_jump(law, sides, LawUnknowns(q1, q3))
+    return stress_beyond_rest(law, _section_of_side(sides[0]), a.q1, a.q3)
 
 
 @compiled
-def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tangent:
+def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> Tangent:
     """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
 
     law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: (2, 7).
     """
-    S = tangent(law, _section(sides[0]), a.q1, a.q3)
-    T = tangent(law, _section(sides[1]), b.q1, b.q3)
+    S = tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
+    T = tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1
     t = T.N1 * T.M3 - T.N3 * T.M1
     s1 = sides[0, 3] / s
@@ -143,7 +145,9 @@ def _compliance_at_jump(law: int, sides: Array, a: Unknowns, b: Unknowns) -> Tan
 
 
 @compiled
-def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -> tuple[Unknowns, Unknowns]:
+def changes_beside_jump(
+    law: int, sides: Array, q: LawUnknowns, change: LawUnknowns
+) -> tuple[LawUnknowns, LawUnknowns]:
     """Returns (change of a, change of b): changes of the unknowns on the base side and the tip side of a
     jump.
 
@@ -151,10 +155,12 @@ def changes_beside_jump(law: int, sides: Array, q: Unknowns, change: Unknowns) -
     """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
-    stresses = _solved(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
-    S = tangent(law, _section(sides[0]), a.q1, a.q3)
-    T = tangent(law, _section(sides[1]), b.q1, b.q3)
-    return _solved(S, stresses.q1, stresses.q3), _solved(T, stresses.q1, stresses.q3)
+    stresses = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
+    S = tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
+    T = tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
+    return _solve_tangent_system(S, stresses.q1, stresses.q3), _solve_tangent_system(
+        T, stresses.q1, stresses.q3
+    )
 
 
 @compiled
@@ -162,7 +168,7 @@ def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3. law: number of
     the constitutive law. sides: (2, 7).
     """
-    q = Unknowns(q1, q3)
+    q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
     determinant = Z.N1 * Z.M3 - Z.N3 * Z.M1
@@ -178,19 +184,19 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a parameter
     multiplies the compliances of both sides by the same factor.
     """
-    q = Unknowns(q1, q3)
+    q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     moved1 = 0.0
     moved3 = 0.0
     for i in range(2):
-        at = _section(sides[i])
+        at = _section_of_side(sides[i])
         x = a if i == 0 else b
-        own = stress_change(law, at, _section(change[i]), x.q1, x.q3)
+        own = stress_change(law, at, _section_of_side(change[i]), x.q1, x.q3)
         # At fixed stress the unknowns of this side would change by -back. A change of the stress keeps the
         # mean unknowns fixed.
-        back = _solved(tangent(law, at, x.q1, x.q3), own.N, own.M)
+        back = _solve_tangent_system(tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1
         moved3 += sides[i, 4] * back.q3
-    out = _solved(_compliance_at_jump(law, sides, a, b), moved1, moved3)
+    out = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), moved1, moved3)
     return Stress(out.q1, out.q3)

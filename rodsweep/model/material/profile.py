@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array
 
-FACTORS = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
+FACTOR_NAMES = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
 """Names of the stiffnesses and drags, in the order of the columns of a profile after the column u."""
 MIN_ROW_DISTANCE = 1e-6
 """Smallest distance in u between two rows that are no jump. At 1e-7 one spectrum in eight failed, because
@@ -27,7 +27,7 @@ class Profile:
     """Table of factors of stiffnesses and drags along the arm, compared and hashed by value.
 
     u: material coordinates, increasing from 0 to 1, with a repeated value at a jump. rows: positive factors
-    at each u, in the order of `FACTORS`. Raises ValueError for an invalid table.
+    at each u, in the order of `FACTOR_NAMES`. Raises ValueError for an invalid table.
     """
 
     u: tuple[float, ...]
@@ -52,7 +52,7 @@ class Profile:
             if self.u.count(value) > (1 if value in (0, 1) else 2):
                 most = "one row" if value in (0, 1) else "two rows (a jump)"
                 raise ValueError(f"there are {self.u.count(value)} rows at u = {value:g}; allowed: {most}")
-            for name, factor in zip(FACTORS, self.rows[number], strict=True):
+            for name, factor in zip(FACTOR_NAMES, self.rows[number], strict=True):
                 if not 0 < factor < np.inf:
                     raise ValueError(
                         f"the factor of {name} at u = {value:g} is {factor:g}; it must be finite and above 0"
@@ -85,7 +85,8 @@ class Profile:
         return np.ascontiguousarray(np.concatenate(pieces, axis=1).swapaxes(1, 2))
 
     def factors(self, u: Array) -> Array:
-        """Factors at points u, in the order of `FACTORS`, (factors, *u.shape). No point may be a break."""
+        """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No point may be a
+        break."""
         breaks = self.breaks
         piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
         t = (u - breaks[piece]) / (breaks[piece + 1] - breaks[piece])

@@ -43,7 +43,7 @@ class Tangent(NamedTuple):
 
 
 @compiled
-def _bending(law: int, h: float) -> tuple[float, float, float]:
+def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
     """Returns (B, B', B''): bending factor of the law with the number `law` at the stretch h, and its
     derivatives.
     """
@@ -55,7 +55,7 @@ def _bending(law: int, h: float) -> tuple[float, float, float]:
 
 
 @compiled
-def _secant(nu: float, h: float) -> float:
+def _neo_hookean_secant(nu: float, h: float) -> float:
     """[W'(h) - W'(nu)]/(h - nu) of the neo-Hookean law, without cancellation for h close to nu."""
     a = 1 / nu
     b = 1 / h
@@ -70,8 +70,8 @@ def stress_beyond_rest(law: int, at: LocalSection, q1: float, q3: float) -> Stre
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = at.nu + at.c1 * q1
-    B, B1, _ = _bending(law, h)
-    return Stress(q1 * _secant(at.nu, h) + B1 * at.c3 * q3 * q3 / 2, B * q3)
+    B, B1, _ = _bending_factor(law, h)
+    return Stress(q1 * _neo_hookean_secant(at.nu, h) + B1 * at.c3 * q3 * q3 / 2, B * q3)
 
 
 @compiled
@@ -82,7 +82,7 @@ def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = at.nu + at.c1 * q1
-    B, B1, B2 = _bending(law, h)
+    B, B1, B2 = _bending_factor(law, h)
     stiffness = (1 + 2 / h**3) / 3
     coupling = B1 * q3
     return Tangent(stiffness + at.c1 * B2 * at.c3 * q3 * q3 / 2, coupling * at.c3, coupling * at.c1, B)
@@ -102,6 +102,6 @@ def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q
     b = 1 / h
     secant_nu = -a * a * b * (2 * a + b) / 3
     secant_h = -a * b * b * (a + 2 * b) / 3
-    _, B1, B2 = _bending(law, h)
+    _, B1, B2 = _bending_factor(law, h)
     by_bending = q3 * q3 / 2 * (B2 * moved * at.c3 + B1 * change.c3)
     return Stress(q1 * (secant_nu * change.nu + secant_h * moved) + by_bending, B1 * moved * q3)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
-from ...model.parameters import CRUSHING
+from ...model.parameters import CRUSHING_PARAMETERS
 from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, has_or_have, some_of
 from ..branch_curves import (
@@ -152,7 +152,7 @@ def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     low, high = branch_ends(rod.view)
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
-    force, stiffness = CRUSHING
+    force, stiffness = CRUSHING_PARAMETERS
     columns = {name: float(values[rod.rod]) for name, values in rod.view.point_columns.items()}
     along = followed_parameter(rod.view)
     if along == force:

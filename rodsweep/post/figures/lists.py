@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES, ARM_UNITS
-from ...model.units import compact
+from ...model.units import with_si_prefix
 from ...results.file.view import View
 from ..summary.arm.arm import quantity_words
 
@@ -85,5 +85,5 @@ def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]
     unit = ALL_QUANTITIES[name].unit
     if unit == "1":
         return quantity_words(name), [f"{value:.4g}" for value in values]
-    factor, unit = compact(float(np.abs(values).max()), unit)
+    factor, unit = with_si_prefix(float(np.abs(values).max()), unit)
     return f"{quantity_words(name)} ({unit})", [f"{factor * value:.4g}" for value in values]

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from ...arrays import Array
 from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
-from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
+from ...model.parameters import CRUSHING_PARAMETERS, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
@@ -156,7 +156,7 @@ def _crushed_at_k1(view: View, line: str, row: str) -> bool:
     """Whether the axes `line` and `row` are F and k1 and the rods are crushed at F = k1, as uniform rods of
     linear material are.
     """
-    return (line, row) == CRUSHING and has_covering(view.config)
+    return (line, row) == CRUSHING_PARAMETERS and has_covering(view.config)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
@@ -168,7 +168,7 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
     ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
     below = np.append(ends, x[-1])
     axes.fill_between(below, np.minimum(below, y[-1]), y[0], color=CLASS_COLOURS["crushed"], lw=0)
-    force, stiffness = (SYMBOLS[name] for name in CRUSHING)
+    force, stiffness = (SYMBOLS[name] for name in CRUSHING_PARAMETERS)
     return axes.plot(ends, ends, color="0.4", lw=1.2, label=f"${stiffness} = {force}$")
 
 

@@ -13,7 +13,7 @@ from rich.text import Text
 from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.quantities import ALL_QUANTITIES
-from ...model.units import written_in
+from ...model.units import value_in_unit
 from ...results.file.provenance import FAILURE_REASONS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
@@ -200,7 +200,7 @@ def _axes_table(view: View) -> TextTable:
         rows.append(
             (
                 name,
-                *_count_and_range(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)),
+                *_count_and_range(np.vectorize(lambda x, to=unit, of=si: value_in_unit(x, to, of))(values)),
                 unit,
             )
         )

@@ -90,12 +90,10 @@ class _HopfNormalForm:
 
 
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
-    
-"""The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
+    """The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
 
-    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If the normal
-    form fails at a point, the sign is NaN at this point only.
-    """
+    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If
+    the normal form fails at a point, the sign is NaN at this point only."""
     hopf = HopfCurve(
         Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
     )

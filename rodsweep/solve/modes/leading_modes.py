@@ -98,7 +98,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
 
 def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
     """Modes of a uniform rod of nonlinear material, from the equivalent linear rod; times are rescaled."""
-    linear, rate = rod.equivalent
+    linear, rate = rod.equivalent_linear_rod
     found = solve_modes(linear, request)
     spectrum = found.spectrum
     growth = found.growth

@@ -11,11 +11,11 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
-from ...model.material.jump import COLUMNS
+from ...model.material.jump import SIDE_COLUMNS
 from ..backend.c_functions import double_array_at, floats, integers
 from .time_scheme import EXTRAPOLATION_POINTS
 
-CONSTANTS_PER_JUMP_SIDE = len(COLUMNS)
+CONSTANTS_PER_JUMP_SIDE = len(SIDE_COLUMNS)
 """Number of material constants that are stored for each side of a jump of the material."""
 MAX_STAGES = 1 + max(max(stages) for stages in EXTRAPOLATION_POINTS.values())
 """Maximum number of stages of a time step that are stored for extrapolation, including the state at the

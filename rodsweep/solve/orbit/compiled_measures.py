@@ -15,7 +15,7 @@ from ...discretization.state_layout import stress_index
 from ...discretization.stress.tip_motion import TipMatrices, tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
-from ...model.material.jump import Unknowns, unknowns_before_jump, unknowns_behind_jump
+from ...model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
 from .semidiscrete import Semidiscrete
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -147,7 +147,7 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
     """The smaller h1 of the two sides of a jump of the material at the node with the index `node`. state:
     (n,). sides: material constants on the two sides, (2, 7). rod: material at the nodes."""
     n = rod.rest.shape[1] - 1
-    q = Unknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
+    q = LawUnknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
     a = unknowns_before_jump(rod.law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     return min(sides[0, 0] + sides[0, 1] * a.q1, sides[1, 0] + sides[1, 1] * b.q1)

@@ -21,7 +21,7 @@ from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import refine_mesh_eigenvalues as roots_of_arm
 from ...determinant.certificate.box import squared_amplification
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
-from ...determinant.roots.roots import Roots, roots
+from ...determinant.roots.roots import Roots, refined_roots
 from ...discretization.elements.resolution import (
     Resolution,
     expected_wave_number,
@@ -30,7 +30,7 @@ from ...discretization.elements.resolution import (
 )
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
-from ...model.dispersion import local_growth, most_amplified_wave
+from ...model.dispersion import most_amplified_local_waves, most_amplified_wave
 from ...model.rod import Rod
 from .arm_solver import ArmSolver, arm_solver
 from .krylov_schur import UniformSolver, uniform_solver
@@ -121,7 +121,7 @@ class UniformProblem(TransverseProblem):
 
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`."""
-        return roots(raw, self.rod.coefficients, self._amplification, most_waves)
+        return refined_roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
@@ -142,7 +142,7 @@ class ArmProblem(TransverseProblem):
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
         self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
-        growth, _ = local_growth(rod)
+        growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:

@@ -54,7 +54,7 @@ def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod, with rescaled
     eigenvalues.
     """
-    linear, rate = rod.equivalent
+    linear, rate = rod.equivalent_linear_rod
     found = solve_spectrum(linear, request)
     return replace(found, eigenvalues=rate * found.eigenvalues, error_estimate=rate * found.error_estimate)
 
@@ -231,7 +231,7 @@ def _spectrum(best: CheckedCandidates, problem: TransverseProblem, request: Spec
     if status == SpectrumStatus.ok and request.certify:
         if not proved:
             status = SpectrumStatus.not_certified
-            message = comparison.count.why_not if comparison else ""
+            message = comparison.count.failure_reason if comparison else ""
         elif undecided:
             status = SpectrumStatus.undecided
     unstable = sum(value.real > 0 for value in w)

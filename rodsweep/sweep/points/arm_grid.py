@@ -12,10 +12,10 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
-from ...model.arm.refusals import CRUSHED_FROM
+from ...model.arm.quantities import ARM_UNITS, RELATIVE_LOADS, SCALE_NAME
+from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.build import STANDARD, Build
-from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from ...model.parameters import NONLINEAR_PARAMETERS, names_except
 from .flutter_forces import FlutterForce
 from .points import Points
 
@@ -46,25 +46,25 @@ def grid_of_arms(
     loads = section.quantity_axes[section.load_axis].array() if section.load_axis else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    own = (*all_but("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
+    own = (*names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
     table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own}
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_UNITS}
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
-    if section.load_axis in RELATIVE:
+    if section.load_axis in RELATIVE_LOADS:
         coverage = _with_flutter(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
-        if section.load_axis in RELATIVE:
-            units[section.load] = table["F"] * units[SCALE_OF[section.load]]
+        if section.load_axis in RELATIVE_LOADS:
+            units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
         shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
             shares = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
-        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"] * shares, shape)
+        crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * shares, shape)
         coverage[(coverage == SLENDER) & crushed] = CRUSHED
     if (coverage != SLENDER).all():
         _refuse_grid_without_rods(section, beside, bool((coverage == NO_FLUTTER).any()), forces)
@@ -101,7 +101,7 @@ def _unit_load_forces(
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
-    beside = [None] if tapers is None or section.load_axis not in RELATIVE else tapers.ravel().tolist()
+    beside = [None] if tapers is None or section.load_axis not in RELATIVE_LOADS else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
         found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
@@ -119,9 +119,9 @@ def _unit_load_force(
     """
     if arm is None or not section.load:
         return NO_FLUTTER_FORCE
-    if section.load_axis in RELATIVE:
+    if section.load_axis in RELATIVE_LOADS:
         return flutter(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_OF[section.load]))
+    return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:

@@ -12,9 +12,9 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
 from ...config.schema import Config
 from ...errors import InputError
-from ...model.arm.refusals import CRUSHED_FROM
+from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.build import STANDARD, Build
-from ...model.parameters import CRUSHING, PARAMETERS, Range
+from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
 from .flutter_forces import FlutterForces, flutter_of_arm, flutter_of_rod, rods_of_flutter
@@ -67,14 +67,14 @@ def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     MOST_POINTS points. axes: values of each parameter, (n,).
     """
     count = math.prod(map(len, axes.values()))
-    if not set(CRUSHING) <= axes.keys() or count > MOST_POINTS:
+    if not set(CRUSHING_PARAMETERS) <= axes.keys() or count > MOST_POINTS:
         return None
     along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
     shares = build.relative_crushing_forces(along.get("taper", np.ones(1)))
     if axes["F"].max() < axes["k1"].min() * shares.min():
         return None
     shape = tuple(map(len, axes.values()))
-    crushed = np.broadcast_to(CRUSHED_FROM * along["k1"] * shares <= along["F"], shape).ravel()
+    crushed = np.broadcast_to(CRUSHED_FORCE_RATIO * along["k1"] * shares <= along["F"], shape).ravel()
     return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
@@ -97,7 +97,7 @@ def require_in_range(
     bad = allowed.first_outside(values)
     if bad is not None:
         raise InputError(
-            f"parameters.{name} = {bad:g} is not allowed{where}; it must be {allowed.phrase}{why}"
+            f"parameters.{name} = {bad:g} is not allowed{where}; it must be {allowed.description}{why}"
         )
 
 
@@ -109,7 +109,7 @@ def refuse_axes(axes: dict[str, Array], allows_crushed_rods: bool = False, build
     """
     for name, column in axes.items():
         require_in_range(PARAMETERS[name].allowed, name, column)
-    if not set(CRUSHING) <= axes.keys():
+    if not set(CRUSHING_PARAMETERS) <= axes.keys():
         return
     shares = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
     if (shares == 1).all():

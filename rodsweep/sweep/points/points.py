@@ -17,7 +17,7 @@ from ...model.material.build import STANDARD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
-NEUTRAL_VALUES = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
+NEUTRAL_VALUES = {name: parameter.neutral_value for name, parameter in PARAMETERS.items()}
 """Neutral value of each parameter by name, for parameters without a column. Parameter values that are invalid
 in combination with neutral values are invalid in every combination."""
 

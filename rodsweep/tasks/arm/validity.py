@@ -21,7 +21,7 @@ from ...config.arm.axes import NON_LOAD_KEYS, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
-from ...model.arm.neglected import HALF_LENGTH, Validity, effects_of, least_drag, worst_validity
+from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, least_drag, neglected_effects, worst_validity
 from ...model.material.laws import LINEAR
 from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import CLASSES
@@ -57,7 +57,7 @@ class ArmMotion:
     frequency: Array
     F: Array | None = None
     """Follower force of each motion, used if F is not a parameter of the points; None if unknown."""
-    amplitude: Array | float = HALF_LENGTH
+    amplitude: Array | float = LARGE_AMPLITUDE
     is_cycle: bool = False
     may_be_missed: NDArray[np.bool_] | bool = False
     """Whether each point may have a motion that the solver did not find, (n,)."""
@@ -174,10 +174,10 @@ class ArmValidity:
     def _validity_variables(
         self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
     ) -> dict[str, Any]:
-        drag = arm.own_drag if "drag" in self.points.arm_axes else least_drag(arm)
+        drag = arm.chosen_drag if "drag" in self.points.arm_axes else least_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force_of_points(arm, motion, index)
-        effects = effects_of(
+        effects = neglected_effects(
             arm, rate, self._base_compression(F, index), drag=drag, amplitude=motion.amplitude
         )
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]

@@ -18,7 +18,7 @@ from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import STANDARD, Build
 from rodsweep.model.material.laws import LAWS
-from rodsweep.model.material.profile import FACTORS, Profile
+from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.response import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
@@ -37,8 +37,8 @@ from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
-JUMP_OF_ONE = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * len(FACTORS),) * 4)
-ONES = Profile((0.0, 0.3, 1.0), ((1.0,) * len(FACTORS),) * 3)
+JUMP_OF_ONE = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 4)
+ONES = Profile((0.0, 0.3, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 3)
 RUBBER = [Build(*names) for names in LAWS]
 NAMES = ["-".join(names) for names in LAWS]
 ARMS = {
@@ -241,7 +241,7 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     """A tip integrated with the mean strain at the jump was off by 7.9 and 1.4 times the stated error."""
     at, *stiffness = jump
     factors = (*stiffness, 1.0, 1.0, 1.0)
-    profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTORS),) * 2 + (factors,) * 2)
+    profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + (factors,) * 2)
     rod = Rod(**values, gamma1=gamma1, build=Build(*names, profile))
     memory = NewtonWorkspace()
     form = StressForm(rod, coarse_mesh(rod))

@@ -10,7 +10,7 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.hull.region import NO_BOUND
+from rodsweep.determinant.arm.hull.region import UNBOUNDED_HULL
 from rodsweep.determinant.arm.newton import refine_eigenvalue
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -155,7 +155,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     monkeypatch.setattr(search, "candidates_on", attempt)
     monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, max_unproved_modes=2))
     if not countable:
-        monkeypatch.setattr(problem, "hull_of", lambda rod: NO_BOUND)
+        monkeypatch.setattr(problem, "hull_of", lambda rod: UNBOUNDED_HULL)
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))
     assert found.certified == countable
     assert found.unstable_count > 2 if countable else found.status == SpectrumStatus.not_certified

@@ -22,52 +22,53 @@ from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, BoundedPropagators
 from ..elements.settings import ARM_ELEMENTS
 from ..hull.region import Hull
-from ..local_waves import ArmSamples, scales_at
-from .phase_node import PhaseNode, phase_node, tangent
+from ..local_waves import ArmSamples, wave_number_and_length_at
+from .phase_node import PhaseNode, phase_node, tangent_of_log
 from .settings import ARM_COUNT_SETTINGS
 
-NONE_KNOWN: Complex = np.empty(0, complex)
+NO_KNOWN_EIGENVALUES: Complex = np.empty(0, complex)
 """No known eigenvalues, (0,)."""
 
 
 class PhaseLost(ArithmeticError):
-    """The change of arg D along the contour could not be determined; nodes: number of nodes used."""
+    """The change of arg D along the contour could not be determined; node_count: number of nodes used."""
 
     def __init__(self, nodes: int):
         super().__init__(PHASE_LOST)
-        self.nodes = nodes
+        self.node_count = nodes
 
 
 class BoundaryTraversal(NamedTuple):
-    """State of a traversal of the contour of a count: on side number `side` of the box, at `distance` from
-    the start of this side.
+    """State of a traversal of the contour of a count: on side number `side_number` of the box, at
+    `distance_on_side` from the start of this side.
 
-    phase_change: of arg D so far. nodes: number of nodes so far. node: the last node. reach_growth: change of
-    the reach per distance. next_distance: distance of the next node, 0 if not chosen yet. needed_size: |w|
-    for which propagators are needed to continue; 0 at the end, inf if the change of phase is not determined.
+    phase_change: of arg D so far. node_count: number of nodes so far. last_node: the last node. reach_growth:
+    change of the reach per distance. next_distance: distance of the next node, 0 if not chosen yet.
+    needed_largest_w: |w| for which propagators are needed to continue; 0 at the end, inf if the change of
+    phase is not determined.
     """
 
-    side: int
-    distance: float
+    side_number: int
+    distance_on_side: float
     phase_change: float
-    nodes: int
-    node: PhaseNode
+    node_count: int
+    last_node: PhaseNode
     reach_growth: float
     next_distance: float
-    needed_size: float
+    needed_largest_w: float
 
 
 def count_right_of(
     line: float,
     determinant: ArmDeterminant,
     hull: Hull,
-    known: Complex = NONE_KNOWN,
+    known: Complex = NO_KNOWN_EIGENVALUES,
     error: Array | float = 0.0,
 ) -> EigenvalueCount:
     """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
 
     known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. A failed count
-    raises no exception: `number` is then None and `why_not` the reason.
+    raises no exception: `number` is then None and `failure_reason` the reason.
     """
     if not math.isfinite(hull.a):
         return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
@@ -80,7 +81,7 @@ def count_right_of(
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
-        return EigenvalueCount(None, lost.nodes, str(lost))
+        return EigenvalueCount(None, lost.node_count, str(lost))
     except FloatingPointError as unresolved:
         return EigenvalueCount(None, 0, str(unresolved))
     number = round(total / math.pi)
@@ -96,7 +97,7 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_corner(0.0, hull)), ARM_COUNT_SETTINGS.max_level_ratio)
+        determinant.level(abs(_upper_box_corner(0.0, hull)), ARM_COUNT_SETTINGS.max_level_ratio)
     except FloatingPointError:
         return False
     return True
@@ -104,11 +105,11 @@ def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
 
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
-    corner = _corner(line, hull)
+    corner = _upper_box_corner(line, hull)
     return abs(corner) + ARM_COUNT_SETTINGS.first_radius * determinant.length(corner)
 
 
-def _corner(line: float, hull: Hull) -> complex:
+def _upper_box_corner(line: float, hull: Hull) -> complex:
     """The corner in the upper half plane, with the largest |w|, of the box about all eigenvalues right of the
     line.
     """
@@ -124,7 +125,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
 
     Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
     """
-    corner = _corner(line, hull)
+    corner = _upper_box_corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest = largest_w_of_count(line, determinant, hull)
@@ -135,17 +136,17 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
-        walk = _advance(walk, (corners, largest), known, hull, samples, level)
-        if walk.needed_size == 0:
+        walk = _continue_traversal(walk, (corners, largest), known, hull, samples, level)
+        if walk.needed_largest_w == 0:
             break
-        if walk.needed_size == math.inf:
-            raise PhaseLost(walk.nodes)
-        level = determinant.level(walk.needed_size, ARM_COUNT_SETTINGS.max_level_ratio)
-    return walk.phase_change, walk.nodes
+        if walk.needed_largest_w == math.inf:
+            raise PhaseLost(walk.node_count)
+        level = determinant.level(walk.needed_largest_w, ARM_COUNT_SETTINGS.max_level_ratio)
+    return walk.phase_change, walk.node_count
 
 
 @compiled
-def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
+def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one walk
     walk: BoundaryTraversal,
     box: tuple[Complex, float],
     known: Complex,
@@ -174,7 +175,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if ahead == 0:
             ahead = min(_overlapping_distance(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
-        unit = scales_at(w, samples[0])[1]
+        unit = wave_number_and_length_at(w, samples[0])[1]
         first = ARM_COUNT_SETTINGS.first_radius * unit
         radius = min(2 * here.radius, ARM_COUNT_SETTINGS.largest_radius * unit) if here.radius > 0 else first
         radius = max(radius, ARM_COUNT_SETTINGS.max_wave_radius * w.imag)
@@ -183,7 +184,7 @@ def _advance(  # noqa: PLR0913, PLR0917 - state and constants of one walk
         if (
             not needed
             <= level[0]
-            <= ARM_COUNT_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENTS.smallest_level)
+            <= ARM_COUNT_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENTS.min_largest_w)
         ):
             return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
@@ -224,6 +225,6 @@ def _phase_between(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> fl
     between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi
     # because the reaches overlap.
-    expected = tangent(here, between, samples).imag - tangent(there, between, samples).imag
+    expected = tangent_of_log(here, between, samples).imag - tangent_of_log(there, between, samples).imag
     rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
     return expected + cmath.phase(rest)

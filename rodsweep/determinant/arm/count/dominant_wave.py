@@ -10,7 +10,7 @@ rely on Phi being close to log D: it divides D by exp(Phi), and Phi, as a quadra
 import cmath
 
 from ....model.compiled.compilation import compiled, compiled_for_vectors
-from ..local_waves import ArmSamples, root_of_upper_half
+from ..local_waves import ArmSamples, sqrt_in_upper_half_plane
 
 
 @compiled_for_vectors
@@ -23,8 +23,8 @@ def dominant_wave(w: complex, samples: ArmSamples) -> complex:
     imag = 0.0
     for i in range(len(samples.weights)):
         drag, load, rate, bend = samples.squares[:, i]
-        x, y = root_of_upper_half(rate + bend * w.real, bend * w.imag)
-        x, y = root_of_upper_half(
+        x, y = sqrt_in_upper_half_plane(rate + bend * w.real, bend * w.imag)
+        x, y = sqrt_in_upper_half_plane(
             drag * w.real - load + 2 * (a * x - b * y), drag * w.imag + 2 * (a * y + b * x)
         )
         real += samples.weights[i] * x

@@ -26,11 +26,11 @@ from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
 from ..completeness import has_conjugate
-from ..determinant import ArmDeterminant, elements_for, samples_of
+from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
 from ..family import ArmFamily, propagators_in_family
 from ..hull.region import Hull, PathHulls
-from ..local_waves import ArmSamples, scales_at
+from ..local_waves import ArmSamples, wave_number_and_length_at
 from ..value import chain_value, determinant_along_chain
 from .dominant_wave import dominant_wave, slope_of_wave
 from .settings import ARM_COUNT_SETTINGS, NO_CROSSING_SETTINGS
@@ -39,13 +39,13 @@ from .settings import ARM_COUNT_SETTINGS, NO_CROSSING_SETTINGS
 class ArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
-    known, error: known eigenvalues, followed from arm to arm, and their errors, (n, m) each. squares,
+    known_eigenvalues: followed from arm to arm; known_errors: their errors; (n, m) each. squares,
     weights: as in `ArmSamples`, (n, 4, points) and (points,). W, propagators: propagators of the arms, valid
     for |w| <= W, (n, elements, terms, PADDED).
     """
 
-    known: Complex
-    error: Array
+    known_eigenvalues: Complex
+    known_errors: Array
     squares: Array
     weights: Array
     W: float
@@ -55,22 +55,22 @@ class ArmsOfInterval(NamedTuple):
 class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm.
 
-    D: times exp(-S). L: D'/D, with the eigenvalues divided out. divided: indices of the known eigenvalues
-    that are divided out, (k,). wave: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0).
+    D: times exp(-S). L: D'/D, with the eigenvalues divided out. divided_indices: indices of the known
+    eigenvalues that are divided out, (k,). wave: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0).
     """
 
     w: complex
     D: complex
     S: float
     L: complex
-    divided: NDArray[np.int64]
+    divided_indices: NDArray[np.int64]
     wave: tuple[complex, complex]
 
 
 def sampled_points(first: int, last: int) -> list[int]:
-    """Indices of the `NO_CROSSING_SETTINGS.arms` points, of the points `first` to `last`, at which D is
+    """Indices of the `NO_CROSSING_SETTINGS.arm_count` points, of the points `first` to `last`, at which D is
     evaluated: the middle, the ends, and further points."""
-    steps = NO_CROSSING_SETTINGS.arms - 1
+    steps = NO_CROSSING_SETTINGS.arm_count - 1
     between = [first + (last - first) * k // steps for k in range(1, steps)]
     middle = between.pop(steps // 2 - 1)
     return [middle, first, last, *between]
@@ -93,13 +93,15 @@ def proves_no_crossing(
     squares = np.array([one.squares for one in samples])
     levels = [propagators_in_family(family, here)[1] for here in p.tolist()]
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.W, np.array(levels))
-    unit = scales_at(complex(line, 0.0), samples[0])[1]
+    unit = wave_number_and_length_at(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
         line, 0.0, top, (ARM_COUNT_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
     )
     if height < top and radius > 0:
         try:
-            arms = _with_larger_w(arms, rods, NO_CROSSING_SETTINGS.headroom * abs(complex(line, top)))
+            arms = _arms_with_larger_w(
+                arms, rods, NO_CROSSING_SETTINGS.largest_w_factor * abs(complex(line, top))
+            )
         except FloatingPointError:
             return False
         height, _ = covered_height(line, height, top, (radius, NO_CROSSING_SETTINGS.min_radius * unit), arms)
@@ -113,9 +115,9 @@ def _height_of_hulls(line: float, p: Array, hulls: PathHulls) -> float:
     return max(Hull(a, c).box(max(-line, 0.0))[1] for a, c in pieces)
 
 
-def _with_larger_w(arms: ArmsOfInterval, rods: list[Rod], W: float) -> ArmsOfInterval:
+def _arms_with_larger_w(arms: ArmsOfInterval, rods: list[Rod], W: float) -> ArmsOfInterval:
     """The arms with propagators for |w| <= W."""
-    found = elements_for(rods, samples_of(rods), W)
+    found = elements_for(rods, coefficient_samples(rods), W)
     propagators = element_propagators([rod.F for rod in rods], found.local, found.lengths, W)
     return arms._replace(W=W, propagators=propagators)
 
@@ -134,15 +136,15 @@ def covered_height(
     radius, smallest = radii
     while height < top:
         fitting = (arms.W - abs(complex(line, height))) / 2
-        if fitting < NO_CROSSING_SETTINGS.smallest_fitting * radius:
+        if fitting < NO_CROSSING_SETTINGS.min_fitting_fraction * radius:
             return height, radius
         radius = min(radius, fitting)
         w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.overlap * radius)
         if _is_zero_free(w0, radius, arms):
             height = w0.imag + NO_CROSSING_SETTINGS.overlap * radius
-            radius *= NO_CROSSING_SETTINGS.growth
+            radius *= NO_CROSSING_SETTINGS.radius_growth
         else:
-            radius /= NO_CROSSING_SETTINGS.shrinkage
+            radius /= NO_CROSSING_SETTINGS.radius_divisor
             if not radius > smallest:
                 return height, 0.0
     return height, radius
@@ -155,34 +157,36 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     value = determinant_along_chain(w0, arms.W, arms.propagators[0])
     if not abs(value.D) > ARM_COUNT_SETTINGS.rounding_over_noise * value.noise:
         return False
-    divided = np.flatnonzero(np.abs(arms.known[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius)
+    divided = np.flatnonzero(
+        np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius
+    )
     L = value.D_w / value.D
     for n in divided:
-        if _is_close(w0, arms.known[0, n], arms.error[0, n]):
+        if _is_too_close_to_divide(w0, arms.known_eigenvalues[0, n], arms.known_errors[0, n]):
             return False
-        L -= 1 / (w0 - arms.known[0, n])
+        L -= 1 / (w0 - arms.known_eigenvalues[0, n])
     wave = (0j, 0j)
     if radius <= ARM_COUNT_SETTINGS.max_wave_radius * w0.imag:
         samples = ArmSamples(arms.squares[0], arms.weights)
         wave = (dominant_wave(w0, samples), slope_of_wave(w0, samples))
     node = LineNode(w0, value.D, value.S, L, divided, wave)
-    number = len(arms.known)
+    number = len(arms.known_eigenvalues)
     is_free = True
     for k in range(1, number + 1):  # the ends before the middle arm, because f changes most at the ends
-        is_free = is_free and _changes_little(node, radius, k % number, arms)
+        is_free = is_free and _has_small_change(node, radius, k % number, arms)
     return is_free
 
 
 @compiled
-def _is_close(v: complex, w: complex, error: float) -> bool:
+def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
     """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
     return not abs(v - w) > max(
-        NO_CROSSING_SETTINGS.min_known_distance * abs(v), NO_CROSSING_SETTINGS.known_errors * error
+        NO_CROSSING_SETTINGS.min_known_distance * abs(v), NO_CROSSING_SETTINGS.min_distance_in_errors * error
     )
 
 
 @compiled
-def _changes_little(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
+def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInterval) -> bool:
     """Whether |f(v, p)/f(w0, q) - 1| is below 1, divided by the safety factors, at the points of the circle
     and for arm number `arm`; False if a point is too close to a known eigenvalue."""
     samples = ArmSamples(arms.squares[arm], arms.weights)
@@ -199,10 +203,10 @@ def _changes_little(node: LineNode, radius: float, arm: int, arms: ArmsOfInterva
         if node.wave[0] != 0:
             h += dominant_wave(v, samples) - node.wave[0]
         ratio = D / node.D * cmath.exp(S - node.S - h)
-        for n in node.divided:
-            if _is_close(v, arms.known[arm, n], arms.error[arm, n]):
+        for n in node.divided_indices:
+            if _is_too_close_to_divide(v, arms.known_eigenvalues[arm, n], arms.known_errors[arm, n]):
                 return False
-            ratio *= (node.w - arms.known[0, n]) / (v - arms.known[arm, n])
+            ratio *= (node.w - arms.known_eigenvalues[0, n]) / (v - arms.known_eigenvalues[arm, n])
         if not abs(ratio - 1) <= NO_CROSSING_SETTINGS.max_change:
             return False
     return True

@@ -26,9 +26,9 @@ from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENT_SETTINGS
 from ...value import DeterminantValue
 from ..determinant import BoundedPropagators
-from ..hull.region import Hull, clearance
+from ..hull.region import Hull, distance_and_normal
 from ..local_waves import ArmSamples
-from ..value import chain_size, determinant_along_chain
+from ..value import determinant_along_chain, log_modulus_by_chain
 from .dominant_wave import dominant_wave, slope_of_wave
 from .settings import ARM_COUNT_SETTINGS
 
@@ -50,7 +50,7 @@ class PhaseNode(NamedTuple):
 
 
 @compiled
-def tangent(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
+def tangent_of_log(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
     Phi, slope = node.wave
     ahead = (node.L - slope) * (v - node.w)
@@ -79,7 +79,7 @@ def phase_node(
         away = w - known[n]
         direction *= away.conjugate() / abs(away)
         L -= 1 / away
-    distance, normal = clearance(complex(w.real, abs(w.imag)), hull.a, hull.c)
+    distance, normal = distance_and_normal(complex(w.real, abs(w.imag)), hull.a, hull.c)
     reach = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
@@ -105,7 +105,7 @@ def _node_inside(
     unit = min(trial[0], ARM_COUNT_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
     smallest = ARM_COUNT_SETTINGS.smallest_radius * unit
     room = ARM_COUNT_SETTINGS.max_change - ARM_COUNT_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
-    here = math.log(abs(value.D)) + value.S - _log_of_known(w, known)
+    here = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known)
     best = node
     rho = max(trial[1], smallest)
     while rho >= smallest:
@@ -119,8 +119,8 @@ def _node_inside(
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in ARM_COUNT_SETTINGS.directions:
             v = w + rho * direction
-            log = chain_size(v, W, propagators) - _log_of_known(v, known)
-            size = max(size, log - tangent(tried, v, samples).real)
+            log = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known)
+            size = max(size, log - tangent_of_log(tried, v, samples).real)
             M = ARM_COUNT_SETTINGS.between_points_factor * math.exp(
                 min(size - here, EXPONENT_SETTINGS.max_exponent)
             )
@@ -150,7 +150,7 @@ def _reach_of_circle(rho: float, M: float, room: float) -> float:
 
 
 @compiled
-def _log_of_known(v: complex, known: Complex) -> float:
+def _log_of_distance_product(v: complex, known: Complex) -> float:
     """log prod |v - w_n| over the known eigenvalues w_n, (n,)."""
     total = 0.0
     for n in range(len(known)):

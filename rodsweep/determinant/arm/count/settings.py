@@ -90,7 +90,7 @@ ARM_COUNT_SETTINGS = ArmCountSettings()
 class NoCrossingSettings(CompiledSettings):
     """Settings for the discs that cover a line, and for the arms at which D is evaluated."""
 
-    arms: int = 5
+    arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
     between_arms_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
@@ -100,28 +100,28 @@ class NoCrossingSettings(CompiledSettings):
     min_known_distance: float = 1e-6
     """A circle is not used if one of its points v has a known eigenvalue closer than this number times |v|:
     D and the divisor are then both inaccurate."""
-    known_errors: float = 1e3
+    min_distance_in_errors: float = 1e3
     """As `min_known_distance`, in errors of the known eigenvalue."""
     overlap: float = 0.98
     """Length of the line that a disc covers on each side of its node, divided by the radius."""
-    smallest_fitting: float = 0.25
+    min_fitting_fraction: float = 0.25
     """If the largest |w| of the propagators allows only a disc below this fraction of the radius, propagators
     for larger |w| are made."""
-    headroom: float = 2.0
+    largest_w_factor: float = 2.0
     """Propagators are made for |w| up to this number times the largest |w| on the line inside the hull."""
-    growth: float = 2.0
+    radius_growth: float = 2.0
     """Radius of the first disc tried at a node, divided by the radius of the previous disc."""
-    shrinkage: float = 1.5
+    radius_divisor: float = 1.5
     """After a disc on whose circle f changes too much, the radius is divided by this number."""
     min_radius: float = 0.05
     """Radius below which a disc is not tried, in units of the length over which D changes near the real
     axis."""
 
     ranges: ClassVar = {
-        "arms": (2, math.inf),
+        "arm_count": (2, math.inf),
         "between_arms_factor": (1.0, math.inf),
         "overlap": (0.0, 1.0),
-        "shrinkage": (1.0, math.inf),
+        "radius_divisor": (1.0, math.inf),
     }
 
     @property

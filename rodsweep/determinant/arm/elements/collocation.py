@@ -19,9 +19,9 @@ from s^m = 1 at the clamp, all other minors 0, to D = s^m at the tip. Integratin
 would lose the second solution in the rounding errors of the growing exponential; the minors do not.
 
 Elements are solved by collocation at their Gauss points, for one power of w after another: the terms of the
-propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENTS.lanes` elements are solved together. The last
-axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops over it are vector
-instructions. STAGES, LANES and MAX_TERMS are the settings of these names.
+propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENTS.lane_count` elements are solved together. The
+last axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops over it are
+vector instructions. STAGES, LANES and MAX_TERMS are the settings of these names.
 """
 
 from typing import NamedTuple
@@ -70,17 +70,17 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
     of the elements, in L, (elements,).
     """
     n, elements = local.shape[1:3]
-    batches = -(-elements // ARM_ELEMENTS.lanes)
-    coefficients = np.empty((n, batches, 6, ARM_ELEMENTS.stages, ARM_ELEMENTS.lanes))
+    batches = -(-elements // ARM_ELEMENTS.lane_count)
+    coefficients = np.empty((n, batches, 6, ARM_ELEMENTS.stages, ARM_ELEMENTS.lane_count))
     for arm in range(n):
         for b in range(batches):
-            for lane in range(ARM_ELEMENTS.lanes):
+            for lane in range(ARM_ELEMENTS.lane_count):
                 # The last batch is filled up with the last element.
-                e = min(b * ARM_ELEMENTS.lanes + lane, elements - 1)
+                e = min(b * ARM_ELEMENTS.lane_count + lane, elements - 1)
                 for q in range(6):
                     for i in range(ARM_ELEMENTS.stages):
                         coefficients[arm, b, q, i, lane] = local[q, arm, e, i] * lengths[e]
-    terms = np.zeros((n, batches * ARM_ELEMENTS.lanes, ARM_ELEMENTS.max_terms, PADDED))
+    terms = np.zeros((n, batches * ARM_ELEMENTS.lane_count, ARM_ELEMENTS.max_terms, PADDED))
     most = fill_terms(F, W, coefficients, method, terms)
     if most > ARM_ELEMENTS.max_terms:
         return terms[:, :, :0].copy()
@@ -103,24 +103,24 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
     turning = np.empty((ARM_ELEMENTS.stages, 1 + ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
     for arm in range(len(F)):
         for b in range(coefficients.shape[1]):
-            _repeat(coefficients[arm, b], local)
-            for lane in range(ARM_ELEMENTS.lanes):
+            _repeat_per_initial_value(coefficients[arm, b], local)
+            for lane in range(ARM_ELEMENTS.lane_count):
                 own = coefficients[arm, b, :, :, lane]
                 eliminated = elimination_matrix(F[arm], own[C3], own[G], method.integrals)
                 _copy_to_simd_lane(eliminated, lane, turning)
-            here = terms[arm, b * ARM_ELEMENTS.lanes : (b + 1) * ARM_ELEMENTS.lanes]
+            here = terms[arm, b * ARM_ELEMENTS.lane_count : (b + 1) * ARM_ELEMENTS.lane_count]
             most = max(most, _fill_batch((F[arm], W), local, (method, turning), (values, rates), here))
     return most
 
 
 @compiled_for_vectors
-def _repeat(coefficients: Array, local: Array) -> None:
+def _repeat_per_initial_value(coefficients: Array, local: Array) -> None:
     """Writes coefficients, (6, STAGES, LANES), once for each initial value into local, (6, STAGES, WIDTH)."""
     for q in range(6):
         for i in range(ARM_ELEMENTS.stages):
             for k in range(MINORS):
-                for lane in range(ARM_ELEMENTS.lanes):
-                    local[q, i, k * ARM_ELEMENTS.lanes + lane] = coefficients[q, i, lane]
+                for lane in range(ARM_ELEMENTS.lane_count):
+                    local[q, i, k * ARM_ELEMENTS.lane_count + lane] = coefficients[q, i, lane]
 
 
 @compiled_for_vectors
@@ -131,7 +131,7 @@ def _copy_to_simd_lane(eliminated: Array, lane: int, turning: Array) -> None:
     for i in range(ARM_ELEMENTS.stages):
         for j in range(1 + ARM_ELEMENTS.stages):
             for k in range(MINORS):
-                turning[i, j, k * ARM_ELEMENTS.lanes + lane] = eliminated[i, j]
+                turning[i, j, k * ARM_ELEMENTS.lane_count + lane] = eliminated[i, j]
 
 
 @compiled
@@ -175,7 +175,7 @@ def _fill_batch(
         _integrate(Q, rates[YM], values[YM])
         add_start_value(YM, start, values)
         fill_y_theta_rates(local, values, rates)
-        if _end_values(weights, rates, n, terms):
+        if _write_end_terms(weights, rates, n, terms):
             return n + 1
     return terms.shape[1] + 1
 
@@ -211,30 +211,30 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
 
 
 @compiled
-def _end_values(weights: Array, rates: Array, n: int, terms: Array) -> bool:
+def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool:
     """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
     negligible.
 
     terms: (LANES, MAX_TERMS, PADDED). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
     """
     end = np.zeros((MINORS, ARM_ELEMENTS.width))
-    _add_ends(weights, rates, end)
+    _add_end_integrals(weights, rates, end)
     done = True
-    for lane in range(ARM_ELEMENTS.lanes):
+    for lane in range(ARM_ELEMENTS.lane_count):
         size = 0.0
         first = 0.0
         for row in range(MINORS):
             for k in range(MINORS):
-                entry = end[row, k * ARM_ELEMENTS.lanes + lane] + (1.0 if n == 0 and k == row else 0.0)
+                entry = end[row, k * ARM_ELEMENTS.lane_count + lane] + (1.0 if n == 0 and k == row else 0.0)
                 terms[lane, n, MINORS * k + row] = entry
                 size = max(size, abs(entry))
                 first = max(first, abs(terms[lane, 0, MINORS * k + row]))
-        done = done and size <= ARM_ELEMENTS.negligible * first
+        done = done and size <= ARM_ELEMENTS.negligible_term * first
     return done
 
 
 @compiled_for_vectors
-def _add_ends(weights: Array, rates: Array, end: Array) -> None:
+def _add_end_integrals(weights: Array, rates: Array, end: Array) -> None:
     """Adds the integrals of rates, (MINORS, STAGES, WIDTH), over the elements to `end`, (MINORS, WIDTH).
     weights: Gauss weights, (STAGES,).
     """

@@ -17,13 +17,13 @@ from .settings import ARM_ELEMENTS
 @compiled
 def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks: Array) -> Array:
     """Boundaries of elements for |w| <= W, increasing from 0 to 1. The elements between two breaks have equal
-    integrals of `_density`.
+    integrals of `_elements_per_length`.
 
     squares: of n arms as in `ArmSamples`, (4, n, points). tapers: (n,). points: midpoints of equal parts of
     the intervals between breaks, (points,). breaks: of the profile, (pieces + 1,). If an interval needs more
     than `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
     """
-    density = _density(W, squares, tapers, points)
+    density = _elements_per_length(W, squares, tapers, points)
     pieces = len(breaks) - 1
     parts = len(points) // pieces
     edges = [0.0]
@@ -49,7 +49,7 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
 
 
 @compiled
-def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
+def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array) -> Array:
     """Number of elements per length that the local exponents and the taper require, at the points of n arms,
     (points,).
 
@@ -61,11 +61,13 @@ def _density(W: float, squares: Array, tapers: Array, points: Array) -> Array:
         for arm in range(squares.shape[1]):
             drag, load, rate, bend = squares[:, arm, i]
             waves = max(waves, drag * W + abs(load) + 2 * math.sqrt(W * (abs(rate) + bend * W)))
-        density[i] = math.sqrt(waves) / ARM_ELEMENTS.longest
+        density[i] = math.sqrt(waves) / ARM_ELEMENTS.max_exponent
         for taper in (tapers.min(), tapers.max()):
             if taper != 1:
                 apex = 1 / (1 - taper)
-                density[i] = max(density[i], 1 / (ARM_ELEMENTS.to_apex * abs(apex - points[i])))
+                density[i] = max(
+                    density[i], 1 / (ARM_ELEMENTS.max_length_over_apex_distance * abs(apex - points[i]))
+                )
     return density
 
 
@@ -75,7 +77,7 @@ def halved_where_coarse(edges: Array, local: Array) -> Array:
 
     local: coefficients of n arms at the Gauss points, (6, n, elements, stages).
     """
-    coarse = _is_coarse(local, _last_terms(ARM_ELEMENTS.stages))
+    coarse = _is_coarse(local, _last_legendre_matrix(ARM_ELEMENTS.stages))
     if not coarse.any():
         return edges
     middles = (edges[:-1] + edges[1:])[coarse] / 2
@@ -83,7 +85,7 @@ def halved_where_coarse(edges: Array, local: Array) -> Array:
 
 
 @cache
-def _last_terms(stages: int) -> Array:
+def _last_legendre_matrix(stages: int) -> Array:
     """Matrix from values at the Gauss points to the two highest Legendre coefficients, (2, stages)."""
     x, weights = np.polynomial.legendre.leggauss(stages)
     last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
@@ -95,7 +97,7 @@ def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
     """Mask of the elements, (elements,), that do not resolve an arm: one of the last two Legendre
     coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `largest_tail` times the largest value.
 
-    local: coefficients of n arms, (6, n, elements, stages). last_terms: result of `_last_terms`.
+    local: coefficients of n arms, (6, n, elements, stages). last_terms: result of `_last_legendre_matrix`.
     """
     quantities, arms, elements, stages = local.shape
     coarse = np.zeros(elements, np.bool_)

@@ -17,7 +17,7 @@ def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
     """
     stages = ARM_ELEMENTS.stages
     # The matrix, the right-hand sides 1 and Q, and columns of zeros: rows are whole vector instructions.
-    system = np.zeros((stages, 2 * stages + ARM_ELEMENTS.lanes))
+    system = np.zeros((stages, 2 * stages + ARM_ELEMENTS.lane_count))
     row = np.empty(system.shape[1])
     row[:stages] = g
     _add_twice_integrated(F, c3, row, Q, system)
@@ -25,7 +25,7 @@ def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
         system[i, i] += 1.0
         system[i, stages] = 1.0
         system[i, stages + 1 : 2 * stages + 1] = Q[i]
-    _solve(system, row)
+    _solve_linear_system(system, row)
     return system[:, stages : 2 * stages + 1]
 
 
@@ -43,7 +43,7 @@ def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array
 
 
 @compiled_for_vectors
-def _solve(system: Array, row: Array) -> None:
+def _solve_linear_system(system: Array, row: Array) -> None:
     """Solves A x = right in place for a system (A, right), (STAGES, columns), by elimination with pivoting.
 
     row: (columns,), overwritten.

@@ -1,11 +1,11 @@
 """Propagators of elements at one z = w/W, from polynomials in z, and their products with minors.
 
-A propagator has the ENTRIES of its columns one after the other, and then zeros up to PADDED: loops over
-PADDED entries are whole vector instructions. Real and imaginary parts are rows of their own, so that a sum
-over powers of z is a vector instruction over the entries. At real z there are no imaginary parts.
+A propagator has the PROPAGATOR_ENTRIES of its columns one after the other, and then zeros up to PADDED: loops
+over PADDED entries are whole vector instructions. Real and imaginary parts are rows of their own, so that a
+sum over powers of z is a vector instruction over the entries. At real z there are no imaginary parts.
 
-powers: result of `powers_of`, (terms, 4). polynomial: coefficients of an element, (at least as many terms,
-PADDED). Minors: (2, MINORS), real and imaginary parts.
+powers: result of `powers_and_derivatives`, (terms, 4). polynomial: coefficients of an element, (at least as
+many terms, PADDED). Minors: (2, MINORS), real and imaginary parts.
 """
 
 import numpy as np
@@ -23,13 +23,13 @@ RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 def _needed_terms(size: float, terms: int) -> int:
     """Number of powers of z that are not negligible in C and dC/dz at |z| = size, at most `terms`."""
     needed = terms
-    while needed > 2 and size <= ARM_ELEMENTS.largest_of_terms[needed - 1]:
+    while needed > 2 and size <= ARM_ELEMENTS.largest_z_by_term_count[needed - 1]:
         needed -= 1
     return needed
 
 
 @compiled
-def powers_of(z: complex, terms: int) -> Array:
+def powers_and_derivatives(z: complex, terms: int) -> Array:
     """The powers z^n that are not negligible, and their derivatives n z^(n-1): real and imaginary parts,
     (n, 4).
 
@@ -139,7 +139,7 @@ def multiply(C: Array, x: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def multiply_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+def multiply_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
     (2, MINORS).
     """
@@ -168,7 +168,7 @@ def multiply_real(C: Array, x: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def multiply_real_both(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+def multiply_real_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for real propagators C and change, (PADDED,), and real minors t, x, out,
     (MINORS,).
     """
@@ -182,7 +182,7 @@ def multiply_real_both(C: Array, t: Array, change: Array, x: Array, out: Array) 
 
 
 @compiled
-def size_of_products(C: Array, x: Array) -> float:
+def modulus_sum_of_products(C: Array, x: Array) -> float:
     """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element.
 
     C: propagator, (2 or more, PADDED). x: minors, (2, MINORS). Near a root of D the terms cancel, and the
@@ -196,8 +196,8 @@ def size_of_products(C: Array, x: Array) -> float:
 
 
 @compiled_for_vectors
-def size_of_real_products(C: Array, x: Array) -> float:
-    """`size_of_products` for a real propagator C, (PADDED,), and real minors x, (MINORS,)."""
+def modulus_sum_of_real_products(C: Array, x: Array) -> float:
+    """`modulus_sum_of_products` for a real propagator C, (PADDED,), and real minors x, (MINORS,)."""
     total = 0.0
     for j in range(MINORS):
         total += abs(C[MINORS * j + SM] * x[j])

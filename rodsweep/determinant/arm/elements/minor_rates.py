@@ -12,10 +12,11 @@ from .settings import ARM_ELEMENTS, MINORS
 
 SM, TS, TM, YT, YM = range(MINORS)
 """Row indices of the minors s^m, theta^s, theta^m, y^theta and y^m."""
-ENTRIES = MINORS * MINORS
+PROPAGATOR_ENTRIES = MINORS * MINORS
 """Number of entries of a propagator, a matrix that multiplies the minors."""
 PADDED = 28
-"""Length of a stored propagator: its ENTRIES, then zeros up to a multiple of 4, for vector instructions."""
+"""Length of a stored propagator: its PROPAGATOR_ENTRIES, then zeros up to a multiple of 4, for vector
+instructions."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Row indices of the `LocalCoefficients` nu, c2, c3, gamma2, gamma3 and g."""
 
@@ -26,8 +27,8 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
     of the solution whose start value is 1 for this minor and 0 for all other minors.
     """
     for i in range(ARM_ELEMENTS.stages):
-        for lane in range(ARM_ELEMENTS.lanes):
-            values[minor, i, minor * ARM_ELEMENTS.lanes + lane] += start
+        for lane in range(ARM_ELEMENTS.lane_count):
+            values[minor, i, minor * ARM_ELEMENTS.lane_count + lane] += start
 
 
 @compiled_for_vectors
@@ -36,8 +37,8 @@ def add_eliminated_start_value(minor: int, start: float, turning: Array, values:
     values: (MINORS, STAGES, WIDTH). turning: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`.
     """
     for i in range(ARM_ELEMENTS.stages):
-        for lane in range(ARM_ELEMENTS.lanes):
-            c = minor * ARM_ELEMENTS.lanes + lane
+        for lane in range(ARM_ELEMENTS.lane_count):
+            c = minor * ARM_ELEMENTS.lane_count + lane
             values[minor, i, c] += start * turning[i, 0, c]
 
 
@@ -65,8 +66,8 @@ def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates
     for i in range(ARM_ELEMENTS.stages):
         for c in range(ARM_ELEMENTS.width):
             rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENTS.lanes):
-            c = TM * ARM_ELEMENTS.lanes + lane
+        for lane in range(ARM_ELEMENTS.lane_count):
+            c = TM * ARM_ELEMENTS.lane_count + lane
             rates[TS, i, c] += F * start * local[C3, i, c]
 
 
@@ -92,8 +93,8 @@ def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, ra
             rates[TS, i, c] += F * local[C3, i, c] * turn
             rates[YM, i, c] += (local[G, i, c] + local[NU, i, c]) * turn
             rates[YM, i, c] += local[C2, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENTS.lanes):
-            c = TM * ARM_ELEMENTS.lanes + lane
+        for lane in range(ARM_ELEMENTS.lane_count):
+            c = TM * ARM_ELEMENTS.lane_count + lane
             rates[TS, i, c] -= F * start * local[C3, i, c]  # contained in `add_theta_s_rates`
 
 

@@ -32,7 +32,7 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 
 @cache
-def _method() -> IntegrationMatrices:
+def _collocation_method() -> IntegrationMatrices:
     """The collocation method of `ARM_ELEMENTS.stages` Gauss points, as arrays for compiled code."""
     _, integrals, weights = gauss_method(ARM_ELEMENTS.stages)
     return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
@@ -45,7 +45,7 @@ def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: flo
     F: forces, (n,). local: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths: of
     elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
     """
-    terms = propagator_terms(np.array(F, float), W, local, lengths, _method())
+    terms = propagator_terms(np.array(F, float), W, local, lengths, _collocation_method())
     if not terms.size:
         raise FloatingPointError(
             f"{ARM_ELEMENTS.max_terms} powers of w do not resolve the elements of this arm at |w| = {W:g}"

@@ -14,10 +14,10 @@ MINORS = 5
 class ArmElementSettings(CompiledSettings):
     """Settings for the elements of an arm and for the cache of propagators."""
 
-    longest: float = 3.2
+    max_exponent: float = 3.2
     """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
     points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
-    to_apex: float = 0.5
+    max_length_over_apex_distance: float = 0.5
     """Largest length of an element divided by the distance from the apex of the cone, where stiffnesses
     vanish."""
     largest_tail: float = 1e-9
@@ -26,48 +26,50 @@ class ArmElementSettings(CompiledSettings):
     fraction."""
     max_halvings: int = 12
     """Maximum number of halvings of an element, down to 2e-4 of the first length."""
-    smallest_level: float = 16.0
+    min_largest_w: float = 16.0
     """Smallest bound W of |w|; for smaller |w| the load and the taper, not w, determine the length of
     elements."""
-    headroom: float = 1.1
-    """New elements are made for W = headroom |w|, so that they can be reused for slightly larger |w|."""
-    highest: float = 1e3
+    largest_w_factor: float = 1.1
+    """New elements are made for W = largest_w_factor |w|, so that they can be reused for slightly larger
+    |w|."""
+    max_reuse_ratio: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
-    highest_compared: float = 1.5
-    """Value of `highest` for comparisons of D on different elements; near 1, so that the elements differ."""
+    max_compared_reuse_ratio: float = 1.5
+    """Value of `max_reuse_ratio` for comparisons of D on different elements; near 1, so that the elements
+    differ."""
     max_elements: int = 4000
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""
     stages: int = 12
     """Number of Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth
     allows for coefficients that vary. A multiple of 4, as sums take four terms at a time."""
-    lanes: int = 4
+    lane_count: int = 4
     """Number of elements that are solved together by vector instructions."""
     max_terms: int = 28
     """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
-    negligible: float = 1e-18
+    negligible_term: float = 1e-18
     """The series of a propagator in w ends at the first term below this fraction of the leading term."""
-    arms_kept: int = 16
+    max_cached_arms: int = 16
     """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
 
-    ranges: ClassVar = {"headroom": (1.0, math.inf)}
+    ranges: ClassVar = {"largest_w_factor": (1.0, math.inf)}
 
     @property
     def width(self) -> int:
         """Length of the last axis of arrays over elements: number of initial values times number of lanes."""
-        return MINORS * self.lanes
+        return MINORS * self.lane_count
 
     @property
-    def largest_of_terms(self) -> tuple[float, ...]:
+    def largest_z_by_term_count(self) -> tuple[float, ...]:
         """The largest |z| at which the first n powers of z are enough, for n = 0, 1, 2, ...
 
-        At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `longest`. By Cauchy's bound
-        with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a term
-        of the derivative is at most `negligible`, and each term at most half of the previous term.
+        At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `max_exponent`. By Cauchy's
+        bound with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a
+        term of the derivative is at most `negligible_term`, and each term at most half of the previous term.
         """
-        factors = [(math.e * self.longest / (2 * n)) ** 2 for n in range(2, self.max_terms)]
+        factors = [(math.e * self.max_exponent / (2 * n)) ** 2 for n in range(2, self.max_terms)]
         sizes = [
-            min((self.negligible / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
+            min((self.negligible_term / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
             for n, factor in enumerate(factors, start=2)
         ]
         return (0.0, 0.0, *sizes)

@@ -63,20 +63,20 @@ def averaged_regions(u: Array, local: Array, F: float) -> Array:
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     row = 0
     for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
-        points = _with_places_beside_jumps(u, h)
-        places = _places(points, u)
+        points = _with_points_beside_jumps(u, h)
+        places = _grid_positions(points, u)
         there = np.empty((6, len(points)))
         for k in range(6):
-            there[k] = _interpolated(places, local[k])
-        window = (_places(points - h, points), _places(points + h, points))
+            there[k] = _interpolate_at_positions(places, local[k])
+        window = (_grid_positions(points - h, points), _grid_positions(points + h, points))
         for f in AVERAGED_WEIGHT_SETTINGS.factors:
-            _fill(regions[row : row + 2], points, there, window, (F, f, h))
+            _write_regions_of_trial(regions[row : row + 2], points, there, window, (F, f, h))
             row += 2
     return regions
 
 
 @compiled
-def _with_places_beside_jumps(u: Array, h: float) -> Array:
+def _with_points_beside_jumps(u: Array, h: float) -> Array:
     """The points u of an arm, (points,), and two further points near each u at the distance h from a jump;
     sorted.
     """
@@ -95,7 +95,7 @@ def _with_places_beside_jumps(u: Array, h: float) -> Array:
 
 
 @compiled
-def _places(x: Array, grid: Array) -> GridPositions:
+def _grid_positions(x: Array, grid: Array) -> GridPositions:
     """Positions of x, (n,), increasing, in the intervals of `grid`; x outside is moved to the nearer end."""
     interval = np.empty(len(x), np.int64)
     share = np.empty(len(x))
@@ -110,7 +110,7 @@ def _places(x: Array, grid: Array) -> GridPositions:
 
 
 @compiled
-def _interpolated(places: GridPositions, values: Array) -> Array:
+def _interpolate_at_positions(places: GridPositions, values: Array) -> Array:
     """Values at positions in a grid, (n,), interpolated linearly from `values` at the grid points."""
     out = np.empty(len(places.share))
     for n in range(len(out)):
@@ -120,7 +120,7 @@ def _interpolated(places: GridPositions, values: Array) -> Array:
 
 
 @compiled
-def _fill(
+def _write_regions_of_trial(
     regions: Array,
     u: Array,
     local: Array,
@@ -142,7 +142,7 @@ def _fill(
         log_t[i] = math.log(g / (nu + f * abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)))
         if i > 0:
             integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    behind, ahead, means = _averaged(u, log_t, integral, window, h)
+    behind, ahead, means = _averaged_log_weight(u, log_t, integral, window, h)
     split = 0.0
     whole = 0.0
     bend = 0.0
@@ -168,7 +168,7 @@ def _fill(
 
 
 @compiled
-def _averaged(
+def _averaged_log_weight(
     u: Array, log_t: Array, integral: Array, window: tuple[GridPositions, GridPositions], h: float
 ) -> tuple[Array, Array, Array]:
     """Returns (log t at u - h, log t at u + h, integral of log t over [u - h, u + h]), all (points,).
@@ -176,11 +176,11 @@ def _averaged(
     u: points of the arm. log_t: log t at u. integral: integral of log t from the first point to every point.
     All (points,). window: positions of u - h and of u + h in u.
     """
-    behind = _interpolated(window[0], log_t)
-    ahead = _interpolated(window[1], log_t)
+    behind = _interpolate_at_positions(window[0], log_t)
+    ahead = _interpolate_at_positions(window[1], log_t)
     # Beyond its ends the arm continues with its end values, so that every window has the same width.
-    means = _interpolated(window[1], integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
-    means -= _interpolated(window[0], integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
+    means = _interpolate_at_positions(window[1], integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
+    means -= _interpolate_at_positions(window[0], integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
     return behind, ahead, means
 
 

@@ -19,8 +19,8 @@ a convex region bounded by a parabola. Of several alpha the one with the smalles
 = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
 `rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.margin` allows for the
-arm between these points."""
+Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.enlargement` allows for
+the arm between these points."""
 
 from collections.abc import Sequence
 from functools import cache, lru_cache
@@ -34,70 +34,74 @@ from ....model.compiled.compilation import compiled
 from ....model.material.build import Build
 from ....model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
-from .region import HULL_SETTINGS, NO_BOUND, Hull, PathHulls
+from .region import HULL_SETTINGS, UNBOUNDED_HULL, Hull, PathHulls
 from .weights import clamp_integrals, constant_weights, least_squared_norm, varying_weight_norms
 
 
 def hull_of(rod: Rod) -> Hull:
-    """The smallest hull found for the spectrum of an arm; `NO_BOUND` if no bound is found."""
-    return _hull(_arms([rod]))
+    """The smallest hull found for the spectrum of an arm; `UNBOUNDED_HULL` if no bound is found."""
+    return _hull_of_sampled_arms(_sample_arms([rod]))
 
 
 def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
     """The hulls of all arms of a path between neighbouring values of p, (k,); rods: the arms at these values.
 
-    Extremes along the path are evaluated at these values only; `HULL_SETTINGS.margin` allows for the arms
-    between."""
-    arms = _arms(rods)
-    hulls = [_hull(_select_arms(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+    Extremes along the path are evaluated at these values only; `HULL_SETTINGS.enlargement` allows for the
+    arms between."""
+    arms = _sample_arms(rods)
+    hulls = [_hull_of_sampled_arms(_select_arms(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
-def _hull(arms: "SampledArms") -> Hull:
+def _hull_of_sampled_arms(arms: "SampledArms") -> Hull:
     largest = 1 - HULL_SETTINGS.min_remainder
-    a, c = _smallest_region(arms.F, arms.lengths, arms.local, arms.averaged, _chebyshev(), largest)
-    return Hull((1 + HULL_SETTINGS.margin) * a, c) if isfinite(a) else NO_BOUND
+    a, c = _smallest_region(
+        arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), largest
+    )
+    return Hull((1 + HULL_SETTINGS.enlargement) * a, c) if isfinite(a) else UNBOUNDED_HULL
 
 
 class SampledArms(NamedTuple):
     """Coefficients of n arms of one build at Chebyshev points, from which hulls are computed.
 
     F: forces, (n,). lengths: of the intervals between breaks, (pieces,). local: coefficients,
-    (6, n, pieces, points), with increasing u. averaged: `averaged_regions` of each arm, (n, trials, 2), inf
+    (6, n, pieces, points), with increasing u. averaged_regions: of each arm, (n, trials, 2), inf
     for an arm that allows none; (n, 0, 2) for arms without jumps.
     """
 
     F: Array
     lengths: Array
     local: Array
-    averaged: Array
+    averaged_regions: Array
 
 
-def _arms(rods: Sequence[Rod]) -> SampledArms:
+def _sample_arms(rods: Sequence[Rod]) -> SampledArms:
     build = rods[0].build
-    lengths, u = _points_of(build)
+    lengths, u = _chebyshev_points_of_build(build)
     F = np.array([rod.F for rod in rods])
     local = np.array(Rod.local_of_all(rods, u))
-    averaged = np.empty((len(rods), 0, 2)) if build.continuous else _averaged_of_each(F, lengths, local)
+    averaged = (
+        np.empty((len(rods), 0, 2)) if build.continuous else _averaged_regions_by_arm(F, lengths, local)
+    )
     return SampledArms(F, lengths, local, averaged)
 
 
-@lru_cache(maxsize=HULL_SETTINGS.max_builds)
-def _points_of(build: Build) -> tuple[Array, Array]:
+@lru_cache(maxsize=HULL_SETTINGS.max_cached_builds)
+def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
     """(lengths of the intervals between breaks, (pieces,); Chebyshev points u of these intervals, (pieces,
     points))."""
-    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev().points
+    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
     return lengths * (1 - 2 * HULL_SETTINGS.end_distance), u
 
 
-def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
+def _averaged_regions_by_arm(F: Array, lengths: Array, local: Array) -> Array:
     """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
     g > 0 everywhere. F, lengths, local: as in `SampledArms`.
     """
     starts = np.cumsum(lengths) - lengths
-    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev().points
+    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
     u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     along = local.reshape(6, len(F), -1)
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
@@ -109,7 +113,7 @@ def _averaged_of_each(F: Array, lengths: Array, local: Array) -> Array:
 def _select_arms(arms: SampledArms, chosen: slice) -> SampledArms:
     """The samples of the arms with the indices `chosen`."""
     local = np.ascontiguousarray(arms.local[:, chosen])
-    return arms._replace(F=arms.F[chosen], local=local, averaged=arms.averaged[chosen])
+    return arms._replace(F=arms.F[chosen], local=local, averaged_regions=arms.averaged_regions[chosen])
 
 
 class ChebyshevMatrices(NamedTuple):
@@ -126,7 +130,7 @@ class ChebyshevMatrices(NamedTuple):
 
 
 @cache
-def _chebyshev() -> ChebyshevMatrices:
+def _chebyshev_matrices() -> ChebyshevMatrices:
     x = -np.cos(np.pi * np.arange(HULL_SETTINGS.points) / (HULL_SETTINGS.points - 1))
     to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
@@ -143,7 +147,7 @@ def _smallest_region(
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
     if no bound is found.
 
-    F, lengths, local, averaged: as in `SampledArms`. largest: bound of c.
+    F, lengths, local, averaged_regions: as in `SampledArms`. largest: bound of c.
     """
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0
@@ -160,13 +164,13 @@ def _smallest_region(
         for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):
             best = _smaller_region(best, (sqrt(square), 0.0), largest)
     for trial in range(averaged.shape[1]):
-        c = (1 + HULL_SETTINGS.margin) * averaged[:, trial, 1].max()
+        c = (1 + HULL_SETTINGS.enlargement) * averaged[:, trial, 1].max()
         best = _smaller_region(best, (averaged[:, trial, 0].max(), c), largest)
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = clamp_integrals(alphas, F, lengths, local, chebyshev.integral)
     for k in range(len(alphas)):
-        c = (1 + HULL_SETTINGS.margin) * sqrt(integrals[k]) / 2
+        c = (1 + HULL_SETTINGS.enlargement) * sqrt(integrals[k]) / 2
         best = _smaller_region(best, (sqrt(alphas[k] * push), c), largest)
     return best
 
@@ -176,12 +180,12 @@ def _smaller_region(
     best: tuple[float, float], other: tuple[float, float], largest: float
 ) -> tuple[float, float]:
     """The smaller of the regions (a, c) `best` and `other`, by the measure a^2 (1 +
-    (c/HULL_SETTINGS.wide_c)^4).
+    (c/c_doubling_measure)^4).
 
     `best` is returned if `other` has c >= `largest`.
     """
     if not other[1] < largest:
         return best
-    here = best[0] ** 2 * (1 + (best[1] / HULL_SETTINGS.wide_c) ** 4)
-    there = other[0] ** 2 * (1 + (other[1] / HULL_SETTINGS.wide_c) ** 4)
+    here = best[0] ** 2 * (1 + (best[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
+    there = other[0] ** 2 * (1 + (other[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
     return other if there < here else best

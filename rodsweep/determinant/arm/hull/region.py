@@ -17,7 +17,7 @@ class HullSettings(CompiledSettings):
     points: int = 25
     """Number of Chebyshev points of each interval between breaks of the profile, where coefficients are
     evaluated and alpha is differentiated."""
-    margin: float = 0.05
+    enlargement: float = 0.05
     """The constants of a hull are enlarged by this fraction, for extremes between the points and for
     rounding."""
     end_distance: float = 1e-9
@@ -25,8 +25,9 @@ class HullSettings(CompiledSettings):
     the length of the interval, so that no point lies on a jump."""
     min_remainder: float = 0.1
     """Hulls with 1 - c below this number are not used: they are too large to be useful."""
-    wide_c: float = 0.15
-    """The smallest hull is chosen by the measure a^2 (1 + (c/wide_c)^4), which is 2 a^2 at this c."""
+    c_doubling_measure: float = 0.15
+    """The smallest hull is chosen by the measure a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this
+    c."""
     constant_weights: int = 41
     """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm, in
     addition to 1."""
@@ -34,7 +35,7 @@ class HullSettings(CompiledSettings):
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
     supporting_lines: int = 48
     """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
-    max_builds: int = 16
+    max_cached_builds: int = 16
     """Maximum number of builds whose points are cached: it bounds the memory and changes no number."""
     weight_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
     """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
@@ -67,12 +68,12 @@ class Hull(NamedTuple):
         return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
 
 
-NO_BOUND = Hull(inf, 0.0)
+UNBOUNDED_HULL = Hull(inf, 0.0)
 """The whole plane of w, for an arm whose eigenvalues have no a-priori bound."""
 
 
 @compiled
-def clearance(w: complex, a: float, c: float) -> tuple[float, complex]:
+def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]:
     """Returns (distance, normal) for w with Im w >= 0 and the hull with the constants a, c. distance: lower
     bound of the distance of w from the hull, at most 0 if w lies inside. normal: unit vector towards w.
 

@@ -10,8 +10,8 @@ from ....config.arm.axes import PARAMETER_STORED_ALONG
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAGS
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
-from ....model.units import written_in
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE_LOADS
+from ....model.units import value_in_unit
 from ....results.file.view import View
 from ...summary.arm.arm import quantity_words
 
@@ -28,7 +28,7 @@ def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[A
     """
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed.get(name, si)
-    return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
+    return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
 
 
 def quantity_text(view: View, name: str, value: float) -> str:
@@ -44,7 +44,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 def given_quantities(view: View) -> list[str]:
     """Names of the quantities that the user gave for the arm of a file."""
-    return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
+    return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE_LOADS)]
 
 
 def quantity_at_point(view: View, name: str, number: int) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....model.units import compact, written_in
+from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
 from ...tables.rows import quantities_at_points
 from ..arm.quantities import NO_BREAK
@@ -138,11 +138,11 @@ def units_of_points(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> l
     period = max(_largest_in_units(view, "period", places, time) for view, places, time, _ in cycles)
     mean = max(_largest_in_units(view, "injection_mean", places, power) for view, places, _, power in cycles)
     length = views[0].typed.get("length", "m")
-    second = compact(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
-    joule = compact(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
-    watt = compact(mean, "W")[1]
+    second = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
+    joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
+    watt = with_si_prefix(mean, "W")[1]
     names = (length, second, joule, watt)
-    scales = [written_in(1.0, unit, si) for unit, si in zip(names, SI_UNITS, strict=True)]
+    scales = [value_in_unit(1.0, unit, si) for unit, si in zip(names, SI_UNITS, strict=True)]
     columns = zip(lengths, times, energies, powers, strict=True)
     scaled = ([scale * column for scale, column in zip(scales, each, strict=True)] for each in columns)
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....model.parameters import CRUSHING
+from ....model.parameters import CRUSHING_PARAMETERS
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ....results.layouts.rods import has_covering
@@ -243,8 +243,8 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
         found = [at[kinds > 0]]
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    if line in CRUSHING and has_covering(view.config):  # other rods are not crushed at F = k1
-        (other,) = set(CRUSHING) - {line}
+    if line in CRUSHING_PARAMETERS and has_covering(view.config):  # other rods are not crushed at F = k1
+        (other,) = set(CRUSHING_PARAMETERS) - {line}
         found.append(view.point_columns[other][[index]])
     changes = np.concatenate(found)
     return np.unique(changes[np.isfinite(changes)])

@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ....model.arm.drag import DRAGS
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE, SCALE_OF, UNITS
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE_LOADS, SCALE_NAME, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
-from ....model.units import compact, written_in
+from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
 from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.arm import HERTZ, si_variables_of
@@ -57,9 +57,9 @@ def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     """
     typed = next((view.typed[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed), si)
     if typed != si:
-        return written_in(1.0, typed, si), typed
+        return value_in_unit(1.0, typed, si), typed
     if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
-        return compact(largest, si)
+        return with_si_prefix(largest, si)
     return 1.0, si
 
 
@@ -114,10 +114,10 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     unit = _quantity_unit(view, name)
-    factor = written_in(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
+    factor = value_in_unit(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
-    if name in RELATIVE:
+    if name in RELATIVE_LOADS:
         return f"{extent} of flutter"
     return f"{quantity_words(name)} {extent} {unit}".rstrip()
 
@@ -196,7 +196,7 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
     force, (n,).
     """
     load = load_kind(view)
-    return range_in_unit(view, F * _values_at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
+    return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAME[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ....model.arm.neglected import DOUBTFUL_FROM, Validity
+from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY, VALIDITY_NOT_KNOWN
 from ....wording import some_of
 
@@ -47,5 +47,5 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     index = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
     name = NEGLECTED_EFFECTS[int(effect[index])].replace("_", " ")
     size = f"{'up to ' * int(affected.sum() > 1)}{excess[index]:.2g}"
-    doubt = f", more than {DOUBTFUL_FROM:g}" if worst == Validity.doubtful else ""
+    doubt = f", more than {DOUBTFUL_RATIO:g}" if worst == Validity.doubtful else ""
     return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"

@@ -15,7 +15,7 @@ from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import Path
 from ....determinant.roots.newton import LocatedZero
-from ....model.dispersion import expected_growing
+from ....model.dispersion import expected_unstable_count
 from ...spectrum.path.followed_arms import FollowedArms
 from ...spectrum.path.prediction import KnownRoots
 from ...spectrum.problem import ArmProblem
@@ -109,7 +109,7 @@ class ArmPath(PathProblem):
 
     def expected_growing(self, p: float) -> float:
         """Estimate of the number of unstable modes at p."""
-        return expected_growing(self.path.rod_at(p))
+        return expected_unstable_count(self.path.rod_at(p))
 
     def followed(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""

@@ -19,7 +19,7 @@ from ....determinant.arm.completeness import (
 )
 from ....determinant.arm.family import ARM_FAMILY_SETTINGS, ArmFamily, propagators_at
 from ....determinant.arm.hull.region import Hull, PathHulls, hull_at
-from ....determinant.arm.value import ARM_VALUE_SETTINGS, chain_along, determinant_along_chain
+from ....determinant.arm.value import ARM_VALUE_SETTINGS, determinant_along_chain, path_value_by_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
@@ -43,7 +43,7 @@ variable p); both arrays: (elements, terms, PADDED)."""
 @compiled
 def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real."""
-    D, D_w, D_p, _, noise = chain_along(w, level[0], level[1], level[2])
+    D, D_w, D_p, _, noise = path_value_by_chain(w, level[0], level[1], level[2])
     return newton_step(w, D, D_w, D_p, ARM_VALUE_SETTINGS.root_noise * noise)
 
 

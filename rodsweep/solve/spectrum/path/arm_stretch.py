@@ -14,14 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.arm.completeness import (
-    COMPLETENESS,
-    has_conjugate,
-    points_right_of_hull,
-    prove_complete,
-)
+from ....determinant.arm.completeness import COMPLETENESS, has_conjugate, points_right_of_hull, prove_complete
 from ....determinant.arm.determinant import arm_determinant
-from ....determinant.arm.family import ArmFamily, interpolated_family, is_smooth
+from ....determinant.arm.family import ArmFamily, has_smooth_coefficients, interpolated_family
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
@@ -183,7 +178,7 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     if not low < high:
         return None
     try:
-        if not is_smooth(path, low, high):
+        if not has_smooth_coefficients(path, low, high):
             return None
         places = np.linspace(low, high, ARM_STRETCH_SETTINGS.hull_arms)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)

@@ -67,7 +67,7 @@ def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
         first = int(run[0]) if len(run) else 0
         end = first + len(run)
         patience = 1
-        while end - first >= NO_CROSSING_SETTINGS.arms:
+        while end - first >= NO_CROSSING_SETTINGS.arm_count:
             chain = _longest_chain(path, found, followed, (first, end - 1), modes)
             if not chain.lines:
                 # Further points often fail, too, so every further failure skips twice as many points.
@@ -87,7 +87,7 @@ def _longest_chain(
     """The longest chain of points found from the first to the last index in `ends`; without lines if no count
     can be carried from the first point."""
     here, last = ends
-    shortest = NO_CROSSING_SETTINGS.arms - 1
+    shortest = NO_CROSSING_SETTINGS.arm_count - 1
     chain = Chain([here], [])
     counted = None
     ahead = last - here

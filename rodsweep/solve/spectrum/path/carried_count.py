@@ -169,7 +169,9 @@ def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> 
             k = track.order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
-            if abs(w.real) <= max(ROOT_SETTINGS.axis_errors * error, ROOT_SETTINGS.axis_tolerance * abs(w)):
+            if abs(w.real) <= max(
+                ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * abs(w)
+            ):
                 good[s] = False
             if rank < modes and not error <= min(ROOT_SETTINGS.double_root_correction, accuracy / 2) * abs(w):
                 good[s] = False

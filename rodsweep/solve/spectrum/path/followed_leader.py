@@ -48,7 +48,7 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
     if rod.standard:
         return _follow_leader_of_uniform(rod, complex(near[0]), accuracy)
     if rod.uniform:
-        linear, rate = rod.equivalent
+        linear, rate = rod.equivalent_linear_rod
         found = follow_leading_eigenvalue(linear, near / rate, accuracy)
         return found and LeadingEigenvalue(rate * found.w, rate * found.error, rate * found.eigenvalues)
     try:
