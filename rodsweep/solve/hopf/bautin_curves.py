@@ -96,12 +96,10 @@ class BautinSpace:
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
-        hopf = HopfCurve(
-            boundary, np.empty((0, 3)), min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
-        )
+        accuracy = min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
+        hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)
         start = guess[[*free, 3]]
-        way = boundary.tangent(start)
-        point = self._zero(hopf, start, way)
+        point = self._zero(hopf, start, boundary.tangent(start))
         found_values = np.empty(3)
         errors = np.zeros(3)
         found_values[free] = point.values

@@ -71,7 +71,7 @@ class StageNewtonSettings(CompiledSettings):
     """Growing Newton steps end the iteration only after more than this number of iterations."""
 
 
-STAGE_NEWTON_SETTINGS = StageNewtonSettings()
+STAGE_NEWTON = StageNewtonSettings()
 
 ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 """Values of PETSc's SNESConvergedReason."""
@@ -106,24 +106,19 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        c.contraction = max(
-            STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0, theta
-        )
+        c.contraction = max(STAGE_NEWTON.min_contraction_ratio * c.contraction if c.measured else 0.0, theta)
         c.measured = 1
-    c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.diverging else 0
+    c.growing = c.growing + 1 if theta > STAGE_NEWTON.diverging else 0
     c.last_step = dx
     # The contraction of an earlier stage is a guess for this one.
-    unsure = STAGE_NEWTON_SETTINGS.first_iteration_safety if iteration == 1 else 1.0
+    unsure = STAGE_NEWTON.first_iteration_safety if iteration == 1 else 1.0
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
-    if small or (theta > STAGE_NEWTON_SETTINGS.stagnant and iteration > 2 and dx <= c.rounding):
+    if small or (theta > STAGE_NEWTON.stagnant and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
-    if (
-        c.growing >= STAGE_NEWTON_SETTINGS.max_growing
-        and iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
-    ):
+    if c.growing >= STAGE_NEWTON.max_growing and iteration > STAGE_NEWTON.iterations_before_giving_up:
         linearise_at_start(c)
         return NOT_CONTRACTING
-    if theta > STAGE_NEWTON_SETTINGS.new_matrix_contraction:
+    if theta > STAGE_NEWTON.new_matrix_contraction:
         c.matrix_due = AT_ITERATE
     return ITERATING
 

@@ -78,9 +78,8 @@ def _test_value_at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: Arc
 
 def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
     """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
-    and `SPECIAL_POINT_SETTINGS.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. If the
-    point cannot be located, its message gives the reason, and its error is the parameter difference of the
-    two cycles."""
+    and `SPECIAL_POINT_SETTINGS.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. A
+    point that cannot be located has a message, and the parameter difference of the two cycles as error."""
     aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
