@@ -84,7 +84,7 @@ class Store:
         delete_matching_files(self.journals, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
-        """Creates the file of the plan, with the points of its journals unless `fresh`."""
+        """Creates the file of the plan, with the points of its journals unless `fresh`; raises InputError."""
         if self.path.exists() and not is_rodsweep_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_room(self.path, self.plan)

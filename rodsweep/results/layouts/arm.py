@@ -134,7 +134,8 @@ def si_name_of(name: str, unit: str) -> str:
 
 
 def _si_meaning(variable: Variable, unit: str) -> str:
-    """Long name of the SI variable, in the unit `unit`, of a dimensionless variable."""
+    """Long name of the SI variable of a dimensionless variable: its long name, followed by "in SI units", or
+    by "in cycles per second" if `unit` is HERTZ."""
     if unit != HERTZ:
         return f"{variable.long_name}; in SI units"
     words = variable.long_name.removeprefix("angular ").partition(",")[

@@ -47,9 +47,11 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     """The subcritical Hopf point nearest to the force of `rod`; None if no candidate is subcritical, or if
     the force is not positive.
 
-    The candidates are the first Hopf point above and the first Hopf point below the force, if the largest tip
-    y of the unstable cycle is at most `SUBCRITICAL_HOPF_SETTINGS.max_unstable_y`. The straight rod must be
-    stable. Raises Unsolvable if the search for Hopf points or a coefficient fails."""
+    The candidates are the first Hopf point above and the first Hopf point below the force, within the factor
+    `max_force_ratio` of the settings, if the largest tip y of the unstable cycle by the normal form is at
+    most `max_unstable_y`. The straight rod must be stable. Raises Unsolvable if the search for Hopf points or
+    a coefficient fails.
+    """
     low = rod.F / SUBCRITICAL_HOPF_SETTINGS.max_force_ratio
     high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
     if not 0 < low < high:

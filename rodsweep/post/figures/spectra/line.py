@@ -1,5 +1,5 @@
-"""Figures of spectra along a line of points: two roots against the parameter and in the complex plane, as in
-the paper's Fig. 2.
+"""Figures of spectra along a line of points: two roots, or all stored roots, against the parameter and in the
+complex plane, as in the paper's Fig. 2.
 """
 
 from collections.abc import Sequence

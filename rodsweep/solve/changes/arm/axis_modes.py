@@ -62,8 +62,9 @@ class AxisModes:
 class AxisModesOfPath:
     """The modes of the arms of a path, computed when needed.
 
-    known: the modes computed so far, by path variable p. beyond: path variables at which the modes are
-    counted instead, if the count at an end of the path fails, for example because a pair lies on the axis.
+    modes_by_p: the modes computed so far, by path variable p. replacement_p: path variables at which the
+    modes are counted instead, if the count at an end of the path fails, for example because a pair lies on
+    the axis.
     """
 
     def __init__(self, problem: ArmPath, certify: bool):
@@ -93,8 +94,8 @@ class AxisModesOfPath:
         return self.modes_by_p[p]
 
     def _modes_at_replacement(self, p: float) -> AxisModes | None:
-        """The modes at the path variable that replaces p; None if there is none or its modes cannot be
-        computed."""
+        """The modes slightly outside the end p of the searched range, used if the modes at p cannot be
+        counted; None if p is no end, or if these modes cannot be computed."""
         if p not in self.replacement_p:
             return None
         try:
