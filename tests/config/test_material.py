@@ -9,6 +9,7 @@ import pytest
 import rodsweep as rs
 from rodsweep.config import load_config
 from rodsweep.errors import InputError
+from rodsweep.model.material.profile import Profile
 from rodsweep.tasks.running.job import make_job
 from rodsweep.wording import counted
 
@@ -40,6 +41,13 @@ def test_default_material_means_the_same_as_none(tmp_path):
     plain, written = config(tmp_path), config(tmp_path, "material: {law: linear}")
     assert written.standard
     assert plain.settings_of_results == written.settings_of_results
+
+
+def test_rows_at_the_smallest_distance_are_taken_whatever_the_rounding():
+    """0.400001 - 0.4 is below 1e-6 in floating-point numbers."""
+    assert 0.400001 - 0.4 < 1e-6
+    for start, end in ((0.1, 0.100001), (0.4, 0.400001), (0.8, 0.800001)):
+        assert Profile((0.0, start, end, 1.0), ((1.0,) * 6,) * 4).breaks.tolist() == [0.0, start, end, 1.0]
 
 
 @pytest.mark.parametrize(
