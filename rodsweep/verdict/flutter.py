@@ -17,6 +17,13 @@ SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True
 MIN_SEARCH_RATIO = 2.0
 """For an arm that is not uniform or not of linear material, the search is extended until its largest force is
 at least this number times the first flutter force and this number times the load."""
+KINDS_OF_VERDICT = (
+    ChangeKind.onset,
+    ChangeKind.hopf,
+    ChangeKind.hopf_reverse,
+    ChangeKind.restabilization,
+)
+"""Kinds of the thresholds that a verdict uses; other exchanges of the leading eigenvalue do not matter."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +33,29 @@ class FlutterForces:
     tau2: float
     """Viscous time scale of the arm, in s."""
     thresholds: Thresholds
+
+    @property
+    def usable(self) -> bool:
+        """Whether the thresholds found are those of the arm, though perhaps not proved complete."""
+        return self.thresholds.status in (
+            ThresholdStatus.ok,
+            ThresholdStatus.ended_early,
+            ThresholdStatus.not_certified,
+            ThresholdStatus.accuracy_not_reached,
+        )
+
+    @property
+    def doubt(self) -> str:
+        """Why usable thresholds are uncertain: a threshold of a kind in KINDS_OF_VERDICT misses the accuracy,
+        or the list is not proved complete; empty if the thresholds are certain.
+        """
+        found = self.thresholds
+        accuracy = SEARCH_REQUEST.accuracy
+        if any(c.error > accuracy * abs(c.at) for c in found.crossings if c.kind in KINDS_OF_VERDICT):
+            return ThresholdStatus.accuracy_not_reached.sentence
+        if found.transitions.proved or found.status == ThresholdStatus.ended_early:
+            return ""
+        return found.message or ThresholdStatus.not_certified.sentence
 
     def first(self, kind: ChangeKind) -> Crossing | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
@@ -79,9 +109,13 @@ class FlutterRange:
         """Distinct error messages of failed searches. A search that stopped before the requested force did
         not fail.
         """
-        searches = [f.thresholds for f in self.forces]
-        usable = (ThresholdStatus.ok, ThresholdStatus.ended_early)
-        return sorted({t.message or t.status.sentence for t in searches if t.status not in usable})
+        failed = [f.thresholds for f in self.forces if not f.usable]
+        return sorted({t.message or t.status.sentence for t in failed})
+
+    @property
+    def doubts(self) -> list[str]:
+        """Distinct reasons for which thresholds, for some drags, are uncertain."""
+        return sorted({f.doubt for f in self.forces if f.usable} - {""})
 
     @property
     def end(self) -> float:

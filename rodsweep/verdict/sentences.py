@@ -26,6 +26,21 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
             + "; ".join(plane.flutter_range.failures)
             + "."
         ]
+    headline, *others = _sentences_on_flutter(planes, assessment)
+    return [headline, *_doubt_sentences(planes), *others]
+
+
+def _doubt_sentences(planes: Planes) -> list[str]:
+    """List of one sentence on why the thresholds of some plane of motion are uncertain; empty if they are
+    certain."""
+    known = [plane.flutter_range for plane in (planes.first, planes.second) if plane is not None]
+    doubts = sorted({doubt for found in known for doubt in found.doubts})
+    return [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
+
+
+def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
+    """Sentences of the verdict if no search in the first plane failed: see `verdict_sentences`."""
+    plane = planes.first
     beyond = assessment.effects_with(Validity.does_not_apply)
     if not beyond:
         return [*_verdict(plane), *_second_plane_sentences(planes, "is")]

@@ -2,7 +2,7 @@
 fluid with which the model would apply.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from itertools import chain
 from math import ceil, floor, isnan, log10, nan
@@ -145,10 +145,14 @@ def thickness_factor(arm: SlenderArm) -> float:
 
 
 def _with_scaled_section(arm: SlenderArm, factor: float) -> SlenderArm:
-    """The arm without its load, with all sides of the section multiplied by `factor`."""
-    given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
-    section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
-    return SlenderArm(**(given | section), poisson=arm.poisson, law=arm.law, section=arm.section)
+    """The uniform arm `arm` without its load, with all sides of the section multiplied by `factor`."""
+    left_out = {*LOADS, *chain(*SECTION_SIDES)}
+    others = {
+        name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in left_out
+    }
+    # The sides are those of the section, which a uniform arm of segments has without naming a radius.
+    sides = {name: factor * side for name, side in asdict(arm.cross_section).items()}
+    return SlenderArm(**(others | sides), poisson=arm.poisson, law=arm.law, section=arm.section)
 
 
 def rounded_down(value: float) -> float:

@@ -153,3 +153,4 @@ def isolated(configs: list[Path], solving: bool = False) -> Iterator[Isolated]:
         finally:
             server.stdin.close()
             server.wait(60)
+            server.stdout.close()

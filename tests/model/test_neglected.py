@@ -19,7 +19,7 @@ from rodsweep.model.arm.neglected import (
     neglected_effects,
     worst_validity,
 )
-from rodsweep.model.arm.unsteady_drag import drag_phase_lag
+from rodsweep.model.arm.unsteady_drag import SERIES_END, drag_phase_lag
 
 WATER = {"length": 0.12, "radius": 0.006, "young": 80e3, "poisson": 0.49, "viscosity": 1e-3}
 """A soft arm in water, in SI units."""
@@ -81,7 +81,15 @@ def test_phase_of_the_fluid_is_that_of_unsteady_flow(s):
 
 def test_phase_of_the_fluid_is_proportional_to_slow_rates():
     assert drag_phase_lag(1e-4, 3.0) == pytest.approx(0.75e-4 / 3, rel=1e-3)
-    assert drag_phase_lag([0.0, np.nan], 3.0) == pytest.approx([0.25e-6, np.nan], rel=1e-3, nan_ok=True)
+    assert drag_phase_lag(1e-9, 3.0) == pytest.approx(0.75e-9 / 3, rel=1e-8)
+    assert drag_phase_lag([0.0, np.nan], 3.0) == pytest.approx([0.0, np.nan], abs=0.0, nan_ok=True)
+
+
+def test_phase_of_the_fluid_is_smooth_where_its_series_ends():
+    """Three equal steps of s across the end: second differences of the phase are those of its series."""
+    s = SERIES_END * np.array([0.98, 0.99, 1.01, 1.02])
+    phase = drag_phase_lag(s, 1.5) / s
+    assert phase[2] - phase[1] == pytest.approx(phase[1] - phase[0] + phase[3] - phase[2], rel=0.02)
 
 
 @pytest.mark.parametrize("name", ["inertia of the arm", "inertia of the fluid", "Reynolds number"])

@@ -318,6 +318,32 @@ def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
     assert all(words in told for words in sentences)
 
 
+def test_thresholds_without_proof_are_told_with_the_doubt():
+    known = found(1.0, (20.0, ChangeKind.hopf, 2))
+    unproved = replace(known.thresholds.transitions, proved=False)
+    thresholds = replace(
+        known.thresholds, transitions=unproved, status=ThresholdStatus.not_certified, message="a count fails"
+    )
+    told = verdict(arm(viscosity=1e3), known, replace(known, thresholds=thresholds))
+    assert told[:2] == [
+        verdict(arm(viscosity=1e3), known)[0],
+        "For some drags this is not certain: a count fails.",
+    ]
+
+
+@pytest.mark.parametrize(("kind", "certain"), [(ChangeKind.real_leads, True), (ChangeKind.hopf, False)])
+def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certain):
+    known = found(1.0, (20.0, kind, 2), (40.0, ChangeKind.hopf, 2))
+    inaccurate = tuple(replace(c, error=0.1 if c.at == 20.0 else 0.0) for c in known.thresholds.crossings)
+    thresholds = replace(
+        known.thresholds,
+        transitions=Transitions(crossings=inaccurate, proved=True),
+        status=ThresholdStatus.accuracy_not_reached,
+    )
+    told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))
+    assert any("not certain" in sentence for sentence in told) != certain
+
+
 def test_beyond_the_return_the_arm_is_straight_again():
     window = found(1.0, (20.0, ChangeKind.hopf, 2), (30.0, ChangeKind.restabilization, 0))
     told = verdict(arm(viscosity=1e3), window)

@@ -27,6 +27,14 @@ def test_report_on_segments_alike_is_that_on_the_uniform_arm():
     assert str(same) == str(rs.Arm(**ARM, pressure="3 kPa").report())
 
 
+@pytest.mark.parametrize("segments", [["10 cm: radius 5 mm"], ["4 cm: radius 5 mm", "6 cm: radius 5 mm"]])
+def test_segments_alike_beyond_the_limit_of_inertia_get_the_remedies_of_the_uniform_arm(segments):
+    fluid = {"young": "100 kPa", "viscosity": "1 mPa s"}
+    uniform = rs.Arm(length="10 cm", radius="5 mm", **fluid).report()
+    assert "times as thick" in uniform.verdict[0]
+    assert str(rs.Arm(segments=segments, **fluid).report()) == str(uniform)
+
+
 def test_flutter_of_a_cone_is_that_of_the_rod_converted_by_hand():
     """k1 = 4 20^2, k2 = 3 k1/10, gamma3 = (ln 40 - 1/2)/(2 20^2); the pressure is on the tip."""
     u = np.linspace(0, 1, 21)

@@ -7,9 +7,12 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-MIN_FLOW_FREQUENCY = 1e-6
-"""Smallest frequency s of the flow, in eta k^2/rho. Smaller frequencies are replaced by this value, since
-rounding errors would exceed the phase lag, about 1e-6."""
+SERIES_END = 1e-3
+"""Below this frequency s of the flow, in eta k^2/rho, the mobility is computed from its series. At this
+frequency rounding errors of the closed formula are 1e-11 of the phase lag, the terms left out of the series
+less than 1e-12."""
+LOWEST_FREQUENCY = 1e-6
+"""Lower end of the frequencies s among which `frequency_of_phase_lag` searches."""
 SUBINTERVAL_COUNT = 64
 """Number of subintervals into which `frequency_of_phase_lag` divides the current interval of ln s."""
 REFINEMENT_COUNT = 10
@@ -29,10 +32,11 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
 
     and Lambda/(4 pi eta) in steady flow. The phase, of the shape of s, is 3 s/(4 Lambda) for small s.
     """
-    z = 1j * np.maximum(np.asarray(s, float), MIN_FLOW_FREQUENCY)
-    with np.errstate(invalid="ignore"):  # nan where nothing moves
-        mobility = logarithm - 0.5 - (1 - 1 / z) * np.log1p(z) / 2
-    return np.asarray(-np.angle(mobility))
+    z = 1j * np.asarray(s, float)
+    series = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
+    with np.errstate(invalid="ignore", divide="ignore"):  # nan where nothing moves; 1/z is not used at 0
+        closed = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
+    return np.asarray(0.0 - np.angle(logarithm - np.where(z.imag < SERIES_END, series, closed)))
 
 
 def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
@@ -41,7 +45,7 @@ def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
 
     logarithm: Lambda = 4 pi eta/gamma2.
     """
-    low = log(MIN_FLOW_FREQUENCY)
+    low = log(LOWEST_FREQUENCY)
     high = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
     for _ in range(REFINEMENT_COUNT):
         edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)

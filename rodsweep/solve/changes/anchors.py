@@ -1,7 +1,6 @@
-"""Anchors (rods of a path whose spectra are solved), and interpolation of the leading eigenvalues between two
-neighbouring anchors."""
+"""Anchors: rods of a path whose spectra are solved, with the smooth quantities that are interpolated between
+two anchors."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -65,67 +64,49 @@ class Anchor:
         """Returns (Re(w1 - w) time, derivative of this product with respect to p). w1: leading eigenvalue. w:
         first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex; None if there is no
         such w at this anchor."""
-        for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
+        for i, w in enumerate(self.w[1:], 1):
             if (w.imag != 0) != self.oscillates:
-                return self._in_units_of_time((self.w[0] - w).real, (self.slope[0] - slope).real)
+                return self.growth_gap(0, i)
         return None
+
+    def gaps_to_next_two(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Returns ((r - (a + b)/2) time, ((r - a) (r - b)) time^2), each with its derivative with respect to
+        p. r: real part of the leading eigenvalue. a, b: the two eigenvalues after the leading eigenvalue or
+        pair; None unless a and b are both real or a complex pair.
+
+        Both products are positive and smooth where a and b change between real and complex; r - a is not.
+        """
+        first = 2 if self.oscillates else 1
+        a, b = self.w[first : first + 2].tolist()
+        if not (a.imag == b.imag == 0 or a.imag * b.imag < 0):
+            return None
+        slope_a, slope_b = self.slope[first : first + 2].tolist()
+        lead, slope = float(self.w[0].real), float(self.slope[0].real)
+        product = ((lead - a) * (lead - b)).real
+        product_slope = ((slope - slope_a) * (lead - b) + (lead - a) * (slope - slope_b)).real
+        squared_time = self.time**2, 2 * self.time * self.lengthening
+        return (
+            self._in_units_of_time(lead - (a + b).real / 2, slope - (slope_a + slope_b).real / 2),
+            (product * squared_time[0], product_slope * squared_time[0] + product * squared_time[1]),
+        )
+
+    def growth_gap(self, i: int, j: int) -> tuple[float, float]:
+        """Returns (Re(w - v) time, derivative of this product with respect to p) for the eigenvalues w and v
+        with the indices i and j."""
+        return self._in_units_of_time((self.w[i] - self.w[j]).real, (self.slope[i] - self.slope[j]).real)
+
+    def growth_gap_of_mean(self) -> tuple[float, float]:
+        """Returns (Re((w1 + w2)/2 - w3) time, derivative of this product with respect to p) for the first
+        three eigenvalues w1, w2, w3."""
+        (first, first_slope), (second, second_slope) = self.growth_gap(0, 2), self.growth_gap(1, 2)
+        return (first + second) / 2, (first_slope + second_slope) / 2
+
+    def squared_frequency(self, i: int) -> tuple[float, float]:
+        """Returns ((Im w)^2 time^2, derivative of this product with respect to p) for w = `self.w[i]`."""
+        frequency, slope = self._in_units_of_time(self.w[i].imag, self.slope[i].imag)
+        return frequency**2, 2 * frequency * slope
 
     def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
         """Returns (value time, derivative of this product with respect to p) for a quantity `value` with
         derivative `slope`; the factor `time` preserves zeros and signs."""
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
-
-
-def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
-    """Returns (minimum on [0, 1], argument of the minimum) for the cubic with values `a`, `b` and slopes
-    `slope_a`, `slope_b` at 0 and 1; the argument is 0.5 if the minimum is at an end."""
-    # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
-    square = 3 * (b - a) - 2 * slope_a - slope_b
-    cube = slope_a + slope_b - 2 * (b - a)
-    lowest = min(a, b)
-    at = 0.5
-    spread = square * square - 3 * cube * slope_a
-    if spread >= 0 and (square or cube):
-        # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
-        root = math.sqrt(spread)
-        t = 0.5
-        if square + root > 0:
-            t = -slope_a / (square + root)
-        elif cube:
-            t = (root - square) / (3 * cube)
-        value = a + t * (slope_a + t * (square + t * cube))
-        if 0 < t < 1 and value < lowest:
-            lowest = value
-            at = t
-    return lowest, at
-
-
-def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
-    """Returns (share, hides). share: position of an additional anchor as a fraction of the interval from
-    `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading eigenvalue.
-    hides: whether two exchanges may lie between the anchors.
-
-    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
-    """
-    h = right.p - left.p
-    for a, b in (
-        (left.squared_pair_difference(), right.squared_pair_difference()),
-        (left.leading_growth_gap(), right.leading_growth_gap()),
-    ):
-        if a is None and b is None:
-            continue
-        if a is None or b is None:
-            value, slope = a or b or (0.0, 0.0)
-            if abs(value) < 2 * abs(slope) * h:
-                return 0.5, False
-            continue
-        smallest = min(abs(a[0]), abs(b[0]))
-        # By the trapezoidal rule smooth slopes explain the change between the anchors.
-        missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
-        sign = math.copysign(h, a[0])
-        lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.explained * smallest:
-            return share, True
-        if missed > ANCHOR_SETTINGS.explained * max(smallest, abs(b[0] - a[0])):
-            return 0.5, False
-    return 0.0, False

@@ -10,7 +10,8 @@ from ....arrays import Complex
 from ...point import Unsolvable
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
-from ..anchors import ANCHOR_SETTINGS, minimum_of_cubic
+from ..anchor_interpolation import minimum_of_cubic
+from ..anchors import ANCHOR_SETTINGS
 from .path import ArmPath
 
 

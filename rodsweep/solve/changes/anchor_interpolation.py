@@ -1,0 +1,153 @@
+"""Interpolation between two anchors: whether the slopes exclude exchanges of the leading eigenvalue between
+the anchors, other than an exchange that is known."""
+
+import math
+
+from .anchors import ANCHOR_SETTINGS, Anchor
+
+
+def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+    """Returns (minimum on [0, 1], argument of the minimum) for the cubic with values `a`, `b` and slopes
+    `slope_a`, `slope_b` at 0 and 1; the argument is 0.5 if the minimum is at an end."""
+    # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
+    square = 3 * (b - a) - 2 * slope_a - slope_b
+    cube = slope_a + slope_b - 2 * (b - a)
+    lowest = min(a, b)
+    at = 0.5
+    spread = square * square - 3 * cube * slope_a
+    if spread >= 0 and (square or cube):
+        # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
+        root = math.sqrt(spread)
+        t = 0.5
+        if square + root > 0:
+            t = -slope_a / (square + root)
+        elif cube:
+            t = (root - square) / (3 * cube)
+        value = a + t * (slope_a + t * (square + t * cube))
+        if 0 < t < 1 and value < lowest:
+            lowest = value
+            at = t
+    return lowest, at
+
+
+def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
+    """Returns (share, hides). share: position of an additional anchor as a fraction of the interval from
+    `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading eigenvalue.
+    hides: whether two exchanges may lie between the anchors.
+
+    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
+    """
+    h = right.p - left.p
+    for a, b in (
+        (left.squared_pair_difference(), right.squared_pair_difference()),
+        (left.leading_growth_gap(), right.leading_growth_gap()),
+    ):
+        if a is None and b is None:
+            continue
+        if a is None or b is None:
+            value, slope = a or b or (0.0, 0.0)
+            if abs(value) < 2 * abs(slope) * h:
+                return 0.5, False
+            continue
+        smallest = min(abs(a[0]), abs(b[0]))
+        # By the trapezoidal rule smooth slopes explain the change between the anchors.
+        missed = _unexplained_change(a, b, h)
+        sign = math.copysign(h, a[0])
+        lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.explained * smallest:
+            return share, True
+        if missed > ANCHOR_SETTINGS.explained * max(smallest, abs(b[0] - a[0])):
+            return 0.5, False
+    return 0.0, False
+
+
+def exclude_exchange(left: Anchor, right: Anchor, hides: bool) -> bool:
+    """Whether the slopes at two close anchors exclude an exchange of the leading eigenvalue, although
+    `next_anchor` asks for an anchor between them and returns `hides`.
+
+    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
+    """
+    return two_pairs_exchange_lead(left, right) or (not hides and next_two_stay_behind(left, right))
+
+
+def next_two_stay_behind(left: Anchor, right: Anchor) -> bool:
+    """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
+    between two anchors, whether these two eigenvalues are real or a complex pair.
+
+    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
+    """
+    at_left = left.gaps_to_next_two()
+    at_right = right.gaps_to_next_two()
+    if at_left is None or at_right is None:
+        return False
+    h = right.p - left.p
+    return all(_stays_positive(a, b, h) for a, b in zip(at_left, at_right, strict=True))
+
+
+def two_pairs_exchange_lead(left: Anchor, right: Anchor) -> bool:
+    """Whether the slopes show that the first two pairs at `left` are the first two pairs at `right` in the
+    opposite order, and exclude that one of the two pairs becomes real between the anchors."""
+    if any(w.imag == 0 for anchor in (left, right) for w in anchor.w):
+        return False
+    h = right.p - left.p
+    return _changes_sign_once(left.growth_gap(0, 2), right.growth_gap(2, 0), h) and all(
+        _stays_positive(left.squared_frequency(i), right.squared_frequency(2 - i), h) for i in (0, 2)
+    )
+
+
+def only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
+    """Whether the slopes exclude further exchanges between two anchors with a double eigenvalue between them.
+    The leading eigenvalue is real at one anchor, and a pair at the other."""
+    squares = left.squared_pair_difference(), right.squared_pair_difference()
+    if squares[0] is None or squares[1] is None:
+        return False
+    h = right.p - left.p
+    # The mean of the two leading eigenvalues is smooth where they become a pair.
+    return _changes_sign_once(squares[0], squares[1], h) and _stays_positive(
+        left.growth_gap_of_mean(), right.growth_gap_of_mean(), h
+    )
+
+
+def only_overtaking(left: Anchor, right: Anchor) -> bool:
+    """Whether the slopes exclude further exchanges between two anchors with an overtaking between them. The
+    leading eigenvalue is real at one anchor, and a pair at the other."""
+    # Indices of the real eigenvalue and of one eigenvalue of the pair; index 3 is the next eigenvalue.
+    places = [(2, 0) if anchor.oscillates else (0, 1) for anchor in (left, right)]
+    ((real_left, pair_left), (real_right, pair_right)) = places
+    anchors = ((left, real_left, pair_left), (right, real_right, pair_right))
+    if any(anchor.w[real].imag != 0 or anchor.w[pair].imag == 0 for anchor, real, pair in anchors):
+        return False
+    h = right.p - left.p
+    return (
+        _changes_sign_once(left.growth_gap(*places[0]), right.growth_gap(*places[1]), h)
+        and _stays_positive(left.growth_gap(real_left, 3), right.growth_gap(real_right, 3), h)
+        and _stays_positive(left.growth_gap(pair_left, 3), right.growth_gap(pair_right, 3), h)
+        and _stays_positive(left.squared_frequency(pair_left), right.squared_frequency(pair_right), h)
+    )
+
+
+def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: float) -> bool:
+    """Whether the slopes of a quantity explain its values at two anchors and exclude a zero between them.
+    left, right: (value, slope) at the anchors. h: distance of the anchors."""
+    (a, slope_a), (b, slope_b) = left, right
+    smallest = min(a, b)
+    lowest, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
+    missed = _unexplained_change(left, right, h)
+    return lowest >= ANCHOR_SETTINGS.explained * smallest > 0 and missed <= ANCHOR_SETTINGS.explained * max(
+        smallest, abs(b - a)
+    )
+
+
+def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], h: float) -> bool:
+    """Whether a quantity has opposite signs at two anchors and its slopes explain the change. left, right:
+    (value, slope) at the anchors. h: distance of the anchors."""
+    change = abs(right[0] - left[0])
+    return (
+        left[0] * right[0] < 0 and _unexplained_change(left, right, h) <= ANCHOR_SETTINGS.explained * change
+    )
+
+
+def _unexplained_change(left: tuple[float, float], right: tuple[float, float], h: float) -> float:
+    """Modulus of the change of a quantity between two anchors, minus its change by the trapezoidal rule.
+    left, right: (value, slope) at the anchors. h: distance of the anchors."""
+    return abs(right[0] - left[0] - h * (left[1] + right[1]) / 2)

@@ -1,0 +1,105 @@
+"""Location of one exchange of the leading eigenvalue between two anchors, by Newton's method on the
+determinant D."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from .anchors import Anchor
+from .path_problem import PathProblem
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExchangeSettings:
+    """Settings of Newton's method for an exchange between two anchors."""
+
+    max_overtaking_steps: int = 60
+    """Maximum number of Newton steps to an overtaking."""
+    carrying_steps: int = 8
+    """Number of steps in which an eigenvalue is followed from an anchor to the middle of the interval."""
+    converged: float = 4.0
+    """Newton's method for an overtaking stops when the step is smaller than this multiple of the error
+    estimate."""
+    rounding: float = 4e-16
+    """Relative rounding error of the path variable: two units in the last place."""
+    accuracy: float = 1e-6
+    """No overtaking is found from eigenvalues w whose error exceeds this multiple of |w|: Newton's method has
+    not converged, for example near a double eigenvalue."""
+
+
+EXCHANGE_SETTINGS = ExchangeSettings()
+
+
+class LeaderExchange(NamedTuple):
+    """Exchange of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a
+    real eigenvalue and a pair with equal real parts. error: error of p. growth_rate: the common real part.
+    frequency: Im w of the pair. All in 1/tau2, except for p and its error."""
+
+    p: float
+    error: float
+    growth_rate: float
+    frequency: float
+
+
+def double_eigenvalue_between(problem: PathProblem, pair: Anchor, real: Anchor) -> LeaderExchange | None:
+    """The double eigenvalue between an anchor `pair` with a leading pair and an anchor `real` with two
+    real leading eigenvalues; None if Newton's method does not find it."""
+    below = pair.squared_pair_difference()
+    above = real.squared_pair_difference()
+    width = abs(pair.p - real.p)
+    if below is None or above is None:
+        return None
+    # (w1 - w2)^2 is smooth through the double root, where w itself has a square root: it is interpolated.
+    share = above[0] / (above[0] - below[0])
+    p = real.p + share * (pair.p - real.p)
+    x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
+    x, p, _, error = problem.double_eigenvalue(x, p, width)
+    return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
+
+
+def overtaking_between(problem: PathProblem, pair: Anchor, real: Anchor) -> LeaderExchange | None:
+    """The point between two anchors where a real eigenvalue and a pair have equal real parts, by Newton's
+    method; None if Newton's method does not find it."""
+    if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
+        return None  # no eigenvalue of the other kind is known
+    p = (pair.p + real.p) / 2
+    ends = sorted((pair.p, real.p))
+    # Start each eigenvalue from the anchor where it leads and carry it to the middle.
+    w_real = _follow_eigenvalue(problem, complex(real.w[0]), real.p, p)
+    w_pair = _follow_eigenvalue(problem, complex(pair.w[0]), pair.p, p)
+    for _ in range(EXCHANGE_SETTINGS.max_overtaking_steps):
+        w_real, s_real, e_real = problem.eigenvalue(w_real, p)
+        w_pair, s_pair, e_pair = problem.eigenvalue(w_pair, p)
+        slope = s_real.real - s_pair.real
+        # Near a double eigenvalue Newton's method for D may stop before it converges.
+        accuracy = EXCHANGE_SETTINGS.accuracy
+        if not (e_real <= accuracy * abs(w_real) and e_pair <= accuracy * abs(w_pair)):
+            return None
+        # An eigenvalue that changed between real and complex is not the one that was followed.
+        if w_real.imag != 0 or abs(w_pair.imag) <= e_pair or slope == 0 or not math.isfinite(slope):
+            return None
+        step = -(w_real.real - w_pair.real) / slope
+        error = (e_real + e_pair) / abs(slope) + EXCHANGE_SETTINGS.rounding * abs(p)
+        p += step
+        if not ends[0] <= p <= ends[1]:
+            return None
+        if abs(step) <= EXCHANGE_SETTINGS.converged * error:
+            return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
+        w_real = w_real + step * s_real
+        w_pair = w_pair + step * s_pair
+        if w_real.imag != 0:
+            w_real = complex(w_real.real, 0.0)
+    return None
+
+
+def _follow_eigenvalue(problem: PathProblem, w: complex, start: float, stop: float) -> complex:
+    """The eigenvalue at p = `stop` that continues the eigenvalue w at p = `start`, followed in small
+    steps by Newton's method on D."""
+    p = start
+    for i in range(1, EXCHANGE_SETTINGS.carrying_steps + 1):
+        w, slope, _ = problem.eigenvalue(w, p)
+        following = start + (stop - start) * i / EXCHANGE_SETTINGS.carrying_steps
+        ahead = w + slope * (following - p)
+        w = complex(ahead.real, 0.0) if w.imag == 0 else ahead
+        p = following
+    return w

@@ -1,0 +1,123 @@
+"""Exchanges of the leading eigenvalue of cones where other eigenvalues meet close to the exchange."""
+
+import numpy as np
+import pytest
+from surveyed import RODS, survey_only
+
+from rodsweep.model.material.build import Build
+from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+
+TO_30 = ThresholdsRequest(30.0, 1e-6, True, 100)
+
+
+def cone(k1, k2, gamma3, taper, **further):
+    return Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3, taper=taper, **further)
+
+
+@pytest.mark.parametrize(
+    ("rod", "F"),
+    [(cone(1e4, 3e3, 1e-4, 0.19), 2.0386255889), (cone(1e4, 3e3, 1e-3, 0.19), 2.0333568822)],
+)
+def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
+    """The forces are from a bisection of dense eigenvalues of another code on two meshes."""
+    found = solve_thresholds(rod, TO_30)
+    assert found.status == ThresholdStatus.ok
+    (taken,) = [c for c in found.crossings if c.kind == ChangeKind.real_leads]
+    assert taken.at == pytest.approx(F, abs=1e-9)
+    assert taken.error < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("rod", "F_max"),
+    [
+        (
+            cone(
+                *(232.47833692152994, 163.1012000931068, 0.0002505587603018475, 0.15516879019780894),
+                build=Build("neo_hookean", "swelling"),
+            ),
+            46.9623437016846,
+        ),
+        (cone(15253.748780772801, 18327.095650919167, 0.00016823986456179592, 0.17550637707235592), 59.7),
+    ],
+)
+def test_three_exchanges_between_two_anchors_are_all_found(rod, F_max):
+    found = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-6, True, 100))
+    assert found.status == ThresholdStatus.ok
+    kinds = [c.kind for c in found.crossings[:3]]
+    assert kinds == [ChangeKind.onset, ChangeKind.real_again, ChangeKind.pair_leads]
+    assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
+
+
+def test_a_double_eigenvalue_behind_the_leading_pair_is_no_onset():
+    rod = cone(20971.78966444228, 401.0547088144865, 4.178687351590938e-05, 0.1542518309504673)
+    found = solve_thresholds(rod, ThresholdsRequest(39.13599469496463, 1e-6, True, 100))
+    assert found.status == ThresholdStatus.ok
+    assert found.crossings[0].kind == ChangeKind.pair_leads
+    assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
+
+
+def assert_leaders_are_those_of_spectra(rod, found, forces):
+    """At each force the list tells the kind of the leading eigenvalue and the number of unstable modes."""
+    for F in forces:
+        before = [c for c in found.crossings if c.at <= F]
+        pair = [c.kind.pair_leads_after for c in before if c.kind.changes_leader][-1:]
+        spectrum = solve_spectrum(rod.changed(F=F), SpectrumRequest(2, 1e-8, True))
+        assert spectrum.certified
+        assert (spectrum.eigenvalues[0].imag != 0) == (pair == [True])
+        assert spectrum.unstable_count == (before[-1].unstable_after if before else 0)
+
+
+def forces_between(found):
+    """Forces close to the ends of each interval between thresholds, and within it."""
+    ends = [0.0, *(c.at for c in found.crossings), found.end]
+    return [
+        a + share * (b - a)
+        for a, b in zip(ends, ends[1:], strict=False)
+        for share in (1e-4, 0.1, 0.5, 0.9, 1 - 1e-4)
+    ]
+
+
+@pytest.mark.parametrize(
+    "rod",
+    [
+        # Two real eigenvalues behind a real one become a pair.
+        cone(1e4, 3e3, 1e-4, 0.18),
+        cone(1e4, 3e3, 1e-3, 0.16),
+        # Two pairs exchange the lead.
+        cone(201.38319439558708, 296.6030107867904, 7.85603969251972e-05, 0.16587853893457413),
+        cone(238.54427297868136, 240.0821900457012, 0.00017730179369483172, 0.1486808577982113),
+        # Three real eigenvalues within a thousandth of the path.
+        cone(7456.321605964616, 994.9549132857708, 0.00021244815052571517, 0.1874555969069303),
+        # An eigenvalue of a pair was taken for the real one; an eigenvalue that had not converged was taken.
+        cone(41281.777834686414, 24198.095242172014, 0.0008519563856196541, 0.18778640691937346),
+        cone(281.485966480166, 38.82445589689772, 0.0022144599132281196, 0.18180628515845332),
+    ],
+)
+def test_lists_of_cones_with_crowded_eigenvalues_are_proved_and_right(rod):
+    found = solve_thresholds(rod, TO_30)
+    assert found.status == ThresholdStatus.ok
+    assert found.transitions.proved
+    assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
+
+
+@survey_only
+@pytest.mark.parametrize("seed", range(RODS))
+def test_leaders_of_random_arms_are_those_of_spectra(seed):
+    random = np.random.default_rng(seed)
+    k1 = 10 ** random.uniform(2.3, 5)
+    build = Build("neo_hookean", "swelling") if seed % 3 == 2 else Build()
+    rod = cone(
+        *(
+            k1,
+            k1 * 10 ** random.uniform(-2, 0.2),
+            10 ** random.uniform(-5, -2),
+            10 ** random.uniform(-1, 0.2),
+        ),
+        build=build,
+    )
+    found = solve_thresholds(rod, TO_30)
+    assert found.status == ThresholdStatus.ok
+    assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
