@@ -95,6 +95,15 @@ def test_joined_files_are_a_run_of_all_their_points(command, text, parts):
         assert command(*words).returncode == 0
 
 
+def test_a_process_that_solves_first_while_it_joins_can_write_the_file(command):
+    """The Hopf points of the joined grid start MPI, in a process that had started nothing."""
+    names = computed(command, CHAINS, [("[40, 50, 60]", "[40]")], [("[40, 50, 60]", "[60]")])
+    joined = command.afresh("merge", "joined.h5", *names)
+    assert (joined.returncode, joined.stderr) == (0, "")
+    with h5py.File(command.directory / "joined.h5") as file:
+        assert (file["status"][...] == 0).all()
+
+
 def test_another_file_is_joined_to_one_that_is_there(command):
     names = computed(command, SPECTRA, [(RANGE, "[0, 10]")], [(RANGE, "[20, 30, 40]")])
     assert command("merge", "m.h5", names[0]).returncode == 0

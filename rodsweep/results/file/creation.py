@@ -69,6 +69,8 @@ class Plan:
 
 def create_file(path: Path, plan: Plan) -> None:
     """Creates the file of a plan at `path`; all points are missing."""
+    # Constants may need a solve: a process that MPI starts would inherit the open file with its lock.
+    constants = plan.constants()
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
         for name, extent in plan.layout.extents.items():
@@ -76,7 +78,7 @@ def create_file(path: Path, plan: Plan) -> None:
         for variable in plan.layout.variables:
             data = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
             _write_attributes(file, data, variable, (*plan.dimensions, *variable.extra))
-        add_variables(file, plan.constants())
+        add_variables(file, constants)
         add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])
         file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
         file.attrs["program"] = PROGRAM
