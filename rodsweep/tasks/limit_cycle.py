@@ -108,12 +108,16 @@ class LimitCycleTask(Task):
         """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
         branches from Hopf points.
         """
-        from ..solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, coarse_mesh, motion_mesh
+        from ..solve.cycle.transient.motion_mesh import accuracy_of_motion_mesh, coarse_mesh, motion_mesh
 
         options = self.config.limit_cycle
         if options.start == "hopf":
             return largest_first_mesh(self.points, coarse_mesh)
-        accuracy = self.config.accuracy if options.method == "integration" else MOTION_MESH_SETTINGS.accuracy
+        accuracy = (
+            self.config.accuracy
+            if options.method == "integration"
+            else accuracy_of_motion_mesh(options.transient > 0)
+        )
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
     def check_rows(self) -> list[CheckRow]:

@@ -111,7 +111,7 @@ def _solve_or_raise(
     if decays and not request.is_traced:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
-    for mesh in motion_meshes(rod):
+    for mesh in motion_meshes(rod, request.transient > 0):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
         transient = Transient(StressForm(rod, mesh), stability, request, along, unstable, workspace)
         end = _cycle_from_motion(transient, request, neighbour)

@@ -1,5 +1,6 @@
 """The tip from the start to the cycle: a real motion of the rod, whatever becomes of it."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,10 +8,13 @@ import pytest
 from known_cycles import make_view
 from rods import rod_of
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 from surveyed import survey_only
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.errors import InputError
+from rodsweep.model.material.build import Build
+from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.transient import draw_transients
@@ -25,6 +29,7 @@ from rodsweep.solve.motion.leading_mode import leading_mode
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 STRETCHABLE = (200.0, 1e4, 1e-4, 1.0)
 COUNT = 1000
+SWELLING = Build("neo_hookean", "swelling")
 
 
 @cache
@@ -50,7 +55,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
     rod = rod_of(60.0, *STRETCHABLE[:3])
-    beam = Beam(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy))
+    beam = Beam(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.stored_accuracy))
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
@@ -58,6 +63,31 @@ def test_transient_is_the_motion_that_another_integrator_finds():
         jac=lambda _, z: beam.jacobian(z),
     )  # fmt: skip
     assert np.abs(beam.tip(found.y.T) - tip).max() < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("rod", "amplitude", "error"),
+    [
+        (Rod(F=50.0, k1=1e4, k2=1e4, gamma3=1e-4), 0.01, 3e-8),
+        (
+            Rod(F=31.0, k1=2380.0, k2=1248.0, gamma3=2.82e-3, gamma1=0.5, taper=0.506, build=SWELLING),
+            1e-3,
+            1e-4,
+        ),
+        (Rod(F=99.533, k1=102.76, k2=175.8, gamma3=0.744), 0.01, 0.02),
+    ],
+)
+def test_a_stored_motion_is_that_on_a_finer_mesh(rod, amplitude, error, monkeypatch):
+    """The motion grows by a factor of ten to a thousand, and the error of its rate shifts its later phase."""
+    request = CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400, transient=2000)
+    stored = solve_cycle(rod, request).transient
+    monkeypatch.setattr(
+        "rodsweep.solve.cycle.transient.motion_mesh.MOTION_MESH_SETTINGS",
+        replace(MOTION_MESH_SETTINGS, stored_accuracy=1e-13),
+    )
+    finer = solve_cycle(rod, request).transient
+    time = stored[0][stored[0] <= finer[0][-1]]
+    assert np.abs(stored[2][: len(time)] - CubicSpline(finer[0], finer[2])(time)).max() < error
 
 
 def test_a_stored_motion_has_no_jumps():
