@@ -42,6 +42,9 @@ def outcome_or_failure(
 
 def cause_of(error: BaseException) -> str:
     """Last line of the message of `error`, or of the exception that caused `error`; PETSc writes the cause in
-    the last line."""
+    the last line. Of Python's own arithmetic errors it is said what they mean."""
     cause = error.__cause__ or error
-    return (str(cause) or type(cause).__name__).splitlines()[-1]
+    text = (str(cause) or type(cause).__name__).splitlines()[-1]
+    if isinstance(cause, ZeroDivisionError | OverflowError):
+        return f"a number of this rod overflows or underflows ({text})"
+    return text

@@ -278,6 +278,8 @@ SEGMENTS = {"radius": None, "length": None}
             SEGMENTS | {"segments": ["1 cm: radius 5 mm"]},
             "segments: their length is 2 radii; the drag of a slender arm needs at least 10",
         ),
+        # A logarithm of the drag of this arm is 0.
+        ({"length": "5 cm", "radius": "9 mm"}, "length = '5 cm' is 5.56 radii"),
     ],
 )
 def test_bad_shapes_and_laws_are_refused_in_one_sentence(changes, sentence):

@@ -167,7 +167,10 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
     length = "segments: their length" if arm.length is None else arm.text_of("length")
     try:
         slenderness = arm.shape.length / arm.shape.drag_radius
-        fine = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale)) and arm.build
+        fine = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
+        # The drags of too short an arm mean nothing, and are not always numbers.
+        if slenderness >= LEAST_SLENDERNESS:
+            fine = fine and bool(arm.build)
     except (ArithmeticError, ValueError):
         fine = False
     if not fine:

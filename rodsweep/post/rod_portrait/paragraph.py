@@ -196,7 +196,10 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
         v = view.of_point(0)
         word = str(view.outcomes[0])
         if word not in CYCLE_WORDS:
-            clauses.append(f"at {units.force_at(F)} no cycle is drawn ({word.replace('_', ' ')})")
+            clauses.append(
+                f"at {units.force_at(F)} a motion from a small deflection leads to no cycle that is drawn "
+                f"({word.replace('_', ' ')})"
+            )
             continue
         period, y = (
             unit.text(float(v[name]), float(v[name] * v[error]))
