@@ -24,8 +24,9 @@ class ArmElementSettings(CompiledSettings):
     """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
     exceeds this fraction of the largest value. The error of a Gauss method is about the square of this
     fraction."""
-    max_halvings: int = 12
-    """Maximum number of halvings of an element, down to 2e-4 of the first length."""
+    max_halvings: int = 28
+    """Maximum number of halvings of an element, down to 4e-9 of the first length. A factor that grows a
+    million times between two rows has its pole a millionth of their distance away."""
     min_largest_w: float = 16.0
     """Smallest bound W of |w|; for smaller |w| the load and the taper, not w, determine the length of
     elements."""
