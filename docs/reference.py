@@ -249,12 +249,13 @@ def parameters() -> str:
     rows = []
     for name, p in PARAMETERS.items():
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
-        default = "" if p.default is None else f"{p.default:g} in a grid; a spectrum has none"
+        default = "" if p.default is None else f"{p.default:g} as an axis; none for a spectrum"
         if p.optional:
             having = list(CONFIGS)
-            default = f"{p.default:g}; no dimension of the file unless given"
+            default = f"{p.default:g}; a dimension of the file only if given"
         key, allowed = f"`parameters.{name}`", p.allowed.description
-        rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
+        where = "all" if having == list(CONFIGS) else code(", ".join(having))
+        rows.append([key, allowed, default, p.unit, p.long_name, where])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
 
 
