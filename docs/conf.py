@@ -16,6 +16,8 @@ extensions = ["myst_nb", "sphinx.ext.autodoc"]
 exclude_patterns = ["_build"]
 root_doc = "index"
 
+smartquotes = False  # the prime of y' is no apostrophe
+
 html_theme = "furo"
 html_title = f"rodsweep {version}"
 html_static_path = ["_static"]

@@ -51,12 +51,17 @@ def gallery() -> str:
     parts = [GALLERY, contents]
     for task, title in TASKS.items():
         parts.append(f"\n## {title}\n\nThe task is described on the page [{task}](tasks/{task}.md).\n")
-        parts += [entry(path, each["title"]) for path, each in documents.items() if each["task"] == task]
+        drawn: dict[str, list[Path]] = {}
+        for path, each in documents.items():
+            if each["task"] == task:
+                drawn.setdefault(str(figures.pictures(path.stem)), []).append(path)
+        parts += [entry(paths, documents[paths[0]]["title"]) for paths in drawn.values()]
     return "".join(parts)
 
 
-def entry(path: Path, title: str) -> str:
-    """One config: title, figures, opening comment, commands."""
+def entry(paths: list[Path], title: str) -> str:
+    """Entry of the configs of one figure: title, figures, comment and commands of the first config."""
+    path = paths[0]
     text = path.read_text()
     comment = re.match(r"(#.*\n)+", text)
     assert comment is not None
@@ -64,8 +69,10 @@ def entry(path: Path, title: str) -> str:
     told = told.replace("*", r"\*").replace("Expected:", "\n*Expected:*", 1)
     shown = "".join(f"![{title}]({picture})\n\n" for picture, _ in figures.pictures(path.stem))
     commands = "".join(f"    {command}\n" for command in figures.commands(path.stem))
-    link = f"The config is [{place(path)}](../{place(path)})."
-    return f"\n### {title} ({path.stem})\n\n{shown}{told}\n{link}\n\n{commands}"
+    links = " and ".join(f"[{place(each)}](../{place(each)})" for each in paths)
+    link = f"The config is {links}." if len(paths) == 1 else f"The configs are {links}."
+    names = ", ".join(each.stem for each in paths)
+    return f"\n### {title} ({names})\n\n{shown}{told}\n{link}\n\n{commands}"
 
 
 def place(path: Path) -> str:

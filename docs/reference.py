@@ -106,42 +106,43 @@ MOTIONS = {
 STATES = {
     "missing": "not computed",
     "neither_known": "the straight rod is unstable, and no stable cycle lies on a branch that was followed",
-    "straight": "the straight rod alone, of what is known",
-    "cycle": "a cycle alone",
-    "both": "the straight rod and a cycle: which comes depends on the start",
-    "undecided": "on a boundary within its error, or a branch could not be followed so far",
+    "straight": "the straight rod is stable, and no stable cycle is known",
+    "cycle": "a cycle is stable, and the straight rod is not",
+    "both": "the straight rod and a cycle are stable; the start decides which one is reached",
+    "undecided": "on a boundary within its error, or a branch could not be followed to its end",
     "crushed": "F >= k1: there is no rod",
 }
 """Stable states at a point of a phase diagram with cycles."""
 ATTRIBUTES = {
     "program": "`rodsweep`: what a result file is recognised by",
     "Conventions": "`CF-1.8`",
-    "title, task": "of the config; the file's name where it has no title",
-    "config": "the text of the config, with what `--set` changed at its end",
+    "title, task": "title and task of the config; without a title, the name of the file",
+    "config": "text of the config; changes by `--set` are at its end",
     "config_resolved": "the config with all defaults, as JSON",
-    "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": f"{FORMAT}; see [which version reads what](#which-version-reads-what)",
+    "snapshot": "time at which `rodsweep snapshot` wrote the file; empty once a run has continued it",
+    "format": f"version of the layout, {FORMAT}; see [which version reads what](#which-version-reads-what)",
     "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
-    "fingerprint": "of what the config means, and of all points: what a continued file shares",
+    "fingerprint": "digest of the meaning of the config and of all points; a run continues a file of its own "
+    "fingerprint only",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
-    "gamma1": "where a spectrum or a phase diagram is given it",
-    "coordinates": "names of the parameters along `point`, in a list of points; of an arm's quantities",
-    "status_sentences": "the sentence of every status, one a line",
-    "failure_reasons": "of each distinct reason for which points failed, in all runs, the first "
-    "point: parameters, status and reason, one a line; at most 20",
-    "rodsweep_version, git_commit": "of the program; a commit that ends in `-dirty` was changed",
-    "python_version, numpy_version, numba_version": "of the libraries",
-    "mpi4py_version, h5py_version, hdf5_version": "of the libraries",
-    "petsc_version, petsc4py_version, slepc_version, slepc4py_version": "of the solvers",
-    "petsc_options": "what PETSC_OPTIONS said",
-    "blas_kernels": "the BLAS libraries and kernels that computed points of the file, one a line",
-    "system, mpi_library": "the operating system, and MPI",
-    "ranks, hosts": "of the last run: how many ranks, on which hosts",
-    "rank_points, rank_busy_seconds, rank_idle_seconds": "of the last run: what each rank did",
-    "started, finished": "of the last run, UTC; `finished` only where no point is missing",
-    "stopped": "the signal that stopped the last run, or empty",
-    "shard": "the part `i/n` that the file is, or empty",
-    "slurm_job": "the number of the last run's job, or empty",
+    "gamma1": "axial drag, if the config of a spectrum or a phase diagram gives it",
+    "coordinates": "names of the parameters along `point` in a list of points; names of an arm's coordinates",
+    "status_sentences": "sentence of every status, one a line",
+    "failure_reasons": "for each distinct reason of failure, in all runs, the first failed point: its "
+    "parameters, status and reason, one a line; at most 20",
+    "rodsweep_version, git_commit": "version and commit of the program; `-dirty` marks uncommitted changes",
+    "python_version, numpy_version, numba_version": "versions of Python and the libraries",
+    "mpi4py_version, h5py_version, hdf5_version": "versions of the libraries",
+    "petsc_version, petsc4py_version, slepc_version, slepc4py_version": "versions of the solvers",
+    "petsc_options": "value of `PETSC_OPTIONS`",
+    "blas_kernels": "BLAS libraries and kernels that computed points of the file, one a line",
+    "system, mpi_library": "operating system, and MPI",
+    "ranks, hosts": "number of ranks of the last run, and names of its hosts",
+    "rank_points, rank_busy_seconds, rank_idle_seconds": "points and times of each rank of the last run",
+    "started, finished": "times of the last run, UTC; `finished` only if no point is missing",
+    "stopped": "signal that stopped the last run, or empty",
+    "shard": "part `i/n` of the points in the file, or empty",
+    "slurm_job": "number of the last run's Slurm job, or empty",
 }
 """The attributes of a file."""
 
@@ -183,7 +184,8 @@ FILE = """
 
 netCDF-4-compatible HDF5. Below, `...` stands for the dimensions of the points: the parameters of the task in
 their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. Words
-are stored as numbers, with the attributes `flag_values` and `flag_meanings`.
+are stored as numbers, with the attributes `flag_values` and `flag_meanings`. The column "if missing" has the
+stored value of a number that does not exist, such as the period of a straight rod, or is not computed yet.
 
 ### The seal
 
@@ -247,12 +249,13 @@ def parameters() -> str:
     rows = []
     for name, p in PARAMETERS.items():
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
-        default = "" if p.default is None else f"{p.default:g} in a grid; a spectrum has none"
+        default = "" if p.default is None else f"{p.default:g} as an axis; none for a spectrum"
         if p.optional:
             having = list(CONFIGS)
-            default = f"{p.default:g}; no dimension of the file unless given"
+            default = f"{p.default:g}; a dimension of the file only if given"
         key, allowed = f"`parameters.{name}`", p.allowed.description
-        rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
+        where = "all" if having == list(CONFIGS) else code(", ".join(having))
+        rows.append([key, allowed, default, p.unit, p.long_name, where])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
 
 
@@ -346,16 +349,15 @@ cycles of a phase diagram, are stored without SI variables: multiply a force by 
 
 """
 UNCOVERED = """
-A point of a grid may be an arm outside the model. Nothing is computed, and `status` is
-
+At a point of a grid whose arm is outside the model nothing is computed, and `status` is
 
 """
 
 
 def validity() -> str:
     """Variables on the validity of the model, and statuses of arms without a rod."""
-    statuses = [[str(int(status)), f"`{status.name}`", status.sentence] for status in NoRodStatus]
-    variables = variable_table(variable_row(v, ["...", *v.extra], "") for v in VALIDITY)
+    statuses = [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(NoRodStatus)]
+    variables = variable_table(variable_row(v, ["...", *v.extra]) for v in VALIDITY)
     return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 
 
@@ -388,13 +390,13 @@ def task_variables(task: str) -> str:
         if condition.startswith(f"{task}.")
         for name in given.keys() - variables_of(whole(task, overrides)).keys()
     }
-    rows = [variable_row(variable, dims, only.get(name, "")) for name, (variable, dims) in given.items()]
+    rows = [(only.get(name, ""), variable_row(variable, dims)) for name, (variable, dims) in given.items()]
     points = f"`...` is ({', '.join(job.layout.parameters)}), or (point)."
     statuses = [[str(MISSING_STATUS), "`missing`", "not computed yet"]]
-    statuses += [[str(int(s)), f"`{s.name}`", s.sentence] for s in job.task.solver().statuses]
-    parts = [f"## Variables of the file\n\n{points} {FILE_OF_ALL}\n\n", variable_table(rows)]
+    statuses += [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(job.task.solver().statuses)]
+    parts = [f"## Variables of the file\n\n{points} {FILE_OF_ALL}\n\n", tables_by_condition(rows)]
     if task == "phase_diagram":
-        parts += ["\n### Curves\n", CURVES, variable_table(curve_rows(job))]
+        parts += ["\n### Curves\n", CURVES, tables_by_condition(curve_rows(job))]
     if "crossing_kind" in given:
         parts.append(words("Kinds of a crossing", CROSSING_MEANINGS, kinds()))
     if task == "phase_diagram":
@@ -420,20 +422,21 @@ for a diagram over F and k1; in a diagram over different parameters their names 
 """
 
 
-def curve_rows(job: Job) -> Iterator[list[str]]:
+def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
+    """(condition, row) of each variable of the curves of a phase diagram."""
     assert isinstance(job.config, PhaseDiagramConfig)
     line, row = job.config.plane
     for variable in curve_variables(line, row).values():
         beam = variable.name.startswith(("partial_beam", "filament"))
-        yield variable_row(variable, list(variable.extra), "diagrams over F and k1" if beam else "")
+        yield "diagrams over F and k1" if beam else "", variable_row(variable, list(variable.extra))
     for variable in criticality_variables(line, row).values():
-        yield variable_row(variable, list(variable.extra), "phase_diagram.criticality: true")
+        yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra))
     for variable in cycle_curve_variables(line, row).values():
-        yield variable_row(variable, list(variable.extra), "phase_diagram.cycles: true")
+        yield "phase_diagram.cycles: true", variable_row(variable, list(variable.extra))
     third = job.config.phase_diagram.bautin_parameter
     assert third is not None
     for variable in bautin_curve_variables(line, row, third[0]).values():
-        yield variable_row(variable, list(variable.extra), "phase_diagram.bautin_along")
+        yield "phase_diagram.bautin_along", variable_row(variable, list(variable.extra))
 
 
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
@@ -445,22 +448,33 @@ def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
     return found | {v.name: (v, list(v.extra)) for v in beside}
 
 
-def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:
+def variable_row(variable: Variable, dims: list[str]) -> list[str]:
     """A variable as a row of a table."""
-    meaning = variable.long_name
+    meaning = variable.long_name.replace("for gamma1 = 1", "for gamma1 of the config")
     if variable.is_boolean:
         meaning += ": 1 yes, 0 no"
     if variable.flags:
         meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)
-    if only:
-        meaning += f" (only with {only})" if only.startswith("diagrams") else f" (only with `{only}`)"
     fill = "NaN" if np.isnan(variable.fill) else f"{variable.fill:g}"
     shape = f"({', '.join(dims)})" if dims else "one number"
     return [f"`{variable.name}`", shape, np.dtype(variable.dtype).name, fill, variable.units, meaning]
 
 
+def tables_by_condition(rows: Iterable[tuple[str, list[str]]]) -> str:
+    """A table for each condition under which variables are stored, first those that are always stored. rows:
+    (condition, row) of each variable; the condition "" means always."""
+    groups: dict[str, list[list[str]]] = {"": []}
+    for condition, row in rows:
+        groups.setdefault(condition, []).append(row)
+    always = variable_table(groups.pop(""))
+    return always + "".join(
+        f"\nOnly with {name if name.startswith('diagrams') else f'`{name}`'}:\n\n{variable_table(of)}"
+        for name, of in groups.items()
+    )
+
+
 def variable_table(rows: Iterable[Sequence[str]]) -> str:
-    return table(("variable", "dimensions", "type", "where there is none", "unit", "meaning"), rows)
+    return table(("variable", "dimensions", "type", "if missing", "unit", "meaning"), rows)
 
 
 def whole(task: str, overrides: tuple[str, ...] = ()) -> Job:

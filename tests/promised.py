@@ -60,8 +60,8 @@ def variables(page, task: str) -> dict[str, str]:
         words = " ".join(f"{value}:{word}" for value, word in variable.flags)
         found[name] = f"({', '.join(dimensions)}) {variable.units} {words}".strip()
     if task == "phase_diagram":
-        rows = page.curve_rows(page.whole(task))
-        found |= {name.strip("`"): f"{dimensions} {unit}" for name, dimensions, _, _, unit, _ in rows}
+        for _, (name, dimensions, _, _, unit, _) in page.curve_rows(page.whole(task)):
+            found[name.strip("`")] = f"{dimensions} {unit}"
     return found
 
 

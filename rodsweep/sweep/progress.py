@@ -4,6 +4,7 @@ import os
 import sys
 import time
 from functools import cache
+from importlib.util import find_spec
 from typing import Any
 
 from rich.console import Console
@@ -36,8 +37,8 @@ def on_terminal() -> bool:
 
 @cache
 def in_notebook() -> bool:
-    """Whether the output of this process appears in cells of a notebook."""
-    return Console().is_jupyter
+    """Whether a progress bar can appear in cells of a notebook; without ipywidgets rich prints a warning."""
+    return Console().is_jupyter and find_spec("ipywidgets") is not None
 
 
 class SilentProgress:

@@ -100,7 +100,7 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
     ending = (
         "a linear law of the material is accurate",
-        f"rubber is some {100 * rubber_stiffening(largest):.1g} % stiffer at this compression",
+        f"rubber is some {_one_digit(100 * rubber_stiffening(largest))} % stiffer at this compression",
         "real materials are no longer linear at this compression",
     )[validity]
     shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
@@ -141,6 +141,11 @@ def rubber_stiffening(strain: float) -> float:
     return float(2 * ((1 - strain) ** -3 - 1) / 3)
 
 
+def _one_digit(value: float) -> str:
+    """The positive number `value` as text with one significant digit, never with an exponent of ten."""
+    return f"{float(f'{value:.1g}'):g}"
+
+
 def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     """Check of the inertia of the arm and of the fluid at the flutter threshold; an empty list if the arm
     does not flutter.
@@ -151,7 +156,7 @@ def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     lowered = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
     ending = (
         "neither matters",
-        f"they lower the threshold of flutter by some {lowered:.1g} %",
+        f"they lower the threshold of flutter by some {_one_digit(lowered)} %",
         f"the model neglects both and applies only up to {of_arm.limit:g}",
     )[validity]
     sentence = (

@@ -426,7 +426,7 @@ def _monotony(view, page, kind, F):
     for line, match in read(
         page,
         rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
-        r"(?:, falls on NUMBER)?(?:, is constant on NUMBER)?(?:, rises and falls on NUMBER)?",
+        r"(?:, falls on NUMBER)?(?:, is constant on NUMBER)?(?:, is not monotone on NUMBER)?",
     ):
         axis = list(view.axes).index(match[2])
         along = np.moveaxis(F.reshape(shape), axis, -1).reshape(-1, shape[axis])
@@ -438,7 +438,7 @@ def _monotony(view, page, kind, F):
         told = [int(text or 0) for text in match.groups()[2:]]
         true = [sum(up & ~down), len(known), sum(down & ~up), sum(~up & ~down), sum(up & down)]
         found.append((line, "" if told == true else f"it is {true}"))
-        for _, items in read(page, r"rises and falls on \d+ \(([^)]*)\)", only=line):
+        for _, items in read(page, r"is not monotone on \d+ \(([^)]*)\)", only=line):
             for name, text in re.findall(rf"(\w+) = ({NUMBER})", items[1]):
                 found.append((line, near_one_of(text, view.axes[name])))
     return found

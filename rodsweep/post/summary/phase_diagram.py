@@ -70,7 +70,7 @@ def cost_saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     return [
         f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
         f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
-        f"{uniform / max(solves + boxes, 1):.1g} times as many"
+        f"{float(f'{uniform / max(solves + boxes, 1):.1g}'):g} times as many"
     ]
 
 

@@ -67,6 +67,6 @@ def monotony_lines(view: View) -> list[str]:
                 high = values.max()
                 where.append(f"{other} = {low:.6g}" + (f" to {high:.6g}" if high > low else ""))
         if mixed.any():
-            text += f", rises and falls on {int(mixed.sum())}{in_brackets(', '.join(where))}"
+            text += f", is not monotone on {int(mixed.sum())}{in_brackets(', '.join(where))}"
         lines.append(text)
     return lines
