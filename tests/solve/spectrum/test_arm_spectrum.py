@@ -160,3 +160,21 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     assert found.certified == countable
     assert found.unstable_count > 2 if countable else found.status == SpectrumStatus.not_certified
     assert (max(wanted) > 2) == countable
+
+
+@pytest.mark.parametrize("factor", [1e4, 1e6])
+def test_two_rows_far_apart_are_the_same_arm_as_many_rows_on_their_line(factor):
+    """With rows at 0 and 1 alone, k2 has its zero at a millionth of the length before the base."""
+    rows = np.array([0.0, *10.0 ** np.arange(-6, 1)])
+
+    def leading(u):
+        table = [(1.0, 1 + (factor - 1) * each, 1.0, 1.0, 1.0, 1.0) for each in u]
+        build = Build(profile=Profile(tuple(u), tuple(table)))
+        rod = Rod(F=3.8, k1=1e4, k2=1e4, gamma3=1e-4, build=build)
+        return solve_spectrum(rod, SpectrumRequest(4, 1e-10, True))
+
+    few = leading([0.0, 1.0])
+    many = leading(rows.tolist())
+    assert few.status == many.status == SpectrumStatus.ok
+    apart = np.abs(few.eigenvalues - many.eigenvalues)
+    assert (apart <= few.error_estimate + many.error_estimate).all()
