@@ -147,5 +147,5 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
     """
     beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
-    y = beam.tip(twice[1])[1]
+    y = beam.tip_coordinates(twice[1])[1]
     return largest_y_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))

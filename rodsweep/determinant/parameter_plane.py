@@ -9,7 +9,7 @@ from ..model.parameters import CRUSHING_PARAMETERS, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
 from .exponents import ROUND_OFF
-from .parameter_path import ValueAlong, determinant_along
+from .parameter_path import PathDeterminantValue, determinant_along_path
 from .value import DeterminantValue, scaled_determinant
 
 
@@ -148,11 +148,13 @@ class Plane:
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
     @staticmethod
-    def _determinant_along_axis(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
+    def _determinant_along_axis(
+        w: complex, rod: Rod, axis: PlaneAxis
+    ) -> tuple[PathDeterminantValue, complex]:
         """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
         coordinate of `axis`).
         """
-        value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
+        value = determinant_along_path(w, rod.coefficients, rod.direction(axis.name))
         return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:

@@ -53,25 +53,25 @@ class Beam(RodOnMesh):
 
         At a jump, h1 reaches 0 first on one side if the law is linear, and on both sides at once otherwise.
         """
-        crushed = -self.nodal.rest[0, :-1] / self.sqrt_compliance[0, :-1]
+        crushed = -self.nodal.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:
-            for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
+            for node, sides in zip(self.nodal.jumps, self.nodal.jump_sides, strict=True):
                 # The larger value belongs to the side that is crushed first.
                 crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
         scaled = self.layout.stresses(z)
-        return scaled / self._along(scaled)
+        return scaled / self._broadcast_sqrt_compliance(scaled)
 
     def state_of_stresses(self, S: Array) -> Array:
         """States z, (..., unknowns), of stresses S at all nodes, (3, ..., nodes + 1)."""
-        return self.layout.state(S * self._along(S), S)
+        return self.layout.state(S * self._broadcast_sqrt_compliance(S), S)
 
     def state_of_strains(self, strains: Array) -> Array:
         """The state z, (unknowns,), with the given strains (h1, h2, Pi) at all nodes, (3, nodes + 1). Strains
         at the tip are ignored."""
-        return self.layout.state((strains - self.nodal.rest) / self.sqrt_compliance, strains)
+        return self.layout.state((strains - self.nodal.rest_strain) / self.sqrt_compliance, strains)
 
     def state_derivative(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
@@ -107,6 +107,6 @@ class Beam(RodOnMesh):
         """
         return self.tip_motion(z, direction)[1]
 
-    def _along(self, field: Values) -> Array:
+    def _broadcast_sqrt_compliance(self, field: Values) -> Array:
         """`sqrt_compliance`, reshaped to broadcast against a field (3, ..., nodes + 1)."""
         return self.sqrt_compliance.reshape(3, *(1,) * (field.ndim - 2), -1)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..determinant.certificate.covering import cover_with_boxes
 from ..determinant.certificate.first_boxes import first_boxes
-from ..determinant.parameter_path import Path, coefficients_at, determinant_along
+from ..determinant.parameter_path import Path, coefficients_at, determinant_along_path
 from ..determinant.roots.newton import LocatedZero
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
@@ -162,7 +162,7 @@ def _grows(path: Path, zero: LocatedZero) -> bool:
     """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
     d Re w/dp > 0.
     """
-    there = determinant_along(
+    there = determinant_along_path(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )
     return bool((-there.D_p / there.D_w).real > 0)

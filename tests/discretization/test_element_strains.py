@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh_on
+from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
@@ -23,7 +23,9 @@ FIELDS = {"n1": Polynomial([9, -20, 11]), "n2": Polynomial([-8, 3, 5]), "m3": Po
 
 
 def arm(order, names=LINEAR_ARM, **values):
-    return StressForm(Rod(**VALUES | values, build=Build(*names, STEP)), mesh_on((0.0, JUMP, 1.0), order))
+    return StressForm(
+        Rod(**VALUES | values, build=Build(*names, STEP)), mesh_with_edges((0.0, JUMP, 1.0), order)
+    )
 
 
 def smooth_state(form):
@@ -49,7 +51,7 @@ def exact_tip():
 
 def test_the_tip_of_an_arm_with_a_jump_is_exact_on_a_coarse_mesh():
     form = arm(8)
-    x, y, _ = form.tip(smooth_state(form))
+    x, y, _ = form.tip_coordinates(smooth_state(form))
     assert (x, y) == pytest.approx(exact_tip(), abs=1e-12)
 
 

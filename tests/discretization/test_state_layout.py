@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.mesh import mesh
-from rodsweep.discretization.plane import balance
+from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.plane import write_balance
 from rodsweep.discretization.state_layout import StateLayout
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
@@ -12,8 +12,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION, Symmetry
 
 FORMS = {
-    "Omega eliminated": StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7), mesh(2, 4)),
-    "Omega unknown": StressForm(Rod(F=50.0, k1=np.inf, k2=1e2, gamma3=0.0, gamma1=0.7), mesh(2, 4)),
+    "Omega eliminated": StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7), uniform_mesh(2, 4)),
+    "Omega unknown": StressForm(Rod(F=50.0, k1=np.inf, k2=1e2, gamma3=0.0, gamma1=0.7), uniform_mesh(2, 4)),
 }
 EACH = pytest.mark.parametrize("form", FORMS.values(), ids=FORMS.keys())
 
@@ -41,15 +41,15 @@ def test_a_field_is_known_by_its_name():
     layout = StateLayout(3, 4, (2,))
     x = states(layout, 2)
     for number, name in enumerate(("n1", "n2", "m3")):
-        assert np.array_equal(layout.field(x, name), layout.stresses(x)[number, :, :-1])
-        assert np.array_equal(layout.stress_at(x, name, 3), layout.field(x, name)[:, 3])
-        assert np.array_equal(x[:, layout.index(name, 2)], layout.stress_at(x, name, 2))
-    row = layout.vector({"m3": np.arange(4.0)})
-    assert x @ row == pytest.approx(layout.field(x, "m3") @ np.arange(4.0))
-    layout.field(x, "n2")[:] = 0
+        assert np.array_equal(layout.stress_field(x, name), layout.stresses(x)[number, :, :-1])
+        assert np.array_equal(layout.stress_at(x, name, 3), layout.stress_field(x, name)[:, 3])
+        assert np.array_equal(x[:, layout.stress_index(name, 2)], layout.stress_at(x, name, 2))
+    row = layout.state_with_stresses({"m3": np.arange(4.0)})
+    assert x @ row == pytest.approx(layout.stress_field(x, "m3") @ np.arange(4.0))
+    layout.stress_field(x, "n2")[:] = 0
     assert not layout.stresses(x)[1].any(), "a field is a view"
     with pytest.raises(ValueError, match="not in"):
-        layout.field(x, "n3")
+        layout.stress_field(x, "n3")
 
 
 @EACH
@@ -57,7 +57,7 @@ def test_a_field_is_known_by_its_name():
 def test_a_symmetry_maps_motions_to_motions(form, symmetry):
     def motion(x):
         V, G = np.empty((2, 3, form.mesh.nodes + 1))
-        balance(x, V, G, form.nodal, form.mesh.matrices)
+        write_balance(x, V, G, form.nodal, form.mesh.matrices)
         return V, form.layout.state(G, V)
 
     x = states(form.layout)
@@ -71,7 +71,7 @@ def test_a_symmetry_maps_motions_to_motions(form, symmetry):
 def test_the_reflection_is_the_one_of_the_mixed_form(form):
     x, layout = states(form.layout), MixedForm(form.rod, form.mesh).layout
     X = states(layout)
-    assert np.array_equal(REFLECTION.of(X, layout), MixedForm(form.rod, form.mesh).parity * X)
+    assert np.array_equal(REFLECTION.of(X, layout), MixedForm(form.rod, form.mesh).reflection_signs * X)
     assert np.array_equal(REFLECTION.reversed(form.layout) * x, (x - REFLECTION.of(x, form.layout)) / 2)
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -66,7 +66,7 @@ def cycle_of(case) -> RefinedCycle | None:
     if hopf is None or hopf * case.beyond >= case.k1:
         return None
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    start = orbit_from_hopf(StressForm(rod, mesh(1, 16)), hopf_point_below(rod), NewtonWorkspace())
+    start = orbit_from_hopf(StressForm(rod, uniform_mesh(1, 16)), hopf_point_below(rod), NewtonWorkspace())
     return refined_cycle(start, case.accuracy, NewtonWorkspace())
 
 
@@ -74,7 +74,7 @@ def chain_of(case, parameter, ratio, points):
     """The cycles of a chain in steps of a parameter, from the one of the case on, as far as it goes."""
     hopf = first_hopf(case.k1, case.k2, case.gamma3)
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    form = StressForm(rod, mesh(1, 16))
+    form = StressForm(rod, uniform_mesh(1, 16))
     memory = NewtonWorkspace()
     start = orbit_from_hopf(form, hopf_point_below(rod), memory)
     found = refined_cycle(start, case.accuracy, memory, parameter)
@@ -92,7 +92,7 @@ def chain_of(case, parameter, ratio, points):
 def finer(orbit):
     """The same cycle on a mesh that is far finer, converged to rounding, with its matrix."""
     here = mesh_of(orbit)
-    grid = mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
+    grid = uniform_mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
     return at_orbit(newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0)
 

@@ -34,7 +34,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.compiled.digest import digest, kernel_of
 from rodsweep.model.compiled.settings import CompiledSettings
@@ -355,11 +355,11 @@ def modes_of_a_cone(accuracy: float) -> Answer:
 
 def on_mesh(accuracy: float) -> Answer:
     """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
-    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
-    numbers = [*beam.tip(z), *beam.tip_velocity(z, 0.1 * z), beam.energy(z)]
+    numbers = [*beam.tip_coordinates(z), *beam.tip_velocity(z, 0.1 * z), beam.elastic_energy(z)]
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
 
 
@@ -371,12 +371,12 @@ def longitudinal(accuracy: float) -> Answer:
 
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
-    beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     z = equilibrium_at_tip(beam, 0.5, 0.4)
-    x, y, _ = beam.tip(z)
+    x, y, _ = beam.tip_coordinates(z)
     if np.hypot(x - 0.5, y - 0.4) > 1e-6:
         return None
-    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (beam.energy(z), 1e-6)}
+    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (beam.elastic_energy(z), 1e-6)}
 
 
 def small_drag(accuracy: float) -> Answer:
@@ -386,7 +386,7 @@ def small_drag(accuracy: float) -> Answer:
 
 def motion(accuracy: float) -> Answer:
     """State after a free motion. Its error is that of the scheme's tolerance, some steps' worth."""
-    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
@@ -496,7 +496,7 @@ SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
 CASES = {
     "BRANCH_MESH_SETTINGS": BRANCH,
     "BRANCH_ERROR_SETTINGS": BRANCH,
-    "BRANCH_END": LOPSIDED,
+    "BRANCH_END_SETTINGS": LOPSIDED,
     "ASYMMETRIC_START_SETTINGS": LOPSIDED,
     "BRANCH_START_SETTINGS": BRANCH,
     "BRANCH_SETTINGS": BRANCH,
@@ -510,7 +510,7 @@ CASES = {
     "WORKSPACE_SETTINGS": BRANCH,
     "FLOQUET_MULTIPLIER_SETTINGS": BRANCH,
     "CURVE_START_SETTINGS": CURVE,
-    "CURVE_IDENTITY": CURVE,
+    "CURVE_IDENTITY_SETTINGS": CURVE,
     "CURVE_SECANT_SETTINGS": CURVE,
     "AUGMENTED_SETTINGS": CURVE,
     "END_SETTINGS": CURVE,
@@ -541,28 +541,28 @@ CASES = {
     "MOTION_MESH_SETTINGS": SINGLE,
     "RETURN_SETTINGS": SINGLE,
     "SHAPE_TRACE_SETTINGS": SINGLE,
-    "TRANSIENT": SINGLE,
-    "CALIBRATION": CHAIN,
+    "TRANSIENT_SETTINGS": SINGLE,
+    "CALIBRATION_SETTINGS": CHAIN,
     "FINER_MESH_SETTINGS": CHAIN,
     "NEXT_MESH_SETTINGS": CHAIN,
     "CYCLE_PREDICTION_SETTINGS": CHAIN,
     "PARAMETER_STEPS": CHAIN,
-    "HOPF_START": BESIDE_HOPF,
+    "HOPF_START_SETTINGS": BESIDE_HOPF,
     "SMALL_MOTION_SETTINGS": BESIDE_HOPF,
     "STRAIGHT_ROD_SETTINGS": BESIDE_HOPF,
     "AMPLITUDE_EQUATION_SETTINGS": BESIDE_HOPF,
     "TIME_SCHEME_SETTINGS": BESIDE_HOPF,
-    "MARCHING": INTEGRATED,
+    "MARCHING_SETTINGS": INTEGRATED,
     "TORUS_TEST_SETTINGS": TORUS,
     "KRYLOV_SETTINGS": SPECTRA,
     "CANDIDATE_SETTINGS": SPECTRA,
-    "SEARCH": SPECTRA,
+    "SEARCH_SETTINGS": SPECTRA,
     "TWO_MESH_SETTINGS": SPECTRA,
     "RESOLUTION_SETTINGS": SPECTRA,
     "PENCIL_NORM_SETTINGS": SPECTRA,
     "ELEMENT_SETTINGS": SPECTRA,
     "ARM_RESOLUTION_SETTINGS": SPECTRA,
-    "ARM_ELEMENTS": SPECTRA,
+    "ARM_ELEMENT_SETTINGS": SPECTRA,
     "HULL_SETTINGS": SPECTRA,
     "SWEEP_STRETCH_SETTINGS": FOLLOWED,
     "WINDING_SETTINGS": THRESHOLDS,
@@ -606,11 +606,11 @@ CASES = {
     "FOLLOWING_SETTINGS": FOLLOWED,
     "EIGENVALUE_PREDICTION_SETTINGS": FOLLOWED,
     "AVERAGED_WEIGHT_SETTINGS": SEGMENTS,
-    "COMPLETENESS": SEGMENTS,
-    "ARM_COUNT": SEGMENTS,
+    "COMPLETENESS_SETTINGS": SEGMENTS,
+    "ARM_COUNT_SETTINGS": SEGMENTS,
     "ARM_VALUE_SETTINGS": SEGMENTS,
     "ARM_ROOT_SETTINGS": SEGMENTS,
-    "STAGE_NEWTON": MOTION,
+    "STAGE_NEWTON_SETTINGS": MOTION,
     "STAGE_PREDICTOR_SETTINGS": MOTION,
     "STEP_RECORD_SETTINGS": MOTION,
     "TIP_EXTREMUM_SETTINGS": SINGLE,
@@ -623,7 +623,7 @@ CASES = {
     "TIP_VELOCITY_SETTINGS": MESH,
     "STRESS_FORM_SETTINGS": SMALL_DRAG,
 }
-READ_BY_MOST = ("EVEN_FUNCTION_SETTINGS", "STAGE_NEWTON")
+READ_BY_MOST = ("EVEN_FUNCTION_SETTINGS", "STAGE_NEWTON_SETTINGS")
 """Settings whose change compiles so many functions again that a field takes 8 to 30 seconds."""
 MOST_WITHOUT_ANSWER = 1
 """Of the two runs of a field: half or twice a limit of work may not be enough, but one of the two is."""

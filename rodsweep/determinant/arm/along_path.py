@@ -17,7 +17,7 @@ from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_in_family, eigenvalue_in_family
+from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_of_family_arm, eigenvalue_of_family_arm
 from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
@@ -65,8 +65,8 @@ class ArmAlongPath:
         """Returns (w, dw/dp, error of w) of the eigenvalue w near `guess`, for the arm at p."""
         family = self.family(p)
         # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
-        if family is not None and abs(guess) < family.W / 2:
-            w, slope, error = eigenvalue_in_family(family, guess, p)
+        if family is not None and abs(guess) < family.largest_w / 2:
+            w, slope, error = eigenvalue_of_family_arm(family, guess, p)
             # Near a double eigenvalue the interpolation errors of the family are magnified.
             if error <= ROOT_SETTINGS.double_root_correction * abs(w):
                 return w, slope, error
@@ -151,8 +151,8 @@ class ArmAlongPath:
     def _value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
         family = self.family(p)
-        if family is not None and abs(x) < family.W:
-            return determinant_in_family(family, complex(x, 0.0), p)
+        if family is not None and abs(x) < family.largest_w:
+            return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
     def _real(self, x: float, p: float, S: float) -> tuple[float, float]:

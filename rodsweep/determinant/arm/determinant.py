@@ -2,9 +2,8 @@
 
 The propagators of an element are polynomials in w/W that are valid for |w| <= W. Every bound W has its own
 elements, made at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`ARM_ELEMENTS.max_exponent`) over an element, and that the Gauss points resolve the coefficients. Elements
-end at every break of the profile.
-"""
+exp(`ARM_ELEMENT_SETTINGS.max_exponent`) over an element, and that the Gauss points resolve the coefficients.
+Elements end at every break of the profile."""
 
 from functools import cached_property, lru_cache
 from operator import itemgetter
@@ -19,7 +18,7 @@ from ...model.rod import Rod
 from ..value import DeterminantValue
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
-from .elements.settings import ARM_ELEMENTS
+from .elements.settings import ARM_ELEMENT_SETTINGS
 from .local_waves import ArmSamples, arm_samples, wave_number_and_length_at, wave_numbers_and_lengths_at
 from .value import determinant_along_chain
 
@@ -52,7 +51,7 @@ class ArmDeterminant:
 
         The differences between values for several factors show the rounding error of D.
         """
-        W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.max_compared_reuse_ratio)
+        W, polynomials = self.level(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
         return determinant_along_chain(complex(w), W, polynomials)
 
     def elements(self, size: float) -> int:
@@ -79,7 +78,7 @@ class ArmDeterminant:
     @cached_property
     def gauss_samples(self) -> ArmSamples:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
-        points, _, weights = gauss_method(ARM_ELEMENTS.stages)
+        points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
         lengths = np.diff(self.rod.build.breaks)[:, None]
         local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
@@ -88,14 +87,14 @@ class ArmDeterminant:
         """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= size.
 
         Existing propagators with the smallest such W are reused if W <= highest * size; otherwise new
-        propagators are made. highest: by default `ARM_ELEMENTS.max_reuse_ratio`.
+        propagators are made. highest: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`.
         """
-        highest = ARM_ELEMENTS.max_reuse_ratio if highest is None else highest
-        size = max(size, ARM_ELEMENTS.min_largest_w)
+        highest = ARM_ELEMENT_SETTINGS.max_reuse_ratio if highest is None else highest
+        size = max(size, ARM_ELEMENT_SETTINGS.min_largest_w)
         for level in self._known_propagators:
             if size <= level[0] <= highest * size:
                 return level
-        W = ARM_ELEMENTS.largest_w_factor * size
+        W = ARM_ELEMENT_SETTINGS.largest_w_factor * size
         made = W, self._propagators(W)
         self._known_propagators = sorted([*self._known_propagators, made], key=itemgetter(0))
         return made
@@ -141,9 +140,9 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
     """
     tapers = np.array([rod.taper for rod in rods])
     edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].build.breaks)
-    points, _, _ = gauss_method(ARM_ELEMENTS.stages)
-    for _ in range(ARM_ELEMENTS.max_halvings):
-        if not len(edges) <= ARM_ELEMENTS.max_elements:
+    points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stages)
+    for _ in range(ARM_ELEMENT_SETTINGS.max_halvings):
+        if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
             break
         lengths = edges[1:] - edges[:-1]
         local = np.array(Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points))
@@ -151,11 +150,11 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         if finer is edges:
             return PropagatorElements(lengths, local)
         edges = finer
-    most = ARM_ELEMENTS.max_elements
+    most = ARM_ELEMENT_SETTINGS.max_elements
     raise FloatingPointError(f"{most} elements are too few to resolve this arm at |w| = {W:g}")
 
 
-@lru_cache(maxsize=ARM_ELEMENTS.max_cached_arms)
+@lru_cache(maxsize=ARM_ELEMENT_SETTINGS.max_cached_arms)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """The determinant D of an arm, cached: propagators made for one w serve later calls."""
     return ArmDeterminant(rod)

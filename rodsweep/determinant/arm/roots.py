@@ -18,14 +18,14 @@ from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import Roots
 from ..roots.settings import ROOT_SETTINGS
 from .determinant import ArmDeterminant
-from .hull.region import Hull
+from .hull.region import EigenvalueHull
 from .newton import ARM_ROOT_SETTINGS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
 
 T = TypeVar("T")
 
 
 def refine_mesh_eigenvalues(
-    raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float, largest: float = 0.0
+    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, most_waves: float, largest: float = 0.0
 ) -> Roots:
     """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
@@ -88,7 +88,7 @@ def _prepare_elements(determinant: ArmDeterminant, size: float, largest: float) 
     determinant.level(size)
 
 
-def _is_in_eigenvalue_box(w: complex, hull: Hull) -> bool:
+def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
     """Whether w is finite and lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False

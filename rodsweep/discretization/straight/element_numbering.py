@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.elements import ELEMENT_SETTINGS
-from ..state_layout import PLANE_COMPONENTS
+from ..state_layout import PLANE_COMPONENT_COUNT
 
 Indices = NDArray[np.int_]
 
@@ -32,16 +32,16 @@ class ElementNumbering:
     is_unknown: NDArray[np.bool_]
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
     """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
     stresses and velocities that are unknowns.
     """
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
-    unknown = PLANE_COMPONENTS * (2 * last + 1)
+    unknown = PLANE_COMPONENT_COUNT * (2 * last + 1)
     stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
-    velocities = [PLANE_COMPONENTS * last + c * (last + 1) + nodes for c in components]
+    velocities = [PLANE_COMPONENT_COUNT * last + c * (last + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
     inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)

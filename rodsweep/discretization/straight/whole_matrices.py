@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.balance import Values
-from ..state_layout import PLANE_COMPONENTS
+from ..state_layout import PLANE_COMPONENT_COUNT
 from .elements import LU, StraightElements, lu_factorisation, solve_factorised
 from .mixed_form import MixedForm
 
@@ -33,7 +33,7 @@ class WholeMatrices:
     def state_indices(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
         size = self.form.mesh.nodes + 1
-        marks = np.isin(np.arange(PLANE_COMPONENTS), self.components)[:, None] * np.ones(size)
+        marks = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 
     @cached_property
@@ -60,7 +60,7 @@ class WholeMatrices:
         """
         return float(np.abs(p[self.state_indices]) @ (np.abs(self.A) @ np.abs(q[self.state_indices])))
 
-    def factors(self, shift: complex) -> "WholeFactors":
+    def lu_factors(self, shift: complex) -> "WholeFactors":
         """LU factorisation of A - shift M."""
         return WholeFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 

@@ -51,7 +51,7 @@ def petsc_function(name: str) -> Any:
 
 
 @intrinsic
-def pointer(context: Any, address: Any) -> Any:
+def void_pointer(context: Any, address: Any) -> Any:
     """Converts the integer `address` to a void pointer, in compiled code."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -61,30 +61,30 @@ def pointer(context: Any, address: Any) -> Any:
 
 
 @compiled
-def floats(address: int, size: int) -> Any:
-    return numba.carray(pointer(address), (size,), np.float64)
+def double_vector_at(address: int, size: int) -> Any:
+    return numba.carray(void_pointer(address), (size,), np.float64)
 
 
 @compiled
 def double_array_at(address: int, shape: Any) -> Any:
     """Array of doubles at the memory address `address`, of the given `shape`. `floats(...).reshape` would
     take as long as one evaluation of the rod's equations with ten nodes."""
-    return numba.carray(pointer(address), shape, np.float64)
+    return numba.carray(void_pointer(address), shape, np.float64)
 
 
 @compiled
-def integers(address: int, size: int) -> Any:
-    return numba.carray(pointer(address), (size,), np.int64)
+def integer_vector_at(address: int, size: int) -> Any:
+    return numba.carray(void_pointer(address), (size,), np.int64)
 
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
     """The record of NumPy type `dtype` at the memory address `address`; an assignment to a field writes to
     this memory."""
-    return numba.carray(pointer(address), (1,), dtype)[0]
+    return numba.carray(void_pointer(address), (1,), dtype)[0]
 
 
-def call(name: str, *arguments: int) -> None:
+def call_petsc(name: str, *arguments: int) -> None:
     """Calls the libpetsc function `name` with pointers `arguments`; raises RuntimeError if the returned error
     code is not 0."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):

@@ -185,7 +185,7 @@ def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint
     """The cycle at the arc length `length` from `start`, to a relative accuracy; raises Unsolvable if no
     cycle is found, or if the prediction error or the angle is so large that the cycle may lie on another
     branch."""
-    return ARC_STEPS.accepted(_step_to_length(start, accuracy, length)).solution
+    return ARC_STEPS.require_small_errors(_step_to_length(start, accuracy, length)).solution
 
 
 def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:

@@ -16,7 +16,7 @@ from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
-from ..cycle.hopf_start import HOPF_START, orbit_of_amplitude
+from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -130,7 +130,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.at))
-    normal = accurate_normal_form(at, w, HOPF_START.normal_form_accuracy)
+    normal = accurate_normal_form(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
@@ -138,7 +138,7 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
         coordinate=path.coordinate(crossing.at),
         slope=complex(slope),
         normal_form=normal,
-        coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
+        coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
     )
 
 
@@ -200,7 +200,7 @@ def _cycle_of_amplitude(
     condition = BorderCondition.at_arc_length(scale, border, start)
     rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace)
     near = rough.orbit
-    y = float(near.form.tip(near.start)[1])
+    y = float(near.form.tip_coordinates(near.start)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:

@@ -17,7 +17,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
-from ..cycle.accuracy.calibration_settings import CALIBRATION
+from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.along_parameter import carried_change
@@ -112,7 +112,7 @@ class BranchCalibration:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
         the relative accuracy."""
         return max(
-            CALIBRATION.safety_factor * float(self.parameter_errors.sum()),
+            CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
             CYCLE_ERROR_SETTINGS.min_error_share * accuracy,
             CYCLE_ERROR_SETTINGS.rounding_error,
         )

@@ -23,7 +23,7 @@ from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
 from .symmetry import (
-    BRANCH_END,
+    BRANCH_END_SETTINGS,
     SymmetryBreaking,
     first_asymmetric_cycle,
     reaches_symmetric_cycle,
@@ -169,7 +169,9 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
     return BranchEnd(
-        replace(end_point(last, limits.reasons[outside]), error=BRANCH_END.range_end_error * abs(at)),
+        replace(
+            end_point(last, limits.reasons[outside]), error=BRANCH_END_SETTINGS.range_end_error * abs(at)
+        ),
         complete=True,
     )
 
@@ -195,8 +197,8 @@ def _step_hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
     before and two cycles after the corner.
     """
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    other = min(apart, 1 - apart) > BRANCH_END.max_peak_shift
-    return other and arc_length_between(start, end) > BRANCH_END.max_step_with_corner
+    other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
+    return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
 
 
 def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
@@ -204,16 +206,16 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.field(mesh.interpolate(start.orbit).start, "m3")
+    one = layout.stress_field(mesh.interpolate(start.orbit).start, "m3")
     # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
-    return float(one @ layout.field(end.orbit.start, "m3")) < 0
+    return float(one @ layout.stress_field(end.orbit.start, "m3")) < 0
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
     `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
+    if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
             raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
         return replace(start, next_arc_length=shorter)
@@ -223,13 +225,13 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     at = start.coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
-    rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
+    rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(
+        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
             start.coordinate - hopf.coordinate
         ) + rounding * abs(hopf.coordinate)
-        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
-        period_tolerance += BRANCH_END.period_tolerance * hopf.period
+        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
+        period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"

@@ -74,7 +74,7 @@ class BranchEndSettings:
     step is halved."""
 
 
-BRANCH_END = BranchEndSettings()
+BRANCH_END_SETTINGS = BranchEndSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,7 +131,7 @@ def asymmetry(orbit: Orbit) -> Array:
 
 def _bending_moments(states: Array, orbit: Orbit) -> Array:
     """Bending moments, (..., nodes), of states, (..., n), at the nodes of an orbit's mesh."""
-    return orbit.form.layout.field(states, "m3")
+    return orbit.form.layout.stress_field(states, "m3")
 
 
 def first_asymmetric_cycle(
@@ -172,7 +172,7 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not BRANCH_END.asymmetry_ratios[0] < found < BRANCH_END.asymmetry_ratios[1]:
+    if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
@@ -191,7 +191,9 @@ def reaches_symmetric_cycle(
     reference = asymmetry(start.orbit)
     other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
-    if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry_ratio * float(reference @ reference):
+    if float(asymmetry(other) @ reference) < BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(
+        reference @ reference
+    ):
         return True
     return (
         start.parameter_rate * end.parameter_rate < 0
@@ -207,7 +209,7 @@ def _relative_asymmetry(start: ArcPoint) -> float:
 
 
 def _nearly_symmetric(start: ArcPoint) -> bool:
-    return _relative_asymmetry(start) <= BRANCH_END.max_last_asymmetry
+    return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry
 
 
 def symmetry_breaking_between(
@@ -217,7 +219,7 @@ def symmetry_breaking_between(
     does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
     needed. Raises Unsolvable if no shorter step is allowed."""
     which = _nearest_symmetry_breaking(start, known, accuracy) if _nearly_symmetric(start) else -1
-    if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
+    if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
         return which
     if arc_length_between(start, end) / 2 < ARC_STEPS.min_length:
         raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
@@ -241,10 +243,12 @@ def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking
         if symmetric is None:
             continue
         symmetric_at = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
-        tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(symmetric_at)
-        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - symmetric.period)
-        period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period
+        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
+        tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
+        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
+            start.orbit.period - symmetric.period
+        )
+        period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period
         if abs(at - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which
     return -1

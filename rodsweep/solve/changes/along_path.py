@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover_with_boxes
 from ...determinant.certificate.first_boxes import first_boxes
-from ...determinant.parameter_path import Path, coefficients_at, determinant_along
+from ...determinant.parameter_path import Path, coefficients_at, determinant_along_path
 from ...determinant.roots.newton import LocatedZero
 from ..point import Unsolvable
 from .arm.crossings import CrossingSearch
@@ -231,7 +231,7 @@ def _pairs_missed_as_leaders(
 def _hopf_crossing(path: Path, zero: LocatedZero) -> Crossing:
     """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
-    there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
+    there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
     growing = (-there.D_p / there.D_w).real > 0
     kind = ChangeKind.hopf if growing != path.is_compliance else ChangeKind.hopf_reverse

@@ -20,9 +20,9 @@ from ..orbit.normalised import (
     normalised,
     normalised_tangent,
     polynomial_weights,
-    reflected,
-    values_of,
-    with_weighted_data,
+    predicted_normalised_values,
+    reflection_arrays,
+    values_from_normalised,
 )
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -103,12 +103,14 @@ class CyclePredictor:
         positive.
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
-        values = with_weighted_data(self.values, self.data, self.orders, self.weights(step))
+        values = predicted_normalised_values(self.values, self.data, self.orders, self.weights(step))
         # The last value, the squared size, goes linearly through 0 at a Hopf point, where cycles end.
         if not values[-1] > 0:
             raise Unsolvable("no cycle is predicted: the branch ends before this parameter value")
         target = replace(form, mesh=self.orbit.form.mesh)
-        return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
+        return replace(
+            self.orbit, form=target, values=values_from_normalised(values, reflection_arrays(self.orbit))
+        )
 
     def on(self, target: OrbitMesh) -> "CyclePredictor":
         """This predictor with the solved orbit and all data interpolated to the mesh `target`."""

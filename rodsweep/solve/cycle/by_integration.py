@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.elements.mesh import mesh_on
+from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
@@ -31,7 +31,7 @@ from ..point import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
 from .cycle import Cycle, CycleRequest, with_measures
-from .marching_settings import MARCHING
+from .marching_settings import MARCHING_SETTINGS
 from .status import MarchedStatus
 from .straight_rod import straight_rod
 from .transient.from_motion import form_states
@@ -84,7 +84,9 @@ class _MarchedMotion:
         self.limit = rod
         self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
+        self.scheme = TimeScheme(
+            "arkimex", "5", tolerance=MARCHING_SETTINGS.local_tolerance * request.accuracy
+        )
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
         self.returns = 0
@@ -98,12 +100,16 @@ class _MarchedMotion:
             settled = self._integrate_until_settled(z)
             path = self._path(settled)
             in_limit = self.rod != self.limit
-            enough = self.request.accuracy * (MARCHING.pair_error_share_in_limit if in_limit else 1.0)
-            for _ in range(MARCHING.max_comparisons):
+            enough = self.request.accuracy * (
+                MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
+            )
+            for _ in range(MARCHING_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
                 path = self._path(settled)
-                errors = errors_of_pair(before, path, MARCHING.settled_distance * self.request.accuracy)
+                errors = errors_of_pair(
+                    before, path, MARCHING_SETTINGS.settled_distance * self.request.accuracy
+                )
                 if errors.largest <= enough:
                     break
             if in_limit:
@@ -118,17 +124,19 @@ class _MarchedMotion:
     def _settled_on_finer_mesh(self, settled: _SettledMotion) -> _SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
-        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
-        self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
+        self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
+        self.scheme = replace(
+            self.scheme, tolerance=MARCHING_SETTINGS.tolerance_ratio * self.scheme.tolerance
+        )
         self.beam = self._beam()
-        z = self.beam.state_of_stresses(before.stresses_on(self.beam.mesh, settled.z))
+        z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.z))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.mode.period))
 
     def _integrate_until_settled(self, z: Array) -> _SettledMotion:
         """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
-        step = self.mode.period / MARCHING.first_steps_per_period
+        step = self.mode.period / MARCHING_SETTINGS.first_steps_per_period
         last = nan
         rate = 0.0
         most = self.request.most_periods
@@ -136,30 +144,30 @@ class _MarchedMotion:
             report(lambda: SolvePosition(f"{self.returns} of at most {most} returns of the tip"))
             run = self._run(
                 z,
-                MARCHING.max_run_duration * MARCHING.returns_per_test * self.mode.period,
+                MARCHING_SETTINGS.max_run_duration * MARCHING_SETTINGS.returns_per_test * self.mode.period,
                 step,
-                until_returns(row, z, MARCHING.returns_per_test),
+                until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
-            past.extend(self.beam.layout.field(states, "m3"))
+            past.extend(self.beam.layout.stress_field(states, "m3"))
             self.returns += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
-            if len(past) <= MARCHING.returns_per_test:
+            if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            noise = MARCHING.return_noise * self.scheme.tolerance
+            noise = MARCHING_SETTINGS.return_noise * self.scheme.tolerance
             # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
-                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING.returns_per_test)
+                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING_SETTINGS.returns_per_test)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-            if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
+            if distance <= MARCHING_SETTINGS.settled_distance * self.request.accuracy * (1 - rate):
                 return _SettledMotion(z, turns, step)
         raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.returns, len(past), last))
 
@@ -197,9 +205,15 @@ class _MarchedMotion:
         """The cycle of a settled motion, from a further run of more than a period; raises _NoCycle."""
         returns = settled.turns + 2
         limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
-        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.max_measured_tolerance))
+        scheme = replace(
+            self.scheme, tolerance=min(self.scheme.tolerance, MARCHING_SETTINGS.max_measured_tolerance)
+        )
         run = self._run(
-            settled.z, MARCHING.max_run_duration * returns * self.mode.period, settled.step, limit, scheme
+            settled.z,
+            MARCHING_SETTINGS.max_run_duration * returns * self.mode.period,
+            settled.step,
+            limit,
+            scheme,
         )
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
@@ -208,12 +222,19 @@ class _MarchedMotion:
         spline = CubicSpline(run.times, run.states)
         states = spline(
             times[0]
-            + period * node_times(MARCHING.measured_intervals * settled.turns, MARCHING.measured_stages)
+            + period
+            * node_times(
+                MARCHING_SETTINGS.measured_intervals * settled.turns, MARCHING_SETTINGS.measured_stages
+            )
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
             Orbit.of(
-                form, NO_SYMMETRY, period, form_states(self.beam, form, states), MARCHING.measured_stages
+                form,
+                NO_SYMMETRY,
+                period,
+                form_states(self.beam, form, states),
+                MARCHING_SETTINGS.measured_stages,
             )
         )
 
@@ -223,7 +244,9 @@ class _MarchedMotion:
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
-        coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
+        coordinates = {
+            name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
+        }
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relax_fast_components(self.beam, settled.z, self.mode.period)

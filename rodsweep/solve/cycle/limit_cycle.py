@@ -224,7 +224,7 @@ def _cycle_from_motion(
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.predictor.orbit
-        start = beam.state_of_stresses(orbit.form.stresses_on(beam.mesh, orbit.start))
+        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 

@@ -165,7 +165,7 @@ def cycle_from_neighbour(
     """
     if form.rod.build != neighbour.predictor.orbit.form.rod.build:
         raise Unsolvable("the neighbouring rod has another constitutive law or another profile along the rod")
-    if form.omega_unknown != neighbour.predictor.orbit.form.omega_unknown:
+    if form.is_omega_unknown != neighbour.predictor.orbit.form.is_omega_unknown:
         raise Unsolvable(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )

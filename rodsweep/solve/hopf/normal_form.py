@@ -23,7 +23,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.wave_number import wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halve_elements
-from ...discretization.elements.mesh import mesh_on
+from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
@@ -135,12 +135,12 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
-    h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
-    h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
+    h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))
+    h11 = -longitudinal.lu_factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
-    if form.law.nonlinear:
+    if form.law.is_nonlinear:
         c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
-    slope = np.vdot(p, form.times_A_F(q))
+    slope = np.vdot(p, form.times_force_derivative_of_A(q))
     return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
 
 
@@ -193,7 +193,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
         raise Unsolvable(
             f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
         )
-    normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
+    normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.found) * abs(w):
         raise Unsolvable(
             f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest eigenvalue is "
@@ -213,9 +213,9 @@ def _eigenvalue_and_modes(
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
-        factors = elements.factors(shift)
+        factors = elements.lu_factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
-        q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
+        q = p = np.where(elements.form.reflection_signs < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
             q = factors.solve(elements.times_M(q))
             p = factors.solve(elements.times_M(p), adjoint=True)
@@ -231,5 +231,5 @@ def _eigenvalue_and_modes(
         raise Unsolvable(f"the eigenvalue near w = {guess:.6g} is real: no mode oscillates there")
     # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; with <p, M q> = 1, a
     # projection on q needs no denominator.
-    scale = 2 * (elements.form.tip_y @ q)
+    scale = 2 * (elements.form.tip_y_row @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

@@ -14,7 +14,7 @@ from ...arrays import Array, Complex
 from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_form
-from ...discretization.straight.pencil import tip_scale
+from ...discretization.straight.pencil import factors_to_unit_tip
 from ...model.rod import Rod
 
 
@@ -73,7 +73,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,)."""
     form = dense_form(rod, pencil)
     X, Z, rounding = _eigenvectors(form, eigenvalues)
-    evaluation = form.mesh.evaluation(points)
+    evaluation = form.mesh.evaluation_matrix(points)
     B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
@@ -127,7 +127,7 @@ def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Compl
     # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
-    right, left = (V * tip_scale(*form.fields(V)) for V in (X, Z))
+    right, left = (V * factors_to_unit_tip(*form.fields(V)) for V in (X, Z))
     return right, left, rounding
 
 

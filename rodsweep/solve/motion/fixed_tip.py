@@ -95,7 +95,7 @@ class _Bending:
 
     def tip(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""
-        end: Array = self._beam.tip(self.state(Pi))[:2]
+        end: Array = self._beam.tip_coordinates(self.state(Pi))[:2]
         return end
 
     def state(self, Pi: Array) -> Array:

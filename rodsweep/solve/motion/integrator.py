@@ -17,7 +17,7 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
-from ..backend.c_functions import call
+from ..backend.c_functions import call_petsc
 from ..backend.petsc import PETSc
 from ..backend.solver_pools import LruPool
 from .callbacks import Workspace
@@ -171,7 +171,7 @@ class Integrator:
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.reached is None:
-            call("TSSetPostStep", ts.handle, end_step.address)
+            call_petsc("TSSetPostStep", ts.handle, end_step.address)
         else:
             ts.setPostStep(self._stop_at_limit)
         message = ""

@@ -17,7 +17,7 @@ from ...discretization.elements.collocation import Collocation, radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
-from .semidiscrete import Semidiscrete
+from .semidiscrete import SemidiscreteEquations
 from .symmetry import Symmetry
 
 
@@ -88,14 +88,14 @@ class Orbit:
         return self.symmetry.parts > 1
 
     @property
-    def semidiscrete(self) -> Semidiscrete:
+    def semidiscrete(self) -> SemidiscreteEquations:
         return _semidiscrete(self.form, self.symmetry, self.intervals, self.stages)
 
     @property
     def size(self) -> float:
         """Size of the motion: largest energy norm of the states over the period, in units of sqrt(energy)."""
         # The norm is the same in the part of the period that follows by symmetry.
-        return float(self.form.amplitude(self.regular_states).max())
+        return float(self.form.energy_norm(self.regular_states).max())
 
     def plus_change(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit with the values `values` + `share` * `change`; change: (N,)."""
@@ -115,7 +115,7 @@ class Orbit:
         if target != source:
             points = between_intervals(source, target) @ points
         if grid != self.form.mesh:
-            points = self.form.states_on(grid, points)
+            points = self.form.states_on_mesh(grid, points)
         return replace(
             self,
             form=replace(self.form, mesh=grid),
@@ -125,18 +125,18 @@ class Orbit:
         )
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
-def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
+def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> SemidiscreteEquations:
     """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
     cached."""
-    d = radau_method(stages).differentiation
+    d = radau_method(stages).differentiation_matrix
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
     parts = float(symmetry.parts)
-    return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
+    return SemidiscreteEquations(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def interval_lengths(intervals: int) -> Array:
     """Lengths of the time intervals as fractions of the solved duration, (intervals,): the last two intervals
     are half as long as the other intervals, which have equal lengths.
@@ -160,7 +160,7 @@ def node_times(intervals: int, stages: int) -> Array:
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. source,
     target: (intervals K, stages s). Shape: (1 + K s of target, 1 + K s of source)."""
@@ -183,7 +183,7 @@ def piecewise(source: tuple[int, int], times: Array) -> csr_array:
     for interval in np.unique(k):
         inside = k == interval
         within = (times[inside] - starts[interval]) / lengths[interval]
-        weights[inside] = radau_method(s).evaluation(within)
+        weights[inside] = radau_method(s).evaluation_matrix(within)
     first = k * s  # the end of the previous interval is the start of this interval
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)

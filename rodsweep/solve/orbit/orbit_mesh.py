@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.elements.elements import halve_elements
-from ...discretization.elements.mesh import Mesh, mesh_on
+from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
@@ -90,7 +90,7 @@ class OrbitMesh:
 
     @property
     def grid(self) -> Mesh:
-        return mesh_on(self.edges, self.order)
+        return mesh_with_edges(self.edges, self.order)
 
     @property
     def unknowns(self) -> int:

@@ -49,7 +49,7 @@ class Symmetry:
         return (1 - self.of(np.ones(layout.unknowns), layout)) / 2
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     """The cached matrix that `Symmetry.matrix` returns, (unknowns, unknowns)."""
     return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)

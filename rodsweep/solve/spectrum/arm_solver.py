@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ...arrays import Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
-from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalues
+from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalue_count
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
 from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
@@ -40,12 +40,12 @@ class ArmSolver(ShiftInvertSolver):
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift)
+        return LoadedPencil(finite_eigenvalue_count(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was
         solved last, (unknowns, k)."""
-        return fields_of_vectors(vectors, self.matrices.scale)
+        return fields_of_vectors(vectors, self.matrices.displacement_factors)
 
 
 _arm_solvers = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers)

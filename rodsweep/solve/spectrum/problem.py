@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import COMPLETENESS, cheapest_proof, prove_complete
+from ...determinant.arm.completeness import COMPLETENESS_SETTINGS, cheapest_proof, prove_complete
 from ...determinant.arm.count.count import count_right_of as count_of_arm
 from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
@@ -141,7 +141,7 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
-        self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
+        self.spare_eigenvalues = COMPLETENESS_SETTINGS.spare_eigenvalues if to_prove and self.has_bound else 0
         growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 

@@ -15,7 +15,7 @@ from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import outcome_or_failure
 from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
 from .problem import TransverseProblem, transverse_problem
-from .search_settings import SEARCH
+from .search_settings import SEARCH_SETTINGS
 from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
@@ -91,8 +91,11 @@ class Search:
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
-        for turn in range(SEARCH.max_meshes):
-            if self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns or self.failures > SEARCH.max_failures:
+        for turn in range(SEARCH_SETTINGS.max_meshes):
+            if (
+                self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns
+                or self.failures > SEARCH_SETTINGS.max_failures
+            ):
                 break
             tight = self.with_vectors or turn > 0
             found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
@@ -101,8 +104,8 @@ class Search:
                 continue
             self.update_best(judged)
             if (
-                judged.error_over_limit <= SEARCH.max_error_over_limit
-                or self.stalled_refinements >= SEARCH.max_stalled_refinements
+                judged.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
+                or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements
             ):
                 break
             self.mesh = self.problem.next_mesh_for(
@@ -118,7 +121,7 @@ class Search:
             self.failures += bool(found.failure)
             self.failure_reason = found.failure or self.failure_reason
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
-            if len(found.roots.w) >= SEARCH.min_resolved_fraction * self.modes:
+            if len(found.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
                 self.requested += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
@@ -128,7 +131,7 @@ class Search:
         comparison = (
             compare_with_count(self.problem, found.roots, self.modes) if self.request.certify else None
         )
-        if comparison is not None and comparison.count.number is None and found.roots.unmatched_ahead:
+        if comparison is not None and comparison.count.number is None and found.roots.unmatched_count:
             self.unresolved = True
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
@@ -147,7 +150,11 @@ class Search:
         error = found.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.with_vectors:
             return error
-        allowed = SEARCH.largest_displacement if self.problem.has_bound else SEARCH.unbounded_displacement
+        allowed = (
+            SEARCH_SETTINGS.largest_displacement
+            if self.problem.has_bound
+            else SEARCH_SETTINGS.unbounded_displacement
+        )
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
@@ -158,9 +165,9 @@ class Search:
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
-        more = number + SEARCH.spare_modes
+        more = number + SEARCH_SETTINGS.spare_modes
         if more <= self.requested:  # missing eigenvalues are far from the shift or unresolved
-            more = self.requested + number - here + SEARCH.spare_modes
+            more = self.requested + number - here + SEARCH_SETTINGS.spare_modes
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_more(more)
 
@@ -169,7 +176,7 @@ class Search:
         SEARCH.max_unproved_modes, for a list without a proof."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
-        return len(found.roots.w) < SEARCH.max_unproved_modes or self.problem.is_countable
+        return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
     def request_beyond_axis(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
@@ -178,12 +185,12 @@ class Search:
         self.unresolved = True
         if number < self.requested:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_more(max(self.requested, 2 * number + SEARCH.spare_modes))
+        self.request_more(max(self.requested, 2 * number + SEARCH_SETTINGS.spare_modes))
 
     def request_more(self, requested: int) -> None:
         """Requests `requested` eigenvalues, and refines the mesh until it has enough unknowns for them."""
         while (
-            requested > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
+            requested > self.mesh.unknowns // SEARCH_SETTINGS.min_unknowns_per_mode
             and self.mesh.unknowns <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
@@ -192,13 +199,13 @@ class Search:
     def update_best(self, judged: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
-        limit = SEARCH.progress_ratio * best.error_over_limit if best else 0.0
+        limit = SEARCH_SETTINGS.progress_ratio * best.error_over_limit if best else 0.0
         better = best is None or judged.sort_key < (best.sort_key[0], limit)
         self.stalled_refinements = 0 if better else self.stalled_refinements + 1
         if (
             best is None
             or judged.sort_key <= best.sort_key
-            or judged.error_over_limit <= SEARCH.max_error_over_limit
+            or judged.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
         ):
             self.best = judged
 
@@ -221,11 +228,11 @@ def _spectrum(best: CheckedCandidates, problem: TransverseProblem, request: Spec
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
     found = best.candidates.roots
     comparison = best.comparison
-    accurate = best.error_over_limit <= SEARCH.max_stalled_error_over_limit
+    accurate = best.error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
     status = SpectrumStatus.ok if accurate else SpectrumStatus.accuracy_not_reached
     proved = comparison is not None and comparison.agrees
     w: Any = found.w.tolist()
-    on_the_axis: Any = found.on_the_axis.tolist()
+    on_the_axis: Any = found.is_on_axis.tolist()
     undecided = any(on_the_axis)
     message = ""
     if status == SpectrumStatus.ok and request.certify:

@@ -34,7 +34,7 @@ from rodsweep.solve.branch.symmetry import (
     symmetry_breakings_in,
 )
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.orbit.matrix.right_sides import equations
+from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.branch import branch_values
 
@@ -115,7 +115,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
     def rate(_, x):
-        equations(x, F, V, G, p)
+        write_rates_of_state(x, F, V, G, p)
         return F / p.mass
 
     times = orbit.period * np.array([0.5, 1.0])

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION
+from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.accuracy.refinement import refined_at_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -34,7 +34,9 @@ RODS = {
 def near(request):
     """An orbit near the rod's cycle."""
     rod, gamma1 = request.param
-    return orbit_from_hopf(StressForm(rod.changed(gamma1=gamma1), mesh(1, 16)), hopf_point_below(rod), MEMORY)
+    return orbit_from_hopf(
+        StressForm(rod.changed(gamma1=gamma1), uniform_mesh(1, 16)), hopf_point_below(rod), MEMORY
+    )
 
 
 def off(orbit, exact):
@@ -61,7 +63,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
             CyclePath(found), CyclePath(newton(finer.interpolate(found), 1e-12, MEMORY).orbit)
         )
         for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
-            assert true[which] <= CALIBRATION.safety_factor * parts[which] + 1e-12
+            assert true[which] <= CALIBRATION_SETTINGS.safety_factor * parts[which] + 1e-12
 
 
 def test_coarser_meshes_predict_those_that_are_a_little_finer(near):

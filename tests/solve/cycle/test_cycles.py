@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.periodic import interpolate_samples, time_derivative
 from rodsweep.discretization.elements.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentIncomplete
@@ -26,7 +26,7 @@ from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cy
 from rodsweep.solve.cycle.reference_rod import warm_up
 from rodsweep.solve.cycle.transient import schemes, transient
 from rodsweep.solve.motion.integrator import forget_integrators
-from rodsweep.solve.orbit.compiled_measures import powers
+from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
 from rodsweep.solve.orbit.newton import at_orbit, newton
@@ -338,7 +338,7 @@ def repeated(half, times):
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
-    half = newton(orbit_at_fifty().on_mesh(mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    half = newton(orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
@@ -351,7 +351,9 @@ def test_three_periods_are_recognised_and_cut_to_one():
 
 @cache
 def orbit_on(elements, order):
-    return newton(orbit_at_fifty().on_mesh(mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    return newton(
+        orbit_at_fifty().on_mesh(uniform_mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()
+    ).orbit
 
 
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])
@@ -384,7 +386,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
     m, stages = measures_of(CyclePath(half)), half.states.reshape(-1, half.form.unknowns)
     power, weights = np.empty((2, len(stages))), np.outer(interval_lengths(12), half.method.weights).ravel()
-    powers(stages, power, half.semidiscrete)
+    write_powers(stages, power, half.semidiscrete)
     mean = power @ weights
     rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)
     assert (m.injection_mean, m.dissipation_mean) == pytest.approx(tuple(mean), rel=1e-13)
@@ -396,7 +398,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
     stresses = half.form.stresses(half.states[:, -1])
-    analysis = legendre_analysis(2 * mesh(1, order).positions - 1)
+    analysis = legendre_analysis(2 * uniform_mesh(1, order).positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]

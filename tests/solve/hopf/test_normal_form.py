@@ -12,7 +12,7 @@ from mixed_motion import mixed_form
 from rods import rod_of
 
 from rodsweep.determinant.roots.newton import eigenvalue_newton
-from rodsweep.determinant.value import newton_correction
+from rodsweep.determinant.value import newton_correction_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
@@ -62,9 +62,9 @@ def test_modes_are_those_of_the_eigenvalue(rod, w):
 @EACH
 def test_right_mode_deflects_the_tip_by_a_half(rod, w):
     form, q = form_of(rod), normal_of(rod, w).q
-    assert form.tip_y @ q == pytest.approx(0.5, rel=1e-14)
+    assert form.tip_y_row @ q == pytest.approx(0.5, rel=1e-14)
     assert -mixed.reaction(form, q)[1] / w == pytest.approx(0.5, rel=1e-9)
-    v2 = form.fields(q)[1][1]
+    v2 = form.stresses_and_velocities(q)[1][1]
     assert v2[-1] / w == pytest.approx(0.5, rel=1e-9)
 
 
@@ -101,8 +101,8 @@ def test_second_order_fields_satisfy_their_equations(rod, w):
         (-form.A, normal.h11, form.bilinear(q, q.conj())),
     ):
         assert np.abs(matrix @ field - source).max() <= 1e-12 * (np.abs(matrix) @ np.abs(field)).max()
-        assert np.all(form.parity * field == field)
-    assert np.all(form.parity * q == -q)
+        assert np.all(form.reflection_signs * field == field)
+    assert np.all(form.reflection_signs * q == -q)
     assert normal.h11.dtype == float
 
 
@@ -136,7 +136,7 @@ def hopf_points():
             if event["kind"].startswith("hopf"):
                 numbers = event["F"], row["k1"], row["k2"], row["gamma3"]
                 rod, w = rod_of(*map(float, numbers)), 1j * float(event["frequency"])
-                if newton_correction(w, rod.coefficients)[2] < 10 * np.pi:
+                if newton_correction_and_scales(w, rod.coefficients)[2] < 10 * np.pi:
                     yield rod, w
 
 
@@ -176,7 +176,7 @@ def test_motion_solves_the_equations_to_second_order(rod, w):
     left = []
     for amplitude in (1e-3, 1e-4):
         X = normal.motion(amplitude, phases)
-        assert form.tip_y @ X.T == pytest.approx(amplitude * np.cos(phases), abs=1e-12 * amplitude)
+        assert form.tip_y_row @ X.T == pytest.approx(amplitude * np.cos(phases), abs=1e-12 * amplitude)
         left.append(np.abs(w.imag * form.M * (harmonic_derivative(9) @ X) - mixed.rate(form, X)).max())
     assert left[0] / left[1] == pytest.approx(1000, rel=0.01)
 
@@ -204,12 +204,12 @@ def solved_cycle(form, X, frequency):
         blocks[:, np.arange(unknowns), :, np.arange(unknowns)] = frequency * form.M[:, None, None] * D
         blocks[each, :, each, :] -= np.array([mixed.jacobian(form, x) for x in X])
         J[:-1, -1] = (form.M * dX).ravel()
-        J[-1, :-1] = np.outer(D[0], form.tip_y).ravel()
-        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y)
+        J[-1, :-1] = np.outer(D[0], form.tip_y_row).ravel()
+        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_row)
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(n, unknowns), frequency + step[-1]
-        tip = X @ form.tip_y
-        if np.abs(step[:-1].reshape(n, unknowns) @ form.tip_y).max() <= 1e-8 * np.abs(tip).max():
+        tip = X @ form.tip_y_row
+        if np.abs(step[:-1].reshape(n, unknowns) @ form.tip_y_row).max() <= 1e-8 * np.abs(tip).max():
             return 2 * abs(np.fft.fft(tip)[1]) / n, frequency
     raise AssertionError("no cycle")
 

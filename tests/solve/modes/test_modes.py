@@ -12,11 +12,16 @@ from scipy.linalg import expm
 from surveyed import few
 
 from rodsweep.determinant.value import distance_to_next_root
-from rodsweep.discretization.elements.basis import differentiation
-from rodsweep.discretization.elements.quadrature import gauss_lobatto, lobatto_points
+from rodsweep.discretization.elements.basis import differentiation_matrix
+from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.dense_form import dense_form
-from rodsweep.discretization.straight.pencil import assemble_pencil, fields_of_vectors, shear_force, tip_scale
+from rodsweep.discretization.straight.pencil import (
+    assemble_pencil,
+    factors_to_unit_tip,
+    fields_of_vectors,
+    shear_force,
+)
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
 from rodsweep.solve.modes import inverse_iteration as inverse_module
@@ -35,8 +40,8 @@ NODES = 65
 TIGHT = ModesRequest(modes=4, accuracy=1e-10, nodes=NODES, growth=True)
 SHAPES = ModesRequest(modes=4, accuracy=1e-10, nodes=NODES, growth=False)
 POINTS = lobatto_points(NODES)
-WEIGHTS = gauss_lobatto(NODES - 1)[1] / 2
-SLOPE = 2 * differentiation(gauss_lobatto(NODES - 1)[0])
+WEIGHTS = gauss_lobatto_rule(NODES - 1)[1] / 2
+SLOPE = 2 * differentiation_matrix(gauss_lobatto_rule(NODES - 1)[0])
 ONSET = 20.0080206921031
 """F* of (1e4, 1e4, 1e-4), where the first two eigenvalues meet (docs/method.md, reference values)."""
 
@@ -750,9 +755,11 @@ def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     vectors = np.ones((pencil.unknowns, 3), complex)
     vectors[pencil.nodes - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
-        scale = tip_scale(*fields_of_vectors(vectors, pencil.scale(rod)))
+        scale = factors_to_unit_tip(*fields_of_vectors(vectors, pencil.displacement_factors(rod)))
     assert np.isnan(scale[:2]).all()
-    assert scale[2] * fields_of_vectors(vectors, pencil.scale(rod))[0][-1, 2] == pytest.approx(1)
+    assert scale[2] * fields_of_vectors(vectors, pencil.displacement_factors(rod))[0][-1, 2] == pytest.approx(
+        1
+    )
 
 
 def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypatch):

@@ -50,13 +50,13 @@ def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_posit
     h, verdicts = 1e-3, []
     for bending in (1.0, 10.0, 14.0, 17.0, 20.0, 30.0):
         z = np.zeros(beam.unknowns)
-        beam.layout.field(z, "m3")[3] = bending
+        beam.layout.stress_field(z, "m3")[3] = bending
         U = {(i, j): moved_energy(beam, z, i * h, j * h) for i in (-1, 0, 1) for j in (-1, 0, 1)}
         a = U[1, 0] - 2 * U[0, 0] + U[-1, 0]
         b = U[0, 1] - 2 * U[0, 0] + U[0, -1]
         c = (U[1, 1] - U[1, -1] - U[-1, 1] + U[-1, -1]) / 4
-        assert beam.is_convex(z) == (a > 0 and a * b > c * c)
-        verdicts.append(beam.is_convex(z))
+        assert beam.has_convex_energy(z) == (a > 0 and a * b > c * c)
+        verdicts.append(beam.has_convex_energy(z))
     assert verdicts[0] and not verdicts[-1]
 
 

@@ -17,8 +17,8 @@ from ....model.compiled.settings import CompiledSettings
 from ..determinant import ArmDeterminant, BoundedPropagators
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain
-from .dominant_wave import slope_of_wave
-from .settings import ARM_COUNT
+from .dominant_wave import dominant_exponent_slope
+from .settings import ARM_COUNT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +54,7 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
     height = NEAR_AXIS_SETTINGS.first_height
     while height < top:
         W, propagators = determinant.level(
-            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, ARM_COUNT.max_level_ratio
+            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, ARM_COUNT_SETTINGS.max_level_ratio
         )
         heights = [height]
         while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
@@ -91,7 +91,7 @@ def _mode_near(start: complex, known: Complex, level: BoundedPropagators, sample
         value = determinant_along_chain(w, level[0], level[1])
         if value.D == 0:
             return w
-        slope = value.D_w / value.D - slope_of_wave(w, samples)
+        slope = value.D_w / value.D - dominant_exponent_slope(w, samples)
         for k in range(len(known)):
             slope -= 1 / (w - known[k]) if w != known[k] else 0j
         if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance * start.imag > 1:

@@ -83,7 +83,7 @@ class ArmCountSettings(CompiledSettings):
         return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_points).tolist())
 
 
-ARM_COUNT = ArmCountSettings()
+ARM_COUNT_SETTINGS = ArmCountSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,7 +127,9 @@ class NoCrossingSettings(CompiledSettings):
     @property
     def max_change(self) -> float:
         """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
-        return ARM_COUNT.max_change / (ARM_COUNT.between_points_factor * self.between_arms_factor)
+        return ARM_COUNT_SETTINGS.max_change / (
+            ARM_COUNT_SETTINGS.between_points_factor * self.between_arms_factor
+        )
 
 
 NO_CROSSING_SETTINGS = NoCrossingSettings()

@@ -98,7 +98,7 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
     # Where gamma3 passes the least eliminated drag, the unknowns of the states change: states cannot be
     # compared.
-    if form.omega_unknown != orbit.form.omega_unknown:
+    if form.is_omega_unknown != orbit.form.is_omega_unknown:
         raise Unsolvable(
             f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
             "or is eliminated"

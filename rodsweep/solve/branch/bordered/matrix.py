@@ -8,19 +8,19 @@ from functools import cached_property
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...orbit.matrix.elimination import eliminate
+from ...orbit.matrix.elimination import eliminate_newton_matrix
 from ...orbit.matrix.linearisation import (
-    change_along,
-    jump_of,
-    over_period,
+    closing_residual,
+    multipliers_over_period,
+    parameter_derivatives,
     partial_multipliers,
     reduced_residuals,
     reduced_variations,
 )
-from ...orbit.matrix.phase import phase, phase_change, phase_row
-from ...orbit.matrix.right_sides import right_sides
+from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
+from ...orbit.matrix.right_sides import write_newton_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
-from ...orbit.matrix.substitution import substitute
+from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
@@ -41,14 +41,16 @@ class BorderedMatrix:
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
         p = orbit.semidiscrete
-        along = change_along(orbit.form, scale.name)
+        along = parameter_derivatives(orbit.form, scale.name)
         K, s, n = orbit.states.shape
-        V = np.empty((K, s, 3, len(p.matrices.weights)))
+        V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
-        right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
-        ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
+        write_newton_right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        ends = eliminate_newton_matrix(
+            orbit.points, V, orbit.duration, p, self._memory.factors, self._columns
+        )
         self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
         m = len(self._shooting_intervals.maps)
         self._matrix = np.zeros((m * n + 2, m * n + 2))
@@ -65,10 +67,11 @@ class BorderedMatrix:
             own = slice(c, c + 1)
             self._matrix[:-2, place] = -self.closing_sides(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
-        phase_row(orbit.start, p.rod, p.matrices, row)
+        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
         self._matrix[-2, :n] = row
-        # `phase_change` is a right-hand side, with a minus sign; in a column of the matrix the sign is plus.
-        self._matrix[-2, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
+        # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
+        # plus.
+        self._matrix[-2, -1] = -phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
         self._closing_sides = self._closing_and_phase_sides(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
@@ -98,7 +101,7 @@ class BorderedMatrix:
 
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
-        along = change_along(orbit.form, self.scale.name)
+        along = parameter_derivatives(orbit.form, self.scale.name)
         equations = orbit.semidiscrete
         p = self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
@@ -110,7 +113,7 @@ class BorderedMatrix:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
         state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
-        substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
+        substitute_stages(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
@@ -131,7 +134,7 @@ class BorderedMatrix:
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return over_period(self.partial_multipliers, self.orbit)
+        return multipliers_over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Right singular vector of the matrix with the parameter fixed, for the smallest singular value, (N +
@@ -163,8 +166,8 @@ class BorderedMatrix:
         n). ends: change of the end of the last shooting interval caused by `columns` for a fixed start, (1,
         n)."""
         p = orbit.semidiscrete
-        right = self.closing_sides(jump_of(orbit.points, p), columns, ends)
-        return np.append(right, -phase(orbit.start, p.rod, p.matrices))
+        right = self.closing_sides(closing_residual(orbit.points, p), columns, ends)
+        return np.append(right, -phase_residual(orbit.start, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log

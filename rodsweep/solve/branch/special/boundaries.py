@@ -13,7 +13,15 @@ from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundar
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
 from .curves import END_SETTINGS, SpecialCurveProblem
-from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalfCurve
+from .cycle_curves import (
+    CURVE_IDENTITY_SETTINGS,
+    Arrays,
+    CurveEnd,
+    CurvePoint,
+    CycleCurve,
+    HalfCurve,
+    TracedHalfCurve,
+)
 from .on_curve import SolvedPoint
 from .point import SpecialKind, SpecialPoint
 
@@ -70,7 +78,7 @@ class SpecialBoundaries:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY.max_distance)
+            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_distance)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -155,7 +163,7 @@ class _CurvesOfKind:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
         near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY.max_distance
+        lies_off = near > CURVE_IDENTITY_SETTINGS.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return 0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special[seed]) else near
 
@@ -163,7 +171,7 @@ class _CurvesOfKind:
         """Whether two curves are identical: their ends coincide within a tolerance."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
+        return all(distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances)
 
     def _position(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
@@ -188,7 +196,8 @@ class _CurvesOfKind:
             chord = x + share * (self.line.coordinate(last.at) - x)
             if (
                 0 <= share <= 1
-                and abs(chord - self.line.coordinate(one.at)) <= CURVE_IDENTITY.max_last_chord_distance
+                and abs(chord - self.line.coordinate(one.at))
+                <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance
             ):
                 return True
         return False
@@ -207,8 +216,8 @@ def _trace_half_curve(
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY.max_distance * width
-        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference
+        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_distance * width
+        and abs(point.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not same:
         return TracedHalfCurve(None)
@@ -217,7 +226,9 @@ def _trace_half_curve(
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.max_distance}
+    near = {
+        i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY_SETTINGS.max_distance
+    }
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
@@ -235,7 +246,7 @@ def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], on
             crossing = limits.on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
-        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
+        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
             best = min(best, abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)))
     return best
 
@@ -245,6 +256,10 @@ def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one
     x = limits.line.coordinate(one.at)
     ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
-    ratio = 1 + CURVE_IDENTITY.max_period_change
+    on_line = (
+        ends[0] - CURVE_IDENTITY_SETTINGS.max_chord_distance
+        <= x
+        <= ends[1] + CURVE_IDENTITY_SETTINGS.max_chord_distance
+    )
+    ratio = 1 + CURVE_IDENTITY_SETTINGS.max_period_change
     return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio

@@ -18,7 +18,7 @@ from ...point import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from .augmented.functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
-from .cycle_curves import CURVE_IDENTITY, CurveEnd, lagrange_weights
+from .cycle_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
 from .family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
 from .on_curve import (
@@ -37,7 +37,7 @@ CURVE_STEPS = StepControl(
     min_length=1e-4,
     target_error=3e-3,
     max_error=0.1,
-    prediction_order=CURVE_IDENTITY.max_interpolated_points,
+    prediction_order=CURVE_IDENTITY_SETTINGS.max_interpolated_points,
     max_angle=0.55,
     max_ratio=2.0,
     max_solutions=400,
@@ -139,7 +139,7 @@ class SpecialCurveProblem:
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
-        known = points[-CURVE_IDENTITY.max_interpolated_points :]
+        known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
@@ -147,7 +147,7 @@ class SpecialCurveProblem:
         crushing margin; unchanged if the last point has less than half of this margin."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        known = points[-CURVE_IDENTITY.max_interpolated_points :]
+        known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         lengths = arc_lengths(known)
 
         def distance(longest: float) -> float:

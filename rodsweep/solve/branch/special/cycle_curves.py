@@ -49,7 +49,7 @@ class CurveIdentitySettings:
     coordinates differ by at most this number; each axis has length 1."""
 
 
-CURVE_IDENTITY = CurveIdentitySettings()
+CURVE_IDENTITY_SETTINGS = CurveIdentitySettings()
 
 
 Arrays = dict[str, Array]
@@ -191,7 +191,7 @@ def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[Generalis
         for point in known:
             pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
             if all(
-                abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY.max_hopf_distance
+                abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
                 for axis, a, b in pairs
             ):
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
@@ -212,13 +212,13 @@ def lagrange_weights(places: Array, at: float) -> Array:
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None if there are too few points."""
-    known = points[-CURVE_IDENTITY.max_interpolated_points :]
-    if len(known) < CURVE_IDENTITY.max_interpolated_points:
+    known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    if len(known) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])
     # The error estimate is the difference between the polynomials with and without the first point.
     best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)
-    error = CURVE_IDENTITY.extrapolation_factor * difference
+    error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

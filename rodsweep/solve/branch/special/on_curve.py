@@ -172,7 +172,7 @@ class SolvedPoint:
     @property
     def tip_y_max(self) -> float:
         """Largest tip y of the cycle, in L: the modulus of the tip's y at t = 0."""
-        return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
+        return abs(float(self.orbit.form.tip_coordinates(self.orbit.start)[1]))
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
@@ -219,7 +219,7 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
-    if form.omega_unknown != orbit.form.omega_unknown:
+    if form.is_omega_unknown != orbit.form.is_omega_unknown:
         raise Unsolvable(
             f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
             "or is eliminated"

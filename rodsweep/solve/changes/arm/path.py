@@ -76,7 +76,7 @@ class ArmPath(PathProblem):
 
     def _family(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
-        made = next((one for one in self._families if one.low <= p <= one.high), None)
+        made = next((one for one in self._families if one.p_low <= p <= one.p_high), None)
         if (
             made is None
             and self._followed is not None
@@ -89,7 +89,9 @@ class ArmPath(PathProblem):
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if possible
         and if no stored family suffices."""
         W = ARM_PATH_SETTINGS.headroom * highest
-        if any(one.low <= low and high <= one.high and highest * 2 <= one.W for one in self._families):
+        if any(
+            one.p_low <= low and high <= one.p_high and highest * 2 <= one.largest_w for one in self._families
+        ):
             return
         with suppress(ValueError, FloatingPointError):
             family = interpolated_family(self.path, low, high, W)

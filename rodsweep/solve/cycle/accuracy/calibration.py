@@ -18,7 +18,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
 from ...orbit.tails import smooth_tails, tails_of
-from .calibration_settings import CALIBRATION
+from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
 
 MULTIPLIER = 4
@@ -71,7 +71,7 @@ class Calibration:
         has shrunk too much. change: relative change of the parameter since the previous orbit."""
         tails = _tails(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
-        dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
+        dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
         return replace(
             self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
         )
@@ -91,18 +91,18 @@ class Calibration:
     def is_valid(self) -> bool:
         """Whether the scaled errors apply: `reach` and `error_growth` do not exceed their limits."""
         return (
-            self.reach <= CALIBRATION.max_parameter_change
-            and float(self.error_growth.max()) <= CALIBRATION.max_error_growth
+            self.reach <= CALIBRATION_SETTINGS.max_parameter_change
+            and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
         )
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
-        return self.reach + change <= CALIBRATION.max_parameter_change
+        return self.reach + change <= CALIBRATION_SETTINGS.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
+        in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * np.minimum(
             _tail_growth(self.tails, _tails(orbit)), 1.0
         )
         return in_space * self.space, in_time * self.time
@@ -128,11 +128,11 @@ class Calibration:
         finer mesh if no allowed mesh suffices."""
         present = self.mesh
         allowed = ORBIT_MESH_SETTINGS
-        lowest = max(allowed.min_order, present.order - CALIBRATION.max_fewer_orders)
-        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION.max_more_orders)
+        lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_fewer_orders)
+        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION_SETTINGS.max_more_orders)
         orders = np.arange(lowest, highest + 1)
-        fewest = max(allowed.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
-        most = min(CALIBRATION.max_interval_ratio * present.intervals, allowed.max_intervals)
+        fewest = max(allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * present.intervals))
+        most = min(CALIBRATION_SETTINGS.max_interval_ratio * present.intervals, allowed.max_intervals)
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
         # than the distance of the tip's paths, and errors in time with the smallest order.
@@ -143,7 +143,7 @@ class Calibration:
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= CALIBRATION.planned_error * accuracy
+        enough = largest_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error * accuracy
         meshes = [
             replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
@@ -154,17 +154,17 @@ class Calibration:
 def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
     safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
-    whole = CALIBRATION.safety_factor * (space + time)
+    whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
     apart = space[WHOLE_PATH] + time[WHOLE_PATH]
-    in_time = CALIBRATION.min_error_share_in_time * time[WHOLE_PATH]
+    in_time = CALIBRATION_SETTINGS.min_error_share_in_time * time[WHOLE_PATH]
     parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
-    either = CALIBRATION.mutual_bound * (parts[0] + parts[1])
-    of_period = CALIBRATION.min_period_error_share * space[WHOLE_PATH] + in_time
-    of_height = CALIBRATION.min_height_error_share * space[WHOLE_PATH] + in_time
+    either = CALIBRATION_SETTINGS.mutual_bound * (parts[0] + parts[1])
+    of_period = CALIBRATION_SETTINGS.min_period_error_share * space[WHOLE_PATH] + in_time
+    of_height = CALIBRATION_SETTINGS.min_height_error_share * space[WHOLE_PATH] + in_time
     stated = [
         np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
         np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.min_extrema_error_share * apart),
+        np.maximum(whole[WORST_EXTREMUM], CALIBRATION_SETTINGS.min_extrema_error_share * apart),
         whole[MULTIPLIER],
     ]
     least = max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
@@ -174,7 +174,7 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
 
 def _tails(orbit: Orbit) -> Array:
     """Tails of an orbit in space and in time, not below CALIBRATION.min_tail, and size of the orbit, (3,)."""
-    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION.min_tail), orbit.size)
+    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
 
 
 def _growth(before: Array, after: Array) -> Array:
@@ -209,9 +209,12 @@ def calibration_of(
     """
     tails = _tails(orbit)
     if before is None:
-        decay = CALIBRATION.error_decay_ratio * tails_of(orbit).decay
-        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay))
-        power = np.full(ERROR_COUNT, CALIBRATION.time_order_by_stages * orbit.stages)
+        decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).decay
+        fall = np.full(
+            ERROR_COUNT,
+            min(max(decay, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay),
+        )
+        power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
     fall = before.fall
@@ -227,7 +230,9 @@ def _space_rate(before: Array, after: Array, orders: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
     on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
     fall: Array = np.clip(
-        _log_ratio(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
+        _log_ratio(before, after) / orders,
+        CALIBRATION_SETTINGS.min_space_decay,
+        CALIBRATION_SETTINGS.max_space_decay,
     )
     return fall
 
@@ -238,7 +243,9 @@ def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMes
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    power: Array = np.clip(_log_ratio(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
+    power: Array = np.clip(
+        _log_ratio(before, after) / steps, least, CALIBRATION_SETTINGS.max_time_order_ratio * least
+    )
     return power
 
 

@@ -20,7 +20,7 @@ from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
 from .calibration import Calibration, calibration_of
-from .calibration_settings import CALIBRATION
+from .calibration_settings import CALIBRATION_SETTINGS
 from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
 
 
@@ -127,7 +127,7 @@ class CoarserMeshes:
 def _pessimistic_space_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
     slowest = COARSER_MESH_SETTINGS.slowest_decay_ratio * tails_of(orbit).decay
-    return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
+    return min(max(slowest, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
 
 
 def _fewer_orders(near: Orbit) -> int:

@@ -35,7 +35,7 @@ class TipTrace:
 
         The relaxation rates, up to 1e10/tau2, are too large for cubic interpolation.
         """
-        tips = self.beam.tip(np.stack([z, relaxed]))
+        tips = self.beam.tip_coordinates(np.stack([z, relaxed]))
         slope = (tips[:, 1:] - tips[:, :1]) / duration
         self.times.append(np.array([0.0, duration]))
         self.tips.append(np.concatenate([tips, np.repeat(slope, 2, axis=1)]))

@@ -35,7 +35,7 @@ from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
 from .transient_outcome import TransientOutcome
-from .transient_settings import TRANSIENT
+from .transient_settings import TRANSIENT_SETTINGS
 
 
 class Transient:
@@ -72,11 +72,11 @@ class Transient:
         self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
             rate * period, request.transient > 0
         )
-        self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
+        self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns)
         self.amplitude = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
-        self.step = period / TRANSIENT.first_steps_per_period
+        self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
-        self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_stored_returns)
+        self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
         self.elapsed = 0.0
         self.returns = self.steps = self.jumps = self.failures = self.next_newton_return = 0
@@ -108,10 +108,10 @@ class Transient:
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
-                if self.trace or self.jumps >= TRANSIENT.max_jumps:
+                if self.trace or self.jumps >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
-                z = self._after_jump(TRANSIENT.restart_deflection * self.mode.z.real)
+                z = self._after_jump(TRANSIENT_SETTINGS.restart_deflection * self.mode.z.real)
                 continue
             early = first
             first = False
@@ -120,13 +120,13 @@ class Transient:
             shown = self.trace is not None and self.trace.needs_more_motion(z)
             if not early and not shown and self.amplitude.decays_as_linear(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            jumps = not early and self.jumps < TRANSIENT.max_jumps
+            jumps = not early and self.jumps < TRANSIENT_SETTINGS.max_jumps
             factor = self.amplitude.scale_to_cycle(times, states) if jumps else None
             if factor is not None:
                 if self.trace and not self.trace.is_full:
                     continue  # a motion with a stored path has no jumps
                 scaled = factor * z
-                pull = self.beam.layout.field(scaled, "n1")
+                pull = self.beam.layout.stress_field(scaled, "n1")
                 pull *= factor  # the stretch is quadratic in the deflection
                 z = self._after_jump(scaled)
                 continue
@@ -140,7 +140,7 @@ class Transient:
         times, states: of the returns, (k,) and (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
-        moments = self.beam.layout.field(states, "m3")
+        moments = self.beam.layout.stress_field(states, "m3")
         self.past_returns.extend(zip(map(float, self.elapsed + times), moments, strict=True))
         self.elapsed += run.times[-1]
 
@@ -164,7 +164,7 @@ class Transient:
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
-        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURN_SETTINGS.straight_size)
+        return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_size)
 
     def _rate_of_the_beam(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
@@ -192,12 +192,12 @@ class Transient:
         """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
         TRANSIENT.first_returns in the `first` run, but of at most TRANSIENT.max_run_duration times the
         expected time per return."""
-        returns = TRANSIENT.first_returns if first else TRANSIENT.returns_per_run
+        returns = TRANSIENT_SETTINGS.first_returns if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
         limit = until_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
-        duration = TRANSIENT.max_run_duration * returns * max(self.mode.period, last)
+        duration = TRANSIENT_SETTINGS.max_run_duration * returns * max(self.mode.period, last)
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
@@ -212,22 +212,25 @@ class Transient:
         turns, distance = repetition(
             [state for _, state in self.past_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
         )
-        if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
+        if (
+            self.failed_starts >= TRANSIENT_SETTINGS.max_failed_starts
+            and distance < TRANSIENT_SETTINGS.max_periodic_distance
+        ):
             self.unsolved_message = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
         if distance >= self._newton_start_distance() or self.returns < self.next_newton_return:
             return None
-        self.next_newton_return = self.returns + TRANSIENT.returns_per_run * 2**self.failures
-        self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
+        self.next_newton_return = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.failures
+        self.failures = min(self.failures + 1, TRANSIENT_SETTINGS.max_newton_failures)
         return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns)
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
-        distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
+        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.failures
         settles = self.trace and self.returns < self.most_periods // 2
-        return min(distance, TRANSIENT.stored_path_distance) if settles else distance
+        return min(distance, TRANSIENT_SETTINGS.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
@@ -247,4 +250,8 @@ class Transient:
         if found.stable is False:
             self.unstable = found
         # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
-        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None
+        return (
+            found
+            if found.stable and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance
+            else None
+        )

@@ -14,7 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.arm.completeness import COMPLETENESS, has_conjugate, points_right_of_hull, prove_complete
+from ....determinant.arm.completeness import (
+    COMPLETENESS_SETTINGS,
+    has_conjugate,
+    points_right_of_hull,
+    prove_complete,
+)
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.family import ArmFamily, has_smooth_coefficients, interpolated_family
 from ....determinant.arm.hull.hull import hulls_along
@@ -137,10 +142,10 @@ def _follow_with(
     n = len(p)
     made = None
     if first is not None and before is not None:
-        inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
+        inside = int(((p >= before.family.p_low) & (p <= before.family.p_high)).sum())
         if (
             inside >= ARM_STRETCH_SETTINGS.min_points
-            and ARM_STRETCH_SETTINGS.reused_headroom * np.abs(first).max() <= before.family.W
+            and ARM_STRETCH_SETTINGS.reused_headroom * np.abs(first).max() <= before.family.largest_w
         ):
             made = (before.family, before.hulls)
             n = inside
@@ -187,7 +192,7 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
-            for k in COMPLETENESS.point_counts
+            for k in COMPLETENESS_SETTINGS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
         near = [end for end in ends if end <= ARM_STRETCH_SETTINGS.headroom * W]
@@ -207,7 +212,7 @@ def _eigenvalues_of_previous_interval(
         return None
     if before.proved_points(request.modes) < len(before.p):
         return None
-    return before.track.w[-1][before.track.order[-1]]
+    return before.track.w[-1][before.track.descending_order[-1]]
 
 
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:

@@ -56,7 +56,9 @@ class FollowedArms:
     def family(self, p: float) -> ArmFamily | None:
         """The family of interpolated arms that contains p; None if no interval reached p."""
         self._follow_to(p)
-        return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
+        return next(
+            (one.family for one in self.intervals if one.family.p_low <= p <= one.family.p_high), None
+        )
 
     def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
@@ -131,7 +133,7 @@ class FollowedArms:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)
-            track.order[0] = one.track.order[i]
+            track.descending_order[0] = one.track.descending_order[i]
             if follow_eigenvalues_of_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
                 return slice_track(track, len(grid) - 1, len(grid)), int(known[-1])
         return None, 0

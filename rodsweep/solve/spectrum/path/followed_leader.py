@@ -19,7 +19,7 @@ from ....determinant.arm.hull.hull import hull_of
 from ....determinant.arm.newton import refine_eigenvalue_and_error
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
-from ....determinant.roots.roots import root_error
+from ....determinant.roots.roots import root_error_and_scales
 from ....model.rod import Rod
 from ..candidates import CANDIDATE_SETTINGS, line_for_proof
 from .following import are_distinct_roots
@@ -63,7 +63,7 @@ def _follow_leader_of_uniform(rod: Rod, near: complex, accuracy: float) -> Leadi
     near: leading eigenvalue of the neighbouring rod. accuracy: largest relative error.
     """
     w = refine_eigenvalue(near, rod.coefficients)
-    error, _, _ = root_error(w, rod.coefficients)
+    error, _, _ = root_error_and_scales(w, rod.coefficients)
     if not _matches_neighbour(w, error, near, accuracy):
         return None
     number = 2 if w.imag else 1

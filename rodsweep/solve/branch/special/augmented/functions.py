@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .....arrays import Array
-from ....orbit.matrix.linearisation import jump_of
-from ....orbit.matrix.phase import phase_change, phase_row
+from ....orbit.matrix.linearisation import closing_residual
+from ....orbit.matrix.phase import phase_right_side, write_phase_row
 from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.matrix import BorderedMatrix
@@ -87,10 +87,10 @@ class FoldFunction:
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start))
-        phase_row(orbit.start, p.rod, p.matrices, row)
+        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
         along = orbit.form.parameter_derivative(matrix.scale.name)
-        shift = phase_change(orbit.start, along, p.rod, p.matrices)
-        closing = matrix.closing_sides(jump_of(change.points, p), columns, ends)
+        shift = phase_right_side(orbit.start, along, p.rod, p.node_matrices)
+        closing = matrix.closing_sides(closing_residual(change.points, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start
         right = np.array(
             [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
