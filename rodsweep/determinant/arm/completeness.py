@@ -164,12 +164,9 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     line: Re w of the vertical line. k: number of points. a, c: constants of the hull.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(
-        COMPLETENESS_SETTINGS.min_first_point * abs(line), a * a, COMPLETENESS_SETTINGS.min_first_distance
-    )
-    points = np.empty(k)
-    for j in range(k):
-        points[j] = x * (1 + COMPLETENESS_SETTINGS.point_spread * j / max(k - 1, 1))
+    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point * abs(line))
+    x = max(x, COMPLETENESS_SETTINGS.min_first_distance)
+    points = x * (1 + COMPLETENESS_SETTINGS.point_spread * np.arange(k) / max(k - 1, 1))
     while not _largest_angle_sum(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENT_SETTINGS.least_divisor:
             return points[:0]

@@ -86,10 +86,8 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
         if not _series_converges(samples):
             continue
         found = elements_for(arms, samples, W)
-        if (
-            len(found.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
-            > ARM_FAMILY_SETTINGS.max_propagator_entries
-        ):
+        entries = len(found.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
+        if entries > ARM_FAMILY_SETTINGS.max_propagator_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail):
@@ -99,8 +97,8 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
 
 
 def has_smooth_coefficients(path: Path, low: float, high: float) -> bool:
-    """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap
-    test. Raises ValueError at a p without a valid arm."""
+    """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
+    Raises ValueError at a p without a valid arm."""
     for number, share in reversed(ARM_FAMILY_SETTINGS.trials()):
         p = _interpolation_points(low, high, share * (high - low), number)
         if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):

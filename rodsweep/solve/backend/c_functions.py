@@ -51,7 +51,7 @@ def petsc_function(name: str) -> Any:
 
 
 @intrinsic
-def void_pointer(context: Any, address: Any) -> Any:
+def pointer(context: Any, address: Any) -> Any:
     """Converts the integer `address` to a void pointer, in compiled code."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -61,27 +61,27 @@ def void_pointer(context: Any, address: Any) -> Any:
 
 
 @compiled
-def double_vector_at(address: int, size: int) -> Any:
-    return numba.carray(void_pointer(address), (size,), np.float64)
+def doubles_at(address: int, size: int) -> Any:
+    return numba.carray(pointer(address), (size,), np.float64)
 
 
 @compiled
 def double_array_at(address: int, shape: Any) -> Any:
-    """Array of doubles at the memory address `address`, of the given `shape`. `floats(...).reshape` would
+    """Array of doubles at the memory address `address`, of the given `shape`. `doubles_at(...).reshape` would
     take as long as one evaluation of the rod's equations with ten nodes."""
-    return numba.carray(void_pointer(address), shape, np.float64)
+    return numba.carray(pointer(address), shape, np.float64)
 
 
 @compiled
-def integer_vector_at(address: int, size: int) -> Any:
-    return numba.carray(void_pointer(address), (size,), np.int64)
+def integers_at(address: int, size: int) -> Any:
+    return numba.carray(pointer(address), (size,), np.int64)
 
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
     """The record of NumPy type `dtype` at the memory address `address`; an assignment to a field writes to
     this memory."""
-    return numba.carray(void_pointer(address), (1,), dtype)[0]
+    return numba.carray(pointer(address), (1,), dtype)[0]
 
 
 def call_petsc(name: str, *arguments: int) -> None:

@@ -168,12 +168,8 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.name)
-    return BranchEnd(
-        replace(
-            end_point(last, limits.reasons[outside]), error=BRANCH_END_SETTINGS.range_end_error * abs(at)
-        ),
-        complete=True,
-    )
+    error = BRANCH_END_SETTINGS.range_end_error * abs(at)
+    return BranchEnd(replace(end_point(last, limits.reasons[outside]), error=error), complete=True)
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:

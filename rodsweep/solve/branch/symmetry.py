@@ -191,15 +191,11 @@ def reaches_symmetric_cycle(
     reference = asymmetry(start.orbit)
     other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
-    if float(asymmetry(other) @ reference) < BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(
-        reference @ reference
-    ):
+    lost = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
+    if float(asymmetry(other) @ reference) < lost:
         return True
-    return (
-        start.parameter_rate * end.parameter_rate < 0
-        and _nearly_symmetric(start)
-        and _nearest_symmetry_breaking(start, known, accuracy) >= 0
-    )
+    turns_back = start.parameter_rate * end.parameter_rate < 0 and _nearly_symmetric(start)
+    return turns_back and _nearest_symmetry_breaking(start, known, accuracy) >= 0
 
 
 def _relative_asymmetry(start: ArcPoint) -> float:
@@ -245,9 +241,7 @@ def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking
         symmetric_at = symmetric.form.rod.coordinate(start.scale.name)
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
         tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
-        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.orbit.period - symmetric.period
-        )
+        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period
         if abs(at - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which

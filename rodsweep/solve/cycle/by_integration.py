@@ -8,7 +8,7 @@ two results gives the error estimate. Near a Hopf point a motion may not settle 
 """
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isnan, nan
 
 import numpy as np
@@ -32,6 +32,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
+from .settled_motion import NoCycleFound, SettledMotion
 from .status import MarchedStatus
 from .straight_rod import straight_rod
 from .transient.from_motion import form_states
@@ -45,25 +46,6 @@ from .transient.returns import (
     until_returns,
     why_not_settled,
 )
-
-
-@dataclass(frozen=True, eq=False)
-class _SettledMotion:
-    """A motion that has settled on a cycle. z: present state, (unknowns,). turns: number of returns of the
-    tip to theta = 0 per period. step: last time step, in tau2."""
-
-    z: Array
-    turns: int
-    step: float
-
-
-class _NoCycle(Exception):
-    """Raised if the motion does not settle on a cycle. status, message: outcome of the motion."""
-
-    def __init__(self, status: MarchedStatus, message: str) -> None:
-        super().__init__(message)
-        self.status = status
-        self.message = message
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
@@ -84,9 +66,8 @@ class _MarchedMotion:
         self.limit = rod
         self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        self.scheme = TimeScheme(
-            "arkimex", "5", tolerance=MARCHING_SETTINGS.local_tolerance * request.accuracy
-        )
+        tolerance = MARCHING_SETTINGS.local_tolerance * request.accuracy
+        self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
         self.returns = 0
@@ -100,9 +81,8 @@ class _MarchedMotion:
             settled = self._integrate_until_settled(z)
             path = self._path(settled)
             in_limit = self.rod != self.limit
-            enough = self.request.accuracy * (
-                MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
-            )
+            share = MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
+            enough = self.request.accuracy * share
             for _ in range(MARCHING_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
@@ -114,14 +94,14 @@ class _MarchedMotion:
                     break
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
-        except _NoCycle as end:
+        except NoCycleFound as end:
             return replace(straight, status=end.status, message=end.message, periods=self.returns)
         return self._with_measures(straight, path, errors)
 
     def _beam(self) -> Beam:
         return Beam(self.rod, self.mesh)
 
-    def _settled_on_finer_mesh(self, settled: _SettledMotion) -> _SettledMotion:
+    def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
@@ -132,8 +112,8 @@ class _MarchedMotion:
         z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.z))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.mode.period))
 
-    def _integrate_until_settled(self, z: Array) -> _SettledMotion:
-        """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
+    def _integrate_until_settled(self, z: Array) -> SettledMotion:
+        """Integrates from the state z, (unknowns,), until the motion has settled, or raises NoCycleFound."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.mode.period / MARCHING_SETTINGS.first_steps_per_period
@@ -155,7 +135,7 @@ class _MarchedMotion:
             past.extend(self.beam.layout.stress_field(states, "m3"))
             self.returns += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
-                raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
+                raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
@@ -168,18 +148,18 @@ class _MarchedMotion:
             last = distance
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             if distance <= MARCHING_SETTINGS.settled_distance * self.request.accuracy * (1 - rate):
-                return _SettledMotion(z, turns, step)
-        raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.returns, len(past), last))
+                return SettledMotion(z, turns, step)
+        raise NoCycleFound(MarchedStatus.not_settled, why_not_settled(self.returns, len(past), last))
 
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises _NoCycle
-        if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
+        """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
+        NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := early_end(self.beam, run, self.returns):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
-            raise _NoCycle(status, end.message)
+            raise NoCycleFound(status, end.message)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
@@ -201,45 +181,32 @@ class _MarchedMotion:
             states[i] = z - late * rates
         return times, states
 
-    def _path(self, settled: _SettledMotion) -> CyclePath:
-        """The cycle of a settled motion, from a further run of more than a period; raises _NoCycle."""
+    def _path(self, settled: SettledMotion) -> CyclePath:
+        """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.turns + 2
         limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
-        scheme = replace(
-            self.scheme, tolerance=min(self.scheme.tolerance, MARCHING_SETTINGS.max_measured_tolerance)
-        )
-        run = self._run(
-            settled.z,
-            MARCHING_SETTINGS.max_run_duration * returns * self.mode.period,
-            settled.step,
-            limit,
-            scheme,
-        )
+        tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measured_tolerance)
+        duration = MARCHING_SETTINGS.max_run_duration * returns * self.mode.period
+        scheme = replace(self.scheme, tolerance=tolerance)
+        run = self._run(settled.z, duration, settled.step, limit, scheme)
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
-            raise _NoCycle(MarchedStatus.not_settled, f"the tip stops returning after {self.returns} returns")
+            raise NoCycleFound(
+                MarchedStatus.not_settled, f"the tip stops returning after {self.returns} returns"
+            )
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
+        stages = MARCHING_SETTINGS.measured_stages
         states = spline(
-            times[0]
-            + period
-            * node_times(
-                MARCHING_SETTINGS.measured_intervals * settled.turns, MARCHING_SETTINGS.measured_stages
-            )
+            times[0] + period * node_times(MARCHING_SETTINGS.measured_intervals * settled.turns, stages)
         )
         form = StressForm(self.rod, self.beam.mesh)
-        return CyclePath(
-            Orbit.of(
-                form,
-                NO_SYMMETRY,
-                period,
-                form_states(self.beam, form, states),
-                MARCHING_SETTINGS.measured_stages,
-            )
-        )
+        return CyclePath(Orbit.of(form, NO_SYMMETRY, period, form_states(self.beam, form, states), stages))
 
-    def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises _NoCycle."""
+    def _limit_errors(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
+        """`errors` plus the error of integrating a nearby rod instead of a limiting rod.
+
+        Raises NoCycleFound."""
         known = path.orbit.form.rod
         limit = self.limit
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]

@@ -217,20 +217,15 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
     """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
     raises Unsolvable."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
-    found = at_orbit(
-        newton(start, HOPF_START_SETTINGS.branch_tolerance, workspace, "F"),
-        HOPF_START_SETTINGS.branch_tolerance,
-        "F",
-    )
+    tolerance = HOPF_START_SETTINGS.branch_tolerance
+    found = at_orbit(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.cycle(F)[0]
     least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
     if not least < found.orbit.form.tip_coordinates(found.orbit.start)[1] ** 2 / squared < most:
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
-    return orbit_in_steps(
-        predictor_from(found, None, "F"), form, "F", HOPF_START_SETTINGS.branch_tolerance, workspace
-    ).orbit
+    return orbit_in_steps(predictor_from(found, None, "F"), form, "F", tolerance, workspace).orbit
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
@@ -242,9 +237,8 @@ def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
-    X = normal.motion(
-        amplitude, np.pi * node_times(HOPF_START_SETTINGS.intervals, HOPF_START_SETTINGS.stages)
-    )
+    times = node_times(HOPF_START_SETTINGS.intervals, HOPF_START_SETTINGS.stages)
+    X = normal.motion(amplitude, np.pi * times)
     S, V = normal.form.stresses_and_velocities(X)
     source = normal.form.mesh
     target = form.mesh

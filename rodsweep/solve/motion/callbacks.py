@@ -21,8 +21,8 @@ from ..backend.c_functions import (
     POINTER,
     c_function,
     call_petsc,
-    double_vector_at,
-    integer_vector_at,
+    doubles_at,
+    integers_at,
     petsc_function,
     record_at,
 )
@@ -58,17 +58,17 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
     at = context + OUTPUTS_OFFSET
-    outputs = integer_vector_at(at, 3)
+    outputs = integers_at(at, 3)
     read_array(U, at)
     read_array(Udot, at + 8)
     write_array(R, at + 16)
-    out = double_vector_at(outputs[2], n)
-    dot = double_vector_at(outputs[1], n)
+    out = doubles_at(outputs[2], n)
+    dot = doubles_at(outputs[1], n)
     c.time = t
     if c.without_rate:
         out[:] = dot
     else:
-        write_rate(double_vector_at(outputs[0], n), out, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
+        write_rate(doubles_at(outputs[0], n), out, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
     release_read(U, at)
@@ -87,7 +87,7 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     c = record_at(context, CONTEXT_DTYPE)
     at = context + OUTPUTS_OFFSET
     write_array(F, at)
-    double_vector_at(integer_vector_at(at, 1)[0], c.unknowns)[:] = 0.0
+    doubles_at(integers_at(at, 1)[0], c.unknowns)[:] = 0.0
     release_write(F, at)
     return 0
 
@@ -101,24 +101,22 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
     at = context + OUTPUTS_OFFSET
-    outputs = integer_vector_at(at, 1)
+    outputs = integers_at(at, 1)
     _object_state(B, at)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
     untouched = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
         return 0
-    J = double_vector_at(c.jacobian, n * n).reshape(n, n)
+    J = doubles_at(c.jacobian, n * n).reshape(n, n)
     # The Jacobian is the expensive part; if only the shift is new, the Jacobian is reused.
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
-        write_rate_jacobian(
-            double_vector_at(outputs[0], n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c)
-        )
+        write_rate_jacobian(doubles_at(outputs[0], n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
         release_read(U, at)
     elif c.matrix_due == AT_BASE:
-        write_rate_jacobian(double_vector_at(c.base, n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
+        write_rate_jacobian(doubles_at(c.base, n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
     _get_dense(B, at)
-    M = double_vector_at(outputs[0], n * n).reshape(n, n)
+    M = doubles_at(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift

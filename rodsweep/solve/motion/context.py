@@ -12,7 +12,7 @@ from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import SIDE_COLUMNS
-from ..backend.c_functions import double_array_at, double_vector_at, integer_vector_at
+from ..backend.c_functions import double_array_at, doubles_at, integers_at
 from .time_scheme import EXTRAPOLATION_POINTS
 
 CONSTANTS_PER_JUMP_SIDE = len(SIDE_COLUMNS)
@@ -111,10 +111,10 @@ def rod_of(c: Any) -> NodalRod:
     drag = double_array_at(c.drag, (d, m))
     mobility = double_array_at(c.mobility, (d, m))
     second = double_array_at(c.mobility_laplacian, (d, m, m))
-    none = integer_vector_at(c.rest_strain, 0)
-    jumps = integer_vector_at(c.jumps, c.jump_count)
+    none = integers_at(c.rest_strain, 0)
+    jumps = integers_at(c.jumps, c.jump_count)
     sides = double_array_at(c.jump_sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
-    tip_stress = double_vector_at(c.tip_stress, d)
+    tip_stress = doubles_at(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 
 
@@ -124,7 +124,7 @@ def matrices_of(c: Any) -> NodeMatrices:
     D = double_array_at(c.D, all_nodes)
     D_transposed = double_array_at(c.D_transposed, all_nodes)
     return NodeMatrices(
-        D, D_transposed, double_array_at(c.weak_derivative, all_nodes), double_vector_at(c.weights, c.nodes)
+        D, D_transposed, double_array_at(c.weak_derivative, all_nodes), doubles_at(c.weights, c.nodes)
     )
 
 
@@ -135,7 +135,7 @@ def sqrt_compliance_of(c: Any) -> Any:
 
 @compiled
 def times_of(c: Any) -> Any:
-    return double_vector_at(c.times, 2 * MAX_STAGES)
+    return doubles_at(c.times, 2 * MAX_STAGES)
 
 
 @compiled

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..backend.c_functions import POINTER, c_function, double_vector_at, integer_vector_at, record_at
+from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from .context import AT_BASE, CONTEXT_DTYPE, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS_OFFSET, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
 from .time_scheme import EXTRAPOLATION_POINTS
@@ -64,11 +64,11 @@ def begin_step(ts: int) -> int:
     context = address[0]
     c = record_at(context, CONTEXT_DTYPE)
     at = context + OUTPUTS_OFFSET
-    outputs = integer_vector_at(at, 3)
-    real = double_vector_at(at, 3)
+    outputs = integers_at(at, 3)
+    real = doubles_at(at, 3)
     times = times_of(c)
     states = states_of(c)
-    base = double_vector_at(c.base, c.unknowns)
+    base = doubles_at(c.base, c.unknowns)
     last = c.current * MAX_STAGES
     # The two halves of the array take turns: stages of this step and of the last step.
     c.current = 1 - c.current
@@ -78,7 +78,7 @@ def begin_step(ts: int) -> int:
     solution_of(ts, at)
     solution = outputs[0]
     read_array(solution, at)
-    states[now] = double_vector_at(outputs[0], c.unknowns)
+    states[now] = doubles_at(outputs[0], c.unknowns)
     release_read(solution, at)
     step_of(ts, at)
     c.length = real[0]
@@ -115,7 +115,7 @@ def predict_stage(c: Any, guess: Array) -> None:
     extrapolation is possible. c: context record (`CONTEXT_DTYPE`)."""
     if c.stages >= MAX_STAGES or not c.steps:
         return
-    points = integer_vector_at(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[
+    points = integers_at(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[
         c.stages
     ]
     points = points[: np.sum(points != NO_POINT)]

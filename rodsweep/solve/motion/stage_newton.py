@@ -17,15 +17,7 @@ from ...arrays import Array
 from ...discretization.stress.rates import write_rate
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..backend.c_functions import (
-    INT,
-    POINTER,
-    c_function,
-    double_vector_at,
-    integer_vector_at,
-    record_at,
-    void_pointer,
-)
+from ..backend.c_functions import INT, POINTER, c_function, doubles_at, integers_at, pointer, record_at
 from .context import (
     AT_BASE,
     AT_ITERATE,
@@ -93,7 +85,7 @@ def linearise_at_start(c: Any) -> None:
     The last matrix may belong to a diverged iterate and have entries that are not finite; with such a matrix
     all shorter steps would fail.
     """
-    double_vector_at(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
+    doubles_at(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
     c.matrix_due = AT_BASE
 
 
@@ -114,9 +106,8 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        c.contraction = max(
-            STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0, theta
-        )
+        least = STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0
+        c.contraction = max(least, theta)
         c.measured = 1
     c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.growing_step_ratio else 0
     c.last_step = dx
@@ -125,10 +116,8 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
     if small or (theta > STAGE_NEWTON_SETTINGS.stagnant_contraction and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
-    if (
-        c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps
-        and iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
-    ):
+    may_give_up = iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
+    if may_give_up and c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps:
         linearise_at_start(c)
         return NOT_CONTRACTING
     if theta > STAGE_NEWTON_SETTINGS.new_matrix_contraction:
@@ -144,7 +133,7 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     to the address `reason`. iteration: number of iterations made. dx, size: 2-norms of the Newton step and of
     the residual."""
     c = record_at(context, CONTEXT_DTYPE)
-    answer = numba.carray(void_pointer(reason), (1,), np.int32)
+    answer = numba.carray(pointer(reason), (1,), np.int32)
     answer[0] = ITERATING
     if not np.isfinite(size):
         linearise_at_start(c)
@@ -165,7 +154,7 @@ def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
     PETSc passes with the matrix, therefore determine the equation.
     """
     n = c.unknowns
-    outputs = integer_vector_at(at, 3)
+    outputs = integers_at(at, 3)
     # Without f, PETSc's stage residual is affine in x: one evaluation yields its constant.
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
@@ -173,9 +162,9 @@ def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
     c.error |= stage_matrix(snes, X, c.matrix, c.matrix, c.ts)
     read_array(X, at)
     read_array(c.residual, at + 8)
-    x = double_vector_at(outputs[0], n)
-    residual = double_vector_at(outputs[1], n)
-    constant = double_vector_at(c.constant, n)
+    x = doubles_at(outputs[0], n)
+    residual = doubles_at(outputs[1], n)
+    constant = doubles_at(c.constant, n)
     for i in range(n):
         constant[i] = residual[i] - c.shift * x[i]
     release_read(X, at)
@@ -184,7 +173,7 @@ def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
     right_side = outputs[0]
     if right_side:
         read_array(right_side, at)
-        constant -= double_vector_at(outputs[0], n)
+        constant -= doubles_at(outputs[0], n)
         release_read(right_side, at)
 
 
@@ -203,20 +192,20 @@ def newton_step(c: Any, at: int, X: int) -> float:
     context record. at: address of scratch memory, into which PETSc writes the addresses of three arrays. X:
     handle of the stage's vector."""
     n = c.unknowns
-    outputs = integer_vector_at(at, 3)
-    constant = double_vector_at(c.constant, n)
-    f = double_vector_at(c.rates, n)
+    outputs = integers_at(at, 3)
+    constant = doubles_at(c.constant, n)
+    f = doubles_at(c.rates, n)
     write_array(X, at)
     write_array(c.residual, at + 8)
-    x = double_vector_at(outputs[0], n)
-    residual = double_vector_at(outputs[1], n)
+    x = doubles_at(outputs[0], n)
+    residual = doubles_at(outputs[1], n)
     write_rate(x, f, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
     release_write(c.residual, at + 8)
     c.error |= solve_linear(c.ksp, c.residual, c.correction)
     read_array(c.correction, at + 16)
-    step = double_vector_at(outputs[2], n)
+    step = doubles_at(outputs[2], n)
     x -= step
     size = euclidean_norm(step)
     release_read(c.correction, at + 16)
@@ -234,12 +223,12 @@ def solve_stage(snes: int, X: int) -> int:
     c = record_at(context, CONTEXT_DTYPE)
     at = context + OUTPUTS_OFFSET
     step_of(c.ts, at)
-    if double_vector_at(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
-        c.length = double_vector_at(at, 1)[0]
+    if doubles_at(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
+        c.length = doubles_at(at, 1)[0]
         c.stages = 1
     read_stage_equation(c, at, snes, X)
     write_array(X, at)
-    predict_stage(c, double_vector_at(integer_vector_at(at, 1)[0], c.unknowns))
+    predict_stage(c, doubles_at(integers_at(at, 1)[0], c.unknowns))
     release_write(X, at)
     reason = ITERATING
     iteration = 0
@@ -252,7 +241,7 @@ def solve_stage(snes: int, X: int) -> int:
             linearise_at_start(c)
             reason = NOT_CONTRACTING
     read_array(X, at)
-    store_stage(c, double_vector_at(integer_vector_at(at, 1)[0], c.unknowns))
+    store_stage(c, doubles_at(integers_at(at, 1)[0], c.unknowns))
     release_read(X, at)
     set_iterations(snes, iteration)
     set_reason(snes, reason)

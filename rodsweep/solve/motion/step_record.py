@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..backend.c_functions import POINTER, c_function, double_vector_at, integer_vector_at, record_at
+from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from ..backend.petsc import PETSc
 from .context import CONTEXT_DTYPE, OUTPUTS_OFFSET
 from .petsc_calls import (
@@ -46,7 +46,7 @@ def store_step(c: Any, at: int, ts: int) -> int:
     h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT_DTYPE`). at: address for
     outputs."""
     n = c.unknowns
-    outputs = integer_vector_at(at, 3)
+    outputs = integers_at(at, 3)
     if c.stored == c.capacity:
         # Doubling keeps the cost of copying proportional to the number of steps.
         c.capacity = max(2 * c.capacity, STEP_RECORD_SETTINGS.first_capacity)
@@ -57,15 +57,15 @@ def store_step(c: Any, at: int, ts: int) -> int:
     time_of(ts, at)
     solution_of(ts, at + 8)
     read_array(outputs[1], at + 16)
-    row = double_vector_at(c.rows + 8 * c.stored * (n + 1), n + 1)
-    z = double_vector_at(outputs[2], n)
-    row[0] = double_vector_at(at, 1)[0]
+    row = doubles_at(c.rows + 8 * c.stored * (n + 1), n + 1)
+    z = doubles_at(outputs[2], n)
+    row[0] = doubles_at(at, 1)[0]
     row[1:] = z
     release_read(outputs[1], at + 16)
     c.stored += 1
     # z1 is the first of three fields; h1 = 0 where z1 equals `crushed`.
     nodes = n // 3
-    crushed = double_vector_at(c.crushed, nodes)
+    crushed = doubles_at(c.crushed, nodes)
     for i in range(nodes):
         if row[1 + i] <= crushed[i] and not c.left:
             c.left = 1
@@ -84,7 +84,7 @@ def end_step(ts: int) -> int:
 
 @compiled
 def _copied_rows(address: int, rows: int, columns: int) -> Array:
-    return double_vector_at(address, rows * columns).reshape(rows, columns).copy()
+    return doubles_at(address, rows * columns).reshape(rows, columns).copy()
 
 
 @compiled

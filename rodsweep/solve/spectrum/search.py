@@ -92,10 +92,8 @@ class Search:
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
         for turn in range(SEARCH_SETTINGS.max_meshes):
-            if (
-                self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns
-                or self.failures > SEARCH_SETTINGS.max_failures
-            ):
+            too_fine = self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns
+            if too_fine or self.failures > SEARCH_SETTINGS.max_failures:
                 break
             tight = self.with_vectors or turn > 0
             found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
@@ -108,9 +106,8 @@ class Search:
                 or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements
             ):
                 break
-            self.mesh = self.problem.next_mesh_for(
-                found.mesh, found.roots.wave_number[: self.modes], self.accuracy
-            )
+            waves = found.roots.wave_number[: self.modes]
+            self.mesh = self.problem.next_mesh_for(found.mesh, waves, self.accuracy)
         return self.conclude()
 
     def checked_or_retry(self, found: Candidates) -> CheckedCandidates | None:
@@ -128,9 +125,8 @@ class Search:
         if self.needs_beyond_axis(found):
             self.request_beyond_axis(len(found.roots.w))
             return None
-        comparison = (
-            compare_with_count(self.problem, found.roots, self.modes) if self.request.certify else None
-        )
+        certify = self.request.certify
+        comparison = compare_with_count(self.problem, found.roots, self.modes) if certify else None
         if comparison is not None and comparison.count.number is None and found.roots.unmatched_count:
             self.unresolved = True
             self.mesh = self.problem.finer_mesh(self.mesh)
@@ -150,11 +146,8 @@ class Search:
         error = found.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.with_vectors:
             return error
-        allowed = (
-            SEARCH_SETTINGS.largest_displacement
-            if self.problem.has_bound
-            else SEARCH_SETTINGS.unbounded_displacement
-        )
+        settings = SEARCH_SETTINGS
+        allowed = settings.largest_displacement if self.problem.has_bound else settings.unbounded_displacement
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 

@@ -26,8 +26,8 @@ from ...results.layouts.variables import FilledVariable, Variable, outcome_value
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.boundaries import RowSpecialPoint
     from ...solve.branch.special.cycle_curves import CycleCurve
+    from ...solve.branch.special.point import RowSpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
@@ -167,8 +167,8 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
-    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecialPoint
-    from ...solve.branch.special.point import SpecialKind
+    from ...solve.branch.special.boundaries import FOLLOWED_KINDS
+    from ...solve.branch.special.point import RowSpecialPoint, SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
     kinds, at, period, height = map(view.by_point, names)

@@ -280,7 +280,9 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     """Half of the eliminations are done at a share of a fifth to four fifths; no clock is asked."""
     done, places = [], []
     eliminate = matrix.eliminate_newton_matrix
-    monkeypatch.setattr(matrix, "eliminate_newton_matrix", lambda *values: done.append(1) or eliminate(*values))
+    monkeypatch.setattr(
+        matrix, "eliminate_newton_matrix", lambda *values: done.append(1) or eliminate(*values)
+    )
     with reporting_to(lambda place: places.append((len(done), *place()))):
         solve_branches(
             Rod(F=0.0, k1=4000, k2=300, gamma3=1e-3), BranchRequest("F", 0, 150, 1e-5, True, 500, 50)

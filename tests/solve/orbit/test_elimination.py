@@ -17,8 +17,8 @@ from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert_mat
 from rodsweep.solve.orbit.matrix.linearisation import closing_residual, parameter_derivatives
 from rodsweep.solve.orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
 from rodsweep.solve.orbit.matrix.right_sides import (
-    write_newton_right_sides,
     write_rates_of_state,
+    write_right_sides,
     write_stage_residuals,
 )
 from rodsweep.solve.orbit.matrix.substitution import substitute_stages
@@ -117,7 +117,7 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     orbit = orbit_with(rod, 4)
     along, columns = parameter_derivatives(orbit.form, name), np.empty((INTERVALS, 4, 3, orbit.form.unknowns))
     p, V = orbit.semidiscrete, np.empty((INTERVALS, 4, 3, 9))
-    write_newton_right_sides(orbit.points, orbit.duration, p, along, V, columns)
+    write_right_sides(orbit.points, orbit.duration, p, along, V, columns)
     right = columns[:, :, 2]
     shift = phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
     step = 1e-4 * orbit.form.rod.coordinate(name) or 1e-6  # to one side: a limit has no other
@@ -133,7 +133,7 @@ def whole_matrix(matrix):
     orbit = matrix.orbit
     p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
     along, columns = parameter_derivatives(orbit.form, matrix.scale.name), np.empty((K, s, 3, n))
-    write_newton_right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
+    write_right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
     A = np.zeros((len(orbit.values), len(orbit.values) + 1))
     A[:n, :n] -= p.symmetry
     A[:n, -2 - n : -2] += np.eye(n)

@@ -24,7 +24,7 @@ from ..elements.settings import ARM_ELEMENT_SETTINGS
 from ..hull.region import EigenvalueHull
 from ..local_waves import ArmSamples, wave_number_and_length_at
 from .phase_node import PhaseNode, phase_node, tangent_of_log
-from .settings import ARM_COUNT_SETTINGS
+from .settings import CONTOUR_SETTINGS
 
 NO_KNOWN_EIGENVALUES: Complex = np.empty(0, complex)
 """No known eigenvalues, (0,)."""
@@ -74,10 +74,10 @@ def count_right_of(
         return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
     if line >= hull.box(max(-line, 0.0))[0]:
         return EigenvalueCount(0, 0)
-    known = known[error < ARM_COUNT_SETTINGS.max_known_error * np.abs(known.real - line)]
+    known = known[error < CONTOUR_SETTINGS.max_known_error * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
     height = np.maximum(np.abs(known.imag), abs(line))
-    known = known[np.abs(known.real - line) < ARM_COUNT_SETTINGS.max_known_distance * height]
+    known = known[np.abs(known.real - line) < CONTOUR_SETTINGS.max_known_distance * height]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
@@ -97,7 +97,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_upper_box_corner(0.0, hull)), ARM_COUNT_SETTINGS.max_level_ratio)
+        determinant.level(abs(_upper_box_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
     except FloatingPointError:
         return False
     return True
@@ -106,7 +106,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
     corner = _upper_box_corner(line, hull)
-    return abs(corner) + ARM_COUNT_SETTINGS.first_radius * determinant.length(corner)
+    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.length(corner)
 
 
 def _upper_box_corner(line: float, hull: EigenvalueHull) -> complex:
@@ -131,10 +131,10 @@ def _phase_change(
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest = largest_w_of_count(line, determinant, hull)
-    level = determinant.level(largest, ARM_COUNT_SETTINGS.max_level_ratio)
+    level = determinant.level(largest, CONTOUR_SETTINGS.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
     unit = determinant.length(corners[0])
-    trial = unit, min(ARM_COUNT_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
+    trial = unit, min(CONTOUR_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
@@ -143,7 +143,7 @@ def _phase_change(
             break
         if walk.needed_largest_w == math.inf:
             raise PhaseLost(walk.node_count)
-        level = determinant.level(walk.needed_largest_w, ARM_COUNT_SETTINGS.max_level_ratio)
+        level = determinant.level(walk.needed_largest_w, CONTOUR_SETTINGS.max_level_ratio)
     return walk.phase_change, walk.node_count
 
 
@@ -169,25 +169,18 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if (
-            not here.reach > ARM_COUNT_SETTINGS.min_reach * abs(here.w)
-            or nodes > ARM_COUNT_SETTINGS.max_nodes
-        ):
+        if not here.reach > CONTOUR_SETTINGS.min_reach * abs(here.w) or nodes > CONTOUR_SETTINGS.max_nodes:
             return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_overlapping_distance(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
         unit = wave_number_and_length_at(w, samples[0])[1]
-        first = ARM_COUNT_SETTINGS.first_radius * unit
-        radius = min(2 * here.radius, ARM_COUNT_SETTINGS.largest_radius * unit) if here.radius > 0 else first
-        radius = max(radius, ARM_COUNT_SETTINGS.max_wave_radius * w.imag)
-        enough = max(first, min(ARM_COUNT_SETTINGS.max_wave_radius * w.imag, largest - abs(w)))
+        first = CONTOUR_SETTINGS.first_radius * unit
+        radius = min(2 * here.radius, CONTOUR_SETTINGS.largest_radius * unit) if here.radius > 0 else first
+        radius = max(radius, CONTOUR_SETTINGS.max_wave_radius * w.imag)
+        enough = max(first, min(CONTOUR_SETTINGS.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
-        if (
-            not needed
-            <= level[0]
-            <= ARM_COUNT_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_largest_w)
-        ):
+        if not _serves_efficiently(level[0], needed):
             return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
@@ -203,12 +196,18 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 
 
 @compiled
+def _serves_efficiently(W: float, needed: float) -> bool:
+    """Whether propagators for |w| <= W are valid at |w| = `needed`, with W not much larger than necessary."""
+    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_largest_w)
+
+
+@compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance to the next node at which the reaches of both nodes just overlap, if the reach changes by
     `growth` per distance.
     """
-    overlap = ARM_COUNT_SETTINGS.reach_overlap
-    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT_SETTINGS.largest_growth))
+    overlap = CONTOUR_SETTINGS.reach_overlap
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.largest_growth))
 
 
 @compiled
@@ -216,8 +215,8 @@ def _shortened_distance(reach: float, growth: float, ahead: float) -> float:
     """A distance to the next node below `ahead`; repeated calls give a distance within the reach of the
     present node.
     """
-    nearer = min(_overlapping_distance(reach, growth), ARM_COUNT_SETTINGS.max_step_ratio * ahead)
-    return nearer if nearer > reach else min(ARM_COUNT_SETTINGS.safe_step * reach, ahead / 2)
+    nearer = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * ahead)
+    return nearer if nearer > reach else min(CONTOUR_SETTINGS.safe_step * reach, ahead / 2)
 
 
 @compiled

@@ -18,7 +18,7 @@ from ..determinant import ArmDeterminant, BoundedPropagators
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain
 from .dominant_wave import dominant_exponent_slope
-from .settings import ARM_COUNT_SETTINGS
+from .settings import CONTOUR_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +54,7 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
     height = NEAR_AXIS_SETTINGS.first_height
     while height < top:
         W, propagators = determinant.level(
-            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, ARM_COUNT_SETTINGS.max_level_ratio
+            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, CONTOUR_SETTINGS.max_level_ratio
         )
         heights = [height]
         while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(

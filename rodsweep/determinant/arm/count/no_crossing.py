@@ -11,7 +11,7 @@ divided out,
 
 h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm, is compared with f(w0, q)
 of the middle arm q. If |f(v, p) - f(w0, q)| < |f(w0, q)| on the circle, f has no zero in the disc, by the
-maximum principle. This is an estimate: f is evaluated at `ARM_COUNT_SETTINGS.circle_points` points of the
+maximum principle. This is an estimate: f is evaluated at `CONTOUR_SETTINGS.circle_points` points of the
 circle and at a few arms, with one safety factor for values between the points and one for the arms between
 these arms."""
 
@@ -33,7 +33,7 @@ from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ArmSamples, wave_number_and_length_at
 from ..value import chain_value, determinant_along_chain
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
-from .settings import ARM_COUNT_SETTINGS, NO_CROSSING_SETTINGS
+from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 
 
 class ArmsOfInterval(NamedTuple):
@@ -95,7 +95,7 @@ def proves_no_crossing(
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(levels))
     unit = wave_number_and_length_at(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
-        line, 0.0, top, (ARM_COUNT_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
+        line, 0.0, top, (CONTOUR_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
     )
     if height < top and radius > 0:
         try:
@@ -155,7 +155,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
     the module docstring."""
     value = determinant_along_chain(w0, arms.largest_w, arms.propagators[0])
-    if not abs(value.D) > ARM_COUNT_SETTINGS.rounding_over_noise * value.noise:
+    if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
         return False
     divided = np.flatnonzero(
         np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius
@@ -166,7 +166,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
             return False
         L -= 1 / (w0 - arms.known_eigenvalues[0, n])
     wave = (0j, 0j)
-    if radius <= ARM_COUNT_SETTINGS.max_wave_radius * w0.imag:
+    if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
         samples = ArmSamples(arms.squares[0], arms.weights)
         wave = (dominant_exponent(w0, samples), dominant_exponent_slope(w0, samples))
     node = LineNode(w0, value.D, value.S, L, divided, wave)
@@ -193,10 +193,10 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
     growth = 0.0
     if node.exponent_and_slope[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
-        above = complex(node.w.real, radius / ARM_COUNT_SETTINGS.max_wave_radius)
+        above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
         of_middle = dominant_exponent(above, ArmSamples(arms.squares[0], arms.weights))
         growth = (dominant_exponent(above, samples) - of_middle).real
-    for direction in ARM_COUNT_SETTINGS.directions:
+    for direction in CONTOUR_SETTINGS.directions:
         v = node.w + radius * direction
         D, S = chain_value(v, arms.largest_w, arms.propagators[arm])
         h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth

@@ -14,7 +14,7 @@ Inside the hull, f(v) = D(v) exp(-h(v)) has f'(w) = 0 with
     h(v) = L (v - w)   or   h(v) = Phi(v) - Phi(w) + (L - Phi'(w)) (v - w),
 
 Phi the dominant wave (`rodsweep.determinant.arm.count.dominant_wave`). Cauchy's estimate with the maximum of
-|f| on a circle bounds the change of f. The maximum is estimated from `ARM_COUNT_SETTINGS.circle_points`
+|f| on a circle bounds the change of f. The maximum is estimated from `CONTOUR_SETTINGS.circle_points`
 points and a safety factor. Inside the hull the count is therefore an estimate; the rounding errors of D and
 the errors of its elements are estimates everywhere."""
 
@@ -30,7 +30,7 @@ from ..hull.region import EigenvalueHull, distance_and_normal
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain, log_modulus_by_chain
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
-from .settings import ARM_COUNT_SETTINGS
+from .settings import CONTOUR_SETTINGS
 
 
 class PhaseNode(NamedTuple):
@@ -71,7 +71,7 @@ def phase_node(
     circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = determinant_along_chain(w, arm[1][0], arm[1][1])
-    if not abs(value.D) > ARM_COUNT_SETTINGS.rounding_over_noise * value.noise:
+    if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
@@ -83,7 +83,7 @@ def phase_node(
     reach = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
-        reach = 1 / (1 / distance + math.sqrt(S / (2 * ARM_COUNT_SETTINGS.max_tangent_error)))
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * CONTOUR_SETTINGS.max_tangent_error)))
     node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
     return node if reach > trial[0] else _node_inside(node, value, known, trial, arm)
 
@@ -102,32 +102,28 @@ def _node_inside(
     """
     w = node.w
     samples, (W, propagators) = arm
-    unit = min(trial[0], ARM_COUNT_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
-    smallest = ARM_COUNT_SETTINGS.smallest_radius * unit
-    room = ARM_COUNT_SETTINGS.max_change - ARM_COUNT_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
+    unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
+    least = CONTOUR_SETTINGS.smallest_radius * unit
+    room = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known)
     best = node
-    rho = max(trial[1], smallest)
-    while rho >= smallest:
+    rho = max(trial[1], least)
+    while rho >= least:
         wave = (0j, 0j)
-        if rho <= ARM_COUNT_SETTINGS.max_wave_radius * w.imag:
+        if rho <= CONTOUR_SETTINGS.max_wave_radius * w.imag:
             wave = (dominant_exponent(w, samples), dominant_exponent_slope(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # Smaller circles give at most this reach.
-        enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT_SETTINGS.between_points_factor, room))
+        enough = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.between_points_factor, room))
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
-        for direction in ARM_COUNT_SETTINGS.directions:
+        for direction in CONTOUR_SETTINGS.directions:
             v = w + rho * direction
             log = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known)
             size = max(size, log - tangent_of_log(tried, v, samples).real)
-            M = ARM_COUNT_SETTINGS.between_points_factor * math.exp(
-                min(size - here, EXPONENT_SETTINGS.max_exponent)
-            )
-            reach = _reach_of_circle(rho, M, room)
-            if reach <= best.reach or (
-                reach < ARM_COUNT_SETTINGS.min_reach_fraction * rho and rho / 2 >= smallest
-            ):
+            growth = math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
+            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.between_points_factor * growth, room)
+            if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= least):
                 reach = 0.0
                 break
         if reach > best.reach:

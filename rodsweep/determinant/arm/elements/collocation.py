@@ -71,14 +71,12 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
     n, elements = local.shape[1:3]
     batches = -(-elements // ARM_ELEMENT_SETTINGS.lane_count)
     coefficients = np.empty((n, batches, 6, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.lane_count))
-    for arm in range(n):
-        for b in range(batches):
-            for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-                # The last batch is filled up with the last element.
-                e = min(b * ARM_ELEMENT_SETTINGS.lane_count + lane, elements - 1)
-                for q in range(6):
-                    for i in range(ARM_ELEMENT_SETTINGS.stages):
-                        coefficients[arm, b, q, i, lane] = local[q, arm, e, i] * lengths[e]
+    for b in range(batches):
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            # The last batch is filled up with the last element.
+            e = min(b * ARM_ELEMENT_SETTINGS.lane_count + lane, elements - 1)
+            for arm in range(n):
+                coefficients[arm, b, :, :, lane] = local[:, arm, e] * lengths[e]
     terms = np.zeros((n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED))
     most = fill_propagator_terms(F, W, coefficients, method, terms)
     if most > ARM_ELEMENT_SETTINGS.max_terms:
@@ -98,12 +96,11 @@ def fill_propagator_terms(
     PADDED), all 0 at first.
     """
     most = 1
-    values = np.empty((MINORS, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
-    rates = np.empty((MINORS, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
-    local = np.empty((6, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width))
-    turning = np.empty(
-        (ARM_ELEMENT_SETTINGS.stages, 1 + ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width)
-    )
+    shape = (ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width)
+    values = np.empty((MINORS, *shape))
+    rates = np.empty((MINORS, *shape))
+    local = np.empty((6, *shape))
+    turning = np.empty((shape[0], 1 + shape[0], shape[1]))
     for arm in range(len(F)):
         for b in range(coefficients.shape[1]):
             _repeat_per_initial_value(coefficients[arm, b], local)
@@ -228,9 +225,8 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
         first = 0.0
         for row in range(MINORS):
             for k in range(MINORS):
-                entry = end[row, k * ARM_ELEMENT_SETTINGS.lane_count + lane] + (
-                    1.0 if n == 0 and k == row else 0.0
-                )
+                entry = end[row, k * ARM_ELEMENT_SETTINGS.lane_count + lane]
+                entry += 1.0 if n == 0 and k == row else 0.0
                 terms[lane, n, MINORS * k + row] = entry
                 size = max(size, abs(entry))
                 first = max(first, abs(terms[lane, 0, MINORS * k + row]))

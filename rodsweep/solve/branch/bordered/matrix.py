@@ -11,14 +11,13 @@ from ....arrays import Array, Complex
 from ...orbit.matrix.elimination import eliminate_newton_matrix
 from ...orbit.matrix.linearisation import (
     closing_residual,
-    multipliers_over_period,
     parameter_derivatives,
-    partial_multipliers,
     reduced_residuals,
     reduced_variations,
 )
+from ...orbit.matrix.multipliers import multipliers_over_period, partial_multipliers
 from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
-from ...orbit.matrix.right_sides import write_newton_right_sides
+from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
@@ -47,7 +46,7 @@ class BorderedMatrix:
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
-        write_newton_right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        write_right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate_newton_matrix(
             orbit.points, V, orbit.duration, p, self._memory.factors, self._columns
         )

@@ -23,23 +23,10 @@ from .cycle_curves import (
     TracedHalfCurve,
 )
 from .on_curve import SolvedPoint
-from .point import SpecialKind, SpecialPoint
+from .point import RowSpecialPoint, SpecialKind, SpecialPoint
 
 FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 """Kinds of special points that are followed as curves, with the plural noun for messages."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RowSpecialPoint:
-    """A special point as the result file stores it. number: index of the row. row: value of the row
-    parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
-
-    number: int
-    row: float
-    kind: SpecialKind
-    at: float
-    period: float
-    tip_y_max: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,11 +181,8 @@ class _CurvesOfKind:
             # On the straight chord from the Hopf point to the last cycle.
             share = (self.rows.coordinate(one.row) - y) / (last.row_coordinate - y)
             chord = x + share * (self.line.coordinate(last.at) - x)
-            if (
-                0 <= share <= 1
-                and abs(chord - self.line.coordinate(one.at))
-                <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance
-            ):
+            distance = abs(chord - self.line.coordinate(one.at))
+            if 0 <= share <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
 
@@ -226,9 +210,7 @@ def _trace_half_curve(
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
-    near = {
-        i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY_SETTINGS.max_distance
-    }
+    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_distance}
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
 
 
@@ -256,10 +238,7 @@ def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one
     x = limits.line.coordinate(one.at)
     ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = (
-        ends[0] - CURVE_IDENTITY_SETTINGS.max_chord_distance
-        <= x
-        <= ends[1] + CURVE_IDENTITY_SETTINGS.max_chord_distance
-    )
+    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
+    on_line = ends[0] - margin <= x <= ends[1] + margin
     ratio = 1 + CURVE_IDENTITY_SETTINGS.max_period_change
     return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio

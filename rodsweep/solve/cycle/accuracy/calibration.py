@@ -72,9 +72,8 @@ class Calibration:
         tails = _tails(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
-        return replace(
-            self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
-        )
+        growth = _growth(self.tails, tails)
+        return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
@@ -90,10 +89,8 @@ class Calibration:
     @property
     def is_valid(self) -> bool:
         """Whether the scaled errors apply: `reach` and `error_growth` do not exceed their limits."""
-        return (
-            self.reach <= CALIBRATION_SETTINGS.max_parameter_change
-            and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
-        )
+        is_near = self.reach <= CALIBRATION_SETTINGS.max_parameter_change
+        return is_near and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
@@ -102,9 +99,8 @@ class Calibration:
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * np.minimum(
-            _tail_growth(self.tails, _tails(orbit)), 1.0
-        )
+        shrinkage = np.minimum(_tail_growth(self.tails, _tails(orbit)), 1.0)
+        in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * shrinkage
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
@@ -173,7 +169,7 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
 
 
 def _tails(orbit: Orbit) -> Array:
-    """Tails of an orbit in space and in time, not below CALIBRATION.min_tail, and size of the orbit, (3,)."""
+    """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
 
 
@@ -210,10 +206,7 @@ def calibration_of(
     tails = _tails(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).decay
-        fall = np.full(
-            ERROR_COUNT,
-            min(max(decay, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay),
-        )
+        fall = _limited_space_decay(np.full(ERROR_COUNT, decay))
         power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
@@ -229,12 +222,14 @@ def calibration_of(
 def _space_rate(before: Array, after: Array, orders: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
     on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
-    fall: Array = np.clip(
-        _log_ratio(before, after) / orders,
-        CALIBRATION_SETTINGS.min_space_decay,
-        CALIBRATION_SETTINGS.max_space_decay,
-    )
-    return fall
+    return _limited_space_decay(_log_ratio(before, after) / orders)
+
+
+def _limited_space_decay(decay: Array) -> Array:
+    """Decreases `decay` of ln(error) per order, (5,), limited to the allowed range."""
+    settings = CALIBRATION_SETTINGS
+    limited: Array = np.clip(decay, settings.min_space_decay, settings.max_space_decay)
+    return limited
 
 
 def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
@@ -243,9 +238,8 @@ def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMes
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    power: Array = np.clip(
-        _log_ratio(before, after) / steps, least, CALIBRATION_SETTINGS.max_time_order_ratio * least
-    )
+    most = CALIBRATION_SETTINGS.max_time_order_ratio * least
+    power: Array = np.clip(_log_ratio(before, after) / steps, least, most)
     return power
 
 

@@ -69,9 +69,8 @@ class Transient:
         self.tip_angle_row = tip_angle_row(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
-        self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
-            rate * period, request.transient > 0
-        )
+        schemes = schemes_for_growth(rate * period, request.transient > 0)
+        self.first_scheme, self.scheme, noise, steps = schemes
         self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns)
         self.amplitude = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
@@ -209,13 +208,10 @@ class Transient:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
         None, also until the next attempt is due: the returns between attempts double with each attempt. After
         too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
-        turns, distance = repetition(
-            [state for _, state in self.past_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
-        )
-        if (
-            self.failed_starts >= TRANSIENT_SETTINGS.max_failed_starts
-            and distance < TRANSIENT_SETTINGS.max_periodic_distance
-        ):
+        states = [state for _, state in self.past_returns]
+        turns, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
+        often_failed = self.failed_starts >= TRANSIENT_SETTINGS.max_failed_starts
+        if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
@@ -250,8 +246,5 @@ class Transient:
         if found.stable is False:
             self.unstable = found
         # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
-        return (
-            found
-            if found.stable and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance
-            else None
-        )
+        is_isolated = 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance
+        return found if found.stable and is_isolated else None

@@ -15,14 +15,9 @@ from ..orbit import Orbit
 from ..semidiscrete import SemidiscreteEquations
 from .elimination import eliminate_newton_matrix
 from .inversion import INVERSION_SETTINGS, invert_matrix
-from .multipliers import nonzero_eigenvalues
+from .multipliers import multipliers_over_period, partial_multipliers
 from .phase import phase_residual, phase_right_side, write_phase_row
-from .right_sides import (
-    ParameterDerivatives,
-    write_newton_right_sides,
-    write_stage_residuals,
-    write_variation_right_sides,
-)
+from .right_sides import ParameterDerivatives, write_right_sides, write_stage_residuals, write_variation_sides
 from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
 from .workspace import MatrixMemory, NewtonFactors, NewtonWorkspace
 
@@ -66,18 +61,6 @@ class Linearisation:
         return multipliers_over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
 
 
-def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
-    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
-    propagator: P, (n, n)."""
-    return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))
-
-
-def multipliers_over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
-    values: Complex = partial**orbit.symmetry.parts
-    return values[np.argsort(-np.abs(values), kind="stable")]
-
-
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
     """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of parameter `name`."""
     change = form.parameter_derivative(name)
@@ -101,7 +84,7 @@ def eliminate_at_orbit(
     duration = values[-1] / p.period_parts
     V = np.empty((K, s, PLANE_COMPONENT_COUNT, len(p.node_matrices.weights)))
     columns = np.empty((K, s, count, n))
-    write_newton_right_sides(points, duration, p, along, V, columns)
+    write_right_sides(points, duration, p, along, V, columns)
     ends = eliminate_newton_matrix(points, V, duration, p, factors, columns)
     inverse = factors.closing_inverse
     inverse[:, :] = 0.0
@@ -206,7 +189,7 @@ def reduced_variations(
     p: SemidiscreteEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
-    """The right-hand sides of `write_variation_right_sides` with the equations `rod`, reduced by a matrix of
+    """The right-hand sides of `write_variation_sides` with the equations `rod`, reduced by a matrix of
     a nearby rod `p`.
 
     Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
@@ -218,7 +201,7 @@ def reduced_variations(
     m = len(variations)
     columns = np.empty((K, s, m, n))
     ends = np.zeros((m, n))
-    write_variation_right_sides(values, rod, along, variations, columns)
+    write_variation_sides(values, rod, along, variations, columns)
     for k in range(K):
         reduce_right_sides(factors.eliminated_blocks[k], columns[k], p)
         map_start_to_end(factors.eliminated_blocks[k], columns[k], p, ends)

@@ -14,6 +14,7 @@ from ....arrays import Array, Complex
 from ....determinant.exponents import EXPONENT_SETTINGS
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.small_eigenvalues import small_matrix_eigenvalues
+from ..orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,9 +43,21 @@ def nonzero_eigenvalues(A: Array) -> Complex:
     return values
 
 
+def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
+    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
+    propagator: P, (n, n)."""
+    return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))
+
+
+def multipliers_over_period(partial: Complex, orbit: Orbit) -> Complex:
+    """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
+    values: Complex = partial**orbit.symmetry.parts
+    return values[np.argsort(-np.abs(values), kind="stable")]
+
+
 @compiled_for_vectors
 def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
-    """Eigenvalues of `compressed(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
+    """Eigenvalues of `compressed_matrix(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
     finite."""
     small = compressed_matrix(A, negligible)
     for value in small.flat:

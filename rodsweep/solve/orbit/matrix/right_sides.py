@@ -89,7 +89,7 @@ def write_stage_residuals(points: Array, duration: float, p: SemidiscreteEquatio
 
 
 @compiled_for_vectors
-def write_newton_right_sides(
+def write_right_sides(
     points: Array,
     duration: float,
     p: SemidiscreteEquations,
@@ -126,7 +126,7 @@ def write_newton_right_sides(
 
 
 @compiled_for_vectors
-def write_variation_right_sides(
+def write_variation_sides(
     values: Array, p: SemidiscreteEquations, along: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
     """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
