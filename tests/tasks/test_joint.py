@@ -14,8 +14,8 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """

@@ -21,8 +21,8 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve
 from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, CycleCurve
 from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus

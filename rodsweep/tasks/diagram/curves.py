@@ -95,7 +95,7 @@ class DiagramCurves:
 
     def empty_result(self) -> dict[str, np.ndarray]:
         """Result of a half curve without points: arrays of shape (0, ...)."""
-        from ...solve.branch.special.cycle_curves import TracedHalfCurve
+        from ...solve.branch.special.special_curves import TracedHalfCurve
 
         return TracedHalfCurve(None).arrays()
 

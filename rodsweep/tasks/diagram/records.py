@@ -26,8 +26,8 @@ from ...results.layouts.variables import FilledVariable, Variable, outcome_value
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.cycle_curves import CycleCurve
     from ...solve.branch.special.point import RowSpecialPoint
+    from ...solve.branch.special.special_curves import CycleCurve
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
@@ -207,7 +207,7 @@ def with_hopf_ends(
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced`.
     """
-    from ...solve.branch.special.cycle_curves import with_located_ends
+    from ...solve.branch.special.special_curves import with_located_ends
 
     known = [point for curve in criticalities for point in curve.points]
     curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)

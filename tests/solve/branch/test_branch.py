@@ -20,8 +20,8 @@ from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_br
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curves import SpecialCurveProblem
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
@@ -318,7 +318,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
     orbit = first_cycle(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
-    assert float(orbit.form.tip(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
+    assert float(orbit.form.tip_coordinates(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
 
 
 @survey_only

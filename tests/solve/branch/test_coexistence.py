@@ -24,8 +24,8 @@ from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curves import SpecialCurveProblem
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import make_job

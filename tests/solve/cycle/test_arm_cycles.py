@@ -111,7 +111,7 @@ def test_the_energy_grows_by_what_the_force_gives_and_the_fluid_takes(name):
     weighted = form.nodal.compliance * form.mesh.quadrature
     rates = form.layout.state(G / weighted, V)
     h = 1e-4 / np.abs(rates).max()
-    steps = [form.energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
+    steps = [form.elastic_energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
     growth = (steps[0] - 8 * steps[1] + 8 * steps[2] - steps[3]) / (12 * h)
     lost = np.sum(form.mesh.quadrature * form.nodal.drag * V**2)
     power = -form.nodal.tip_stress @ G[:, -1] - lost
@@ -273,7 +273,7 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     x = 20.0 * np.random.default_rng(3).standard_normal(form.unknowns)
     S = form.stresses(x)
     ((before, behind),) = stresses_beside_jumps(form.nodal, S)
-    (node,), (sides,) = form.nodal.jumps, form.nodal.sides
+    (node,), (sides,) = form.nodal.jumps, form.nodal.jump_sides
     both = list(zip(sides, (before, behind), strict=True))
     stresses = [stress_beyond_rest(2, LocalSection(*side[:3]), *q) for side, q in both]
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)

@@ -189,7 +189,7 @@ def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
     handed = c.neighbour
     assert handed.predictor.orbit.period == c.measures.period
-    assert handed.predictor.orbit.form.tip(handed.predictor.orbit.start)[1] == pytest.approx(
+    assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start)[1] == pytest.approx(
         c.measures.tip_y_max
     )
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
@@ -361,7 +361,7 @@ def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
     path, form = CyclePath(half), half.form
     states = np.concatenate((half.regular_states, REFLECTION.of(half.regular_states, form.layout)))
-    tip = form.tip(states).T
+    tip = form.tip_coordinates(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
     strains = form.element_strains(states)
     series = path.strain_coefficients

@@ -13,7 +13,9 @@ from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundar
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
 from .curves import END_SETTINGS, SpecialCurveProblem
-from .cycle_curves import (
+from .on_curve import SolvedPoint
+from .point import RowSpecialPoint, SpecialKind, SpecialPoint
+from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
     Arrays,
     CurveEnd,
@@ -22,8 +24,6 @@ from .cycle_curves import (
     HalfCurve,
     TracedHalfCurve,
 )
-from .on_curve import SolvedPoint
-from .point import RowSpecialPoint, SpecialKind, SpecialPoint
 
 FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 """Kinds of special points that are followed as curves, with the plural noun for messages."""

@@ -18,7 +18,6 @@ from ...point import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from .augmented.functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
-from .cycle_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
 from .family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
 from .on_curve import (
@@ -30,6 +29,7 @@ from .on_curve import (
     with_larger_errors,
 )
 from .point import SpecialKind, SpecialPoint
+from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
 
 CURVE_STEPS = StepControl(
     first_length=0.01,
