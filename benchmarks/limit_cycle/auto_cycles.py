@@ -114,9 +114,9 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     ends included.
     """
     beam, _ = state_on_cycle(orbit)
-    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
+    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.period_parts
     states = orbit.states_at(np.where(turns > 1, turns - 1, turns))
-    states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
+    states[turns > 1] = orbit.symmetry.apply(states[turns > 1], orbit.form.layout)
     z = states * beam.sqrt_compliance[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
 

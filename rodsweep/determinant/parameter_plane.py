@@ -77,7 +77,7 @@ class PlaneAxis:
 class ValueOnPlane(NamedTuple):
     """D and the derivatives of D by w, x and y, times exp(-S).
 
-    rounding: rounding error of D exp(-S), including the effect of rounding in w, x and y.
+    rounding_error: rounding error of D exp(-S), including the effect of rounding in w, x and y.
     """
 
     D: complex
@@ -85,7 +85,7 @@ class ValueOnPlane(NamedTuple):
     D_x: complex
     D_y: complex
     S: float
-    rounding: float
+    rounding_error: float
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class Plane:
     axes: tuple[PlaneAxis, PlaneAxis]
 
     @cached_property
-    def standard(self) -> bool:
+    def has_standard_rods(self) -> bool:
         """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
         return self.rod.standard and all(axis.name != "taper" for axis in self.axes)
 
@@ -109,7 +109,7 @@ class Plane:
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        if not self.standard:
+        if not self.has_standard_rods:
             return self._determinant_of_arms(w, x, y)
         (D, D_w, _, S, noise), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
@@ -120,7 +120,11 @@ class Plane:
     def value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)
+        return (
+            scaled_determinant(w, rod.coefficients)
+            if self.has_standard_rods
+            else arm_determinant(rod).value(w)
+        )
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates

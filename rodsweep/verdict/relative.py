@@ -62,21 +62,21 @@ def plane_rods(
     build: constitutive law and profile. taper: ratio of tip to base radius. If given, `build` and `taper`
     replace the values of the arm.
     """
-    planes = [(_in_its_plane(arm, build, taper), 1.0)]
-    if not arm.isotropic:
+    planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
+    if not arm.is_equally_stiff:
         other = with_exchanged_sides(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
-        planes.append((_in_its_plane(other, build, taper), scale))
+        planes.append((_rod_in_its_plane(other, build, taper), scale))
     return planes
 
 
-def _in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
+def _rod_in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
     """The arm as a rod that bends in the plane of the section's height. build, taper: as in `plane_rods`."""
-    rod = rod_with(arm, arm.drags[0], build)
+    rod = rod_with_drag(arm, arm.drags[0], build)
     return rod if taper is None else replace(rod, taper=taper)
 
 
-def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
+def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
     """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
     section's height. build: constitutive law and profile; None for the build of the arm.
     """

@@ -74,7 +74,7 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     phi = 1 / np.prod(points[:, None, None] - v, axis=0)
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
-    none, level = np.empty(0, complex), ArmDeterminant(rod).level(points[-1])
+    none, level = np.empty(0, complex), ArmDeterminant(rod).propagators_for(points[-1])
     least = remainder_of_sum(line, none, np.empty(0), hull, points, level).least_contribution
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real

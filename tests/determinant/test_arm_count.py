@@ -143,7 +143,7 @@ def test_a_count_ends_whichever_elements_exist(W):
     rod = Rod(F=0.4, k1=1e5, k2=1.0, gamma3=1e-3, taper=0.1)
     alone = count_right_of(-1.3, ArmDeterminant(rod), hull_of(rod))
     determinant = ArmDeterminant(rod)
-    determinant.level(W)
+    determinant.propagators_for(W)
     assert count_right_of(-1.3, determinant, hull_of(rod)).number == alone.number
 
 

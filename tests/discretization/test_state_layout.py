@@ -71,8 +71,8 @@ def test_a_symmetry_maps_motions_to_motions(form, symmetry):
 def test_the_reflection_is_the_one_of_the_mixed_form(form):
     x, layout = states(form.layout), MixedForm(form.rod, form.mesh).layout
     X = states(layout)
-    assert np.array_equal(REFLECTION.of(X, layout), MixedForm(form.rod, form.mesh).reflection_signs * X)
-    assert np.array_equal(REFLECTION.reversed(form.layout) * x, (x - REFLECTION.of(x, form.layout)) / 2)
+    assert np.array_equal(REFLECTION.apply(X, layout), MixedForm(form.rod, form.mesh).reflection_signs * X)
+    assert np.array_equal(REFLECTION.is_reversed(form.layout) * x, (x - REFLECTION.apply(x, form.layout)) / 2)
 
 
 @pytest.mark.parametrize("layout", [StateLayout(3, 4, (2,)), StateLayout(6, 3)], ids=["plane", "space"])
@@ -82,5 +82,5 @@ def test_a_symmetry_is_a_matrix_and_is_undone(layout):
         turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, -1.0]])
     symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknowns)
     S = symmetry.matrix(layout)
-    assert symmetry.of(x, layout) == pytest.approx(x @ S.T)
+    assert symmetry.apply(x, layout) == pytest.approx(x @ S.T)
     assert symmetry.apply_inverse(P, layout) == pytest.approx(np.linalg.solve(S, P))

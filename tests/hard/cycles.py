@@ -17,7 +17,7 @@ from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import Neighbour, cycle_from_neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
-from rodsweep.solve.orbit.newton import at_orbit, multipliers_of, newton
+from rodsweep.solve.orbit.newton import multipliers_of, newton, with_orbit_matrix
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.point import Unsolvable
 
@@ -94,7 +94,9 @@ def finer(orbit):
     here = mesh_of(orbit)
     grid = uniform_mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
-    return at_orbit(newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0)
+    return with_orbit_matrix(
+        newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0
+    )
 
 
 def broken_promises(found, accuracy):

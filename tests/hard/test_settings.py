@@ -52,7 +52,7 @@ from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
+from rodsweep.solve.hopf.bautin_curves import BautinSpace, as_curve_point, bautin_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
@@ -176,7 +176,7 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
     (point,) = curve_criticality(plane, curve, 1e-10).points
     asked = np.array([8e3, 1.2e4, 1e4])
     space = BautinSpace(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
-    found = bautin_curve(space, on_curve(point, 1e4))
+    found = bautin_curve(space, as_curve_point(point, 1e4))
     answer = {}
     for value in asked[:2]:
         at = [each for each in found.points if abs(each.values[2] / value - 1) < 1e-12]
@@ -309,7 +309,7 @@ def curves_of_changes(accuracy: float) -> Answer:
         row = solve_row(rod.changed(k1=k1), request)
         if row.status.value:
             return None
-        found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings)
+        found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings)
         seeds += [seed for seed in found if seed is not None]
     curves = curves_through(plane, seeds)
     if curves.untraced:

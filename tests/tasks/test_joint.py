@@ -168,7 +168,9 @@ LINE, ROWS = PlaneAxis("F", 0.0, 1.0), PlaneAxis("k1", 1.0, 5.0)
 def boundaries():
     """Two curves of folds through the rows 1 to 5, at F = 0.2 and at F = 0.6."""
     special = [
-        RowSpecialPoint(number=row, row=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1)
+        RowSpecialPoint(
+            row_index=row, row_value=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1
+        )
         for row in range(1, 6)
         for at in (0.2, 0.6)
     ]

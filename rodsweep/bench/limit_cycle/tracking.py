@@ -42,7 +42,9 @@ REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
 reference cycle."""
 REFERENCE_NEWTON_TOLERANCE = 1e-13
 """Relative tolerance of Newton's method for the reference cycle."""
-PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
+PERIOD_MAP = TimeScheme(
+    "arkimex", "5", tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True, prefix="bench_map_"
+)
 """Scheme of the small steps by which returns and extrema are located. The error of its Newton iteration is
 negligible."""
 FOLLOWED_PERIODS = 6.3

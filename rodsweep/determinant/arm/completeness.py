@@ -99,7 +99,7 @@ def prove_complete(
         points = points_right_of_hull(line, hull.a, hull.c, k)
         if _last_proof_point(points) <= farthest * largest:
             found = remainder_of_sum(
-                line, known[pairs], error[pairs], hull, points, determinant.level(points[-1])
+                line, known[pairs], error[pairs], hull, points, determinant.propagators_for(points[-1])
             )
             examined += k
             if proves_completeness(found):

@@ -22,7 +22,7 @@ from .elements.settings import ARM_ELEMENT_SETTINGS
 from .local_waves import ArmSamples, arm_samples, wave_number_and_length_at, wave_numbers_and_lengths_at
 from .value import determinant_along_chain
 
-BoundedPropagators = tuple[float, Array]
+PropagatorsUpToW = tuple[float, Array]
 """(W, propagators that are valid for |w| <= W, (elements, terms, PADDED))."""
 
 
@@ -33,9 +33,9 @@ class ArmDeterminant:
     elements do not resolve the arm.
     """
 
-    def __init__(self, rod: Rod, known: BoundedPropagators | None = None):
+    def __init__(self, rod: Rod, known: PropagatorsUpToW | None = None):
         self.rod = rod
-        self._known_propagators: list[BoundedPropagators] = [] if known is None else [known]
+        self._known_propagators: list[PropagatorsUpToW] = [] if known is None else [known]
         points, weights, local = sampled_arm(rod)
         self.samples = arm_samples(float(rod.F), local, weights)
         each = LocalCoefficients(*(x[None] for x in local))
@@ -43,7 +43,7 @@ class ArmDeterminant:
 
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
-        W, polynomials = self.level(abs(w))
+        W, polynomials = self.propagators_for(abs(w))
         return determinant_along_chain(complex(w), W, polynomials)
 
     def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
@@ -51,28 +51,28 @@ class ArmDeterminant:
 
         The differences between values for several factors show the rounding error of D.
         """
-        W, polynomials = self.level(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
+        W, polynomials = self.propagators_for(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
         return determinant_along_chain(complex(w), W, polynomials)
 
-    def elements(self, size: float) -> int:
+    def element_count(self, size: float) -> int:
         """Number of elements for D at |w| = size."""
-        return len(self.level(size)[1])
+        return len(self.propagators_for(size)[1])
 
     def wave_number(self, w: complex) -> float:
         """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
-        return self.scales(w)[0]
+        return self.wave_number_and_length(w)[0]
 
-    def length(self, w: complex) -> float:
+    def phase_change_length(self, w: complex) -> float:
         """Change of w over which an exponent of D, integrated along the arm, changes by about one, in
         1/tau2."""
-        return self.scales(w)[1]
+        return self.wave_number_and_length(w)[1]
 
-    def scales(self, w: complex) -> tuple[float, float]:
-        """(`wave_number`, `length`) at w."""
+    def wave_number_and_length(self, w: complex) -> tuple[float, float]:
+        """(`wave_number`, `phase_change_length`) at w."""
         return wave_number_and_length_at(w, self.samples)
 
-    def scales_of_all(self, w: Complex) -> Array:
-        """Array (2, n) of `wave_number` and `length` at every w, (n,)."""
+    def wave_numbers_and_lengths(self, w: Complex) -> Array:
+        """Array (2, n) of `wave_number` and `phase_change_length` at every w, (n,)."""
         return wave_numbers_and_lengths_at(w, self.samples)
 
     @cached_property
@@ -83,7 +83,7 @@ class ArmDeterminant:
         local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
-    def level(self, size: float, highest: float | None = None) -> BoundedPropagators:
+    def propagators_for(self, size: float, highest: float | None = None) -> PropagatorsUpToW:
         """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= size.
 
         Existing propagators with the smallest such W are reused if W <= highest * size; otherwise new

@@ -33,7 +33,7 @@ class WindingSettings(CompiledSettings):
     width_factor: float = 4.0
     """Factor on the width of the box. A wider box is cheaper, because one exponential dominates D far from
     the eigenvalues."""
-    width_added: float = 50.0
+    additional_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
     min_height: float = 0.5
     """Smallest height of the box divided by the distance of the line from the imaginary axis."""
@@ -192,7 +192,7 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
             )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real = WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.width_added
+    real = WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width
     imag = max(imag, WINDING_SETTINGS.min_height * abs(line))
     change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:

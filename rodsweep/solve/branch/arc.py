@@ -65,7 +65,7 @@ class ArcPoint:
     arc_since_measured: float = 0.0
     """Arc length of the branch since the last cycle with measured errors; 0 if `steps_since_measured` is
     0."""
-    before: PreviousCycle | None = None
+    previous: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
 
     @property
@@ -116,25 +116,25 @@ class ArcPoint:
         values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
-    def condition(self, length: float) -> BorderCondition:
+    def arc_length_condition(self, length: float) -> BorderCondition:
         """The condition that the next cycle has the arc length `length` from this cycle."""
         return BorderCondition.at_arc_length(self.scale, self.unit_tangent, self.orbit, length)
 
-    def predicted(self, length: float) -> Orbit:
+    def predicted_orbit(self, length: float) -> Orbit:
         """Predicted orbit at the arc length `length` ahead, on the cubic through this cycle and the previous
         cycle, or on the tangent if there is no previous cycle; raises Unsolvable."""
         change = length * self.tangent
-        if self.before is not None:
-            change = length ** np.arange(1, 4) @ self._taylor(self.before)
+        if self.previous is not None:
+            change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
         return moved_orbit(self.orbit, self.scale.name, change)
 
-    def _taylor(self, before: PreviousCycle) -> Array:
+    def _cubic_coefficients(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
         its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
         cubic."""
         name = self.scale.name
         mesh = mesh_of(self.orbit)
-        last = mesh.interpolate(before.orbit)
+        last = mesh.interpolated_orbit(before.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
@@ -192,12 +192,12 @@ def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResu
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
     and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch an
     allowed prediction error is replaced by `target_error`."""
-    condition = start.condition(length)
-    predicted = start.predicted(length)
+    condition = start.arc_length_condition(length)
+    predicted = start.predicted_orbit(length)
     tolerance = newton_tolerance(accuracy)
     found = condition.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.before is None and off <= ARC_STEPS.max_error:
+    if start.previous is None and off <= ARC_STEPS.max_error:
         off = (
             ARC_STEPS.target_error
         )  # the error of the tangent predictor does not predict the error of the cubic
@@ -237,5 +237,5 @@ def cycle_with_calibrated_errors(
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,
         arc_since_measured=start.arc_since_measured + length,
-        before=PreviousCycle(start.orbit, start.tangent),
+        previous=PreviousCycle(start.orbit, start.tangent),
     )

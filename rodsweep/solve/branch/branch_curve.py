@@ -98,7 +98,7 @@ class BranchCurve:
     multipliers_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
-    def add(self, special: SpecialPoint) -> None:
+    def add_special_point(self, special: SpecialPoint) -> None:
         """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
@@ -106,7 +106,7 @@ class BranchCurve:
         """Appends the special points `between`, which lie between the present last cycle and the next cycle.
         explained: whether these points explain every multiplier that crosses the unit circle there."""
         for special in between:
-            self.add(special)
+            self.add_special_point(special)
         self.multipliers_explained &= explained
 
     def replace_last_cycles(self, points: Sequence[BranchPoint]) -> None:
@@ -122,7 +122,7 @@ class BranchCurve:
     def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the
         branch."""
-        self.add(end.special)
+        self.add_special_point(end.special)
         self.complete = end.complete
         self.list_full = end.list_full
         self.end_hopf = end.end_hopf

@@ -192,7 +192,7 @@ def _cycle_of_amplitude(
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = wanted_mesh(start, aim, stages_for(aim)).interpolate(start)
+        start = wanted_mesh(start, aim, stages_for(aim)).interpolated_orbit(start)
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
     scale = Scale.of(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.

@@ -149,7 +149,7 @@ def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace
         status=status,
         message=message,
         crossings=found.crossings,
-        unstable_at_start=found.unstable_at_start if found.searched[0] == low else -1,
+        unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
         proved=found.proved_to_the_end,
         curves=tuple(curves),
     )
@@ -247,4 +247,4 @@ def _status_and_message(
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
-    return status, "; ".join(filter(None, [*failures, *messages, found.doubts]))
+    return status, "; ".join(filter(None, [*failures, *messages, found.doubt_text]))

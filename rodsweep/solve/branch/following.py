@@ -54,7 +54,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
     """The branch from the Hopf point `limits.hopfs[number]`; the last special point stores a failure."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
-    curve.add(hopf_as_special_point(hopf))
+    curve.add_special_point(hopf_as_special_point(hopf))
     return _follow_to_end(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
 
@@ -63,7 +63,7 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     `limits.breakings[which]`; a failure is stored in the last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
-    curve.add(replace(breaking.point, message="", orbit=None))
+    curve.add_special_point(replace(breaking.point, message="", orbit=None))
 
     def first() -> ArcPoint:
         return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
@@ -146,7 +146,7 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
-            return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
+            return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
         outside = _index_of_passed_range_end(end, limits)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
@@ -180,7 +180,7 @@ def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limi
 
 def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
     """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
-    if start.orbit.symmetric:
+    if start.orbit.is_symmetric:
         return passed_hopf_point(start, end)
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
@@ -202,7 +202,7 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.stress_field(mesh.interpolate(start.orbit).start, "m3")
+    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start, "m3")
     # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
     return float(one @ layout.stress_field(end.orbit.start, "m3")) < 0
 

@@ -118,7 +118,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     later = times > 1
     points = orbit.states_at(np.where(later, times - 1, times))
     # The second half of the period is the mirror image of the first.
-    points[later] = orbit.symmetry.of(points[later], orbit.form.layout)
+    points[later] = orbit.symmetry.apply(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
     return replace(orbit, symmetry=NO_SYMMETRY, intervals=intervals, values=values)
 

@@ -16,7 +16,7 @@ from ...determinant.roots.newton import LocatedZero
 from ..point import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
-from .leading_eigenvalue import Tracer
+from .leading_eigenvalue import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
 from .unstable_modes import ChangeKind, Crossing, ModeCounter
@@ -42,10 +42,10 @@ class Transitions:
     list is proved complete."""
 
     crossings: tuple[Crossing, ...] = ()
-    searched: tuple[float, float] = (math.nan, math.nan)
+    searched_interval: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
-    """Whether the searched interval is shorter than the requested interval; the reason is in `doubts`."""
+    """Whether the searched interval is shorter than the requested interval; the reason is in `doubt_text`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
     """Smallest interval that contains all possible further crossings; (nan, nan) without such crossings."""
     unstable_at_start: int = -1
@@ -55,11 +55,11 @@ class Transitions:
     proved: bool
     """Whether the covering is complete, all counts agree, and no eigenvalue lies to the right of a leading
     eigenvalue."""
-    boxes: int = 0
+    box_count: int = 0
     """Number of evaluations of the determinant D in the covering."""
-    solves: int = 0
+    solve_count: int = 0
     """Number of solved eigenvalue problems."""
-    doubts: str = ""
+    doubt_text: str = ""
     """Reasons why the list is not proved or the search ended early."""
 
     @property
@@ -71,15 +71,15 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. end: end of the search. boxes: number of evaluations of the determinant D in the covering."""
+    crossings. end: end of the search. box_count: number of evaluations of D in the covering."""
 
     path: Path
     crossings: list[Crossing]
     gaps: list[tuple[float, float]]
     end: SearchEnd
-    boxes: int = 0
+    box_count: int = 0
 
-    def up_to(self, reach: SearchEnd) -> "AxisCrossings":
+    def restricted_to(self, reach: SearchEnd) -> "AxisCrossings":
         """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
         end."""
         if reach.p == self.end.p:
@@ -108,12 +108,12 @@ def transitions(
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
-    tracer = Tracer(problem, certify)
+    tracer = LeaderExchangeSearch(problem, certify)
     edges = problem.edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
         changes, reach = tracer.changes([*(p for p in edges if p < found.end.p), found.end.p])
-        found = found.up_to(reach) if reach.reason else found
+        found = found.restricted_to(reach) if reach.reason else found
         ends = found.searched_interval(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
@@ -132,7 +132,7 @@ def transitions(
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _counted(counts, unstable, crossings, at_end)
     counted = _with_searched(counted, found, (start, stop))
-    return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
+    return replace(counted, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
 def pair_crossings(
@@ -165,7 +165,7 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
         unstable_at_start=unstable,
         unstable_at_end=at_end,
         proved=counts.certify and not counts.gaps and not counts.doubts and known,
-        doubts="; ".join(counts.doubts),
+        doubt_text="; ".join(counts.doubts),
     )
 
 
@@ -177,10 +177,10 @@ def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[floa
     early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
     return replace(
         counted,
-        searched=searched,
+        searched_interval=searched,
         ended_early=bool(reason),
-        boxes=found.boxes,
-        doubts="; ".join(filter(None, (early, counted.doubts))),
+        box_count=found.box_count,
+        doubt_text="; ".join(filter(None, (early, counted.doubt_text))),
     )
 
 

@@ -18,7 +18,7 @@ class AnchorSettings:
     place_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
     D."""
-    explained: float = 0.25
+    min_cubic_ratio: float = 0.25
     """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
     smaller end value, so that no zero is missed. The difference of the end values must agree, within this
     fraction, with the difference that the slopes give by the trapezoidal rule."""
@@ -30,17 +30,17 @@ ANCHOR_SETTINGS = AnchorSettings()
 @dataclass(frozen=True)
 class Anchor:
     """A rod of a path, at path variable p, with its leading eigenvalues w and their slopes dw/dp,
-    (ANCHOR_MODES,) each.
+    (ANCHOR_MODE_COUNT,) each.
 
-    time: a relaxation time of the rod, smooth in p. lengthening: d time/dp. The product w time is of order
-    one; w alone grows without bound near crushing for a rod that has neither shear nor rotational drag.
-    """
+    relaxation_time: a relaxation time of the rod, smooth in p. relaxation_time_slope: d time/dp. The product
+    w time is of order one; w alone grows without bound near crushing for a rod that has neither shear nor
+    rotational drag."""
 
     p: float
     w: Complex
     slope: Complex
-    time: float = 1.0
-    lengthening: float = 0.0
+    relaxation_time: float = 1.0
+    relaxation_time_slope: float = 0.0
 
     @cached_property
     def oscillates(self) -> bool:
@@ -72,8 +72,10 @@ class Anchor:
 
     def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
         """Returns (value time, derivative of this product with respect to p) for a quantity `value` with
-        derivative `slope`; the factor `time` preserves zeros and signs."""
-        return float(value * self.time), float(slope * self.time + value * self.lengthening)
+        derivative `slope`; the factor `relaxation_time` preserves zeros and signs."""
+        return float(value * self.relaxation_time), float(
+            slope * self.relaxation_time + value * self.relaxation_time_slope
+        )
 
 
 def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
@@ -124,8 +126,8 @@ def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
         sign = math.copysign(h, a[0])
         lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.explained * smallest:
+        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.min_cubic_ratio * smallest:
             return share, True
-        if missed > ANCHOR_SETTINGS.explained * max(smallest, abs(b[0] - a[0])):
+        if missed > ANCHOR_SETTINGS.min_cubic_ratio * max(smallest, abs(b[0] - a[0])):
             return 0.5, False
     return 0.0, False

@@ -24,7 +24,7 @@ from .path_problem import PathProblem
 from .search_range import SearchedIntervals, SearchEnd
 from .unstable_modes import ChangeKind, Crossing
 
-ANCHOR_MODES = 4
+ANCHOR_MODE_COUNT = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
 two. The number is a constant, because with fewer eigenvalues it would be unknown which eigenvalues become
 equal."""
@@ -46,18 +46,18 @@ class LeadingEigenvalueSettings:
     """Maximum number of Newton steps to an overtaking."""
     carrying_steps: int = 8
     """Number of steps in which an eigenvalue is followed from an anchor to the middle of the interval."""
-    same_errors: float = 10.0
+    max_distance_in_errors: float = 10.0
     """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
-    start exceeds this multiple of the start's error estimate and `same` times |w|."""
-    same: float = 1e-12
+    start exceeds this multiple of the start's error estimate and `max_relative_distance` times |w|."""
+    max_relative_distance: float = 1e-12
     """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
     multiple of |w|: some thousand rounding errors."""
     smallest_step: float = 1e-12
     """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
     this (some thousand rounding errors), if its exchange is not found."""
-    rounding: float = 4e-16
+    rounding_error: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
-    converged: float = 4.0
+    converged_step_in_errors: float = 4.0
     """Newton's method for an overtaking stops when the step is smaller than this multiple of the error
     estimate."""
 
@@ -76,7 +76,7 @@ class LeaderExchange(NamedTuple):
     frequency: float
 
 
-class Tracer:
+class LeaderExchangeSearch:
     """Finds the exchanges of the leading eigenvalue along a path. anchors: the solved anchors, by path
     variable."""
 
@@ -97,20 +97,21 @@ class Tracer:
         return self.anchors[p]
 
     def _solve(self, p: float) -> Anchor:
-        request = SpectrumRequest(ANCHOR_MODES, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
+        request = SpectrumRequest(ANCHOR_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
         self.leaders_proved &= found.certified or found.status == SpectrumStatus.undecided
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
-        slope = np.empty(ANCHOR_MODES, dtype=complex)
+        slope = np.empty(ANCHOR_MODE_COUNT, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
             # Newton's method may jump to another eigenvalue, for example in a cluster; then the first value
             # stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            error = LEADING_EIGENVALUE_SETTINGS.same_errors * found.error_estimate[i]
-            if abs(polished - guess) <= max(error, LEADING_EIGENVALUE_SETTINGS.same * abs(guess)):
+            error = LEADING_EIGENVALUE_SETTINGS.max_distance_in_errors * found.error_estimate[i]
+            rounding = LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess)
+            if abs(polished - guess) <= max(error, rounding):
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
@@ -160,7 +161,7 @@ class Tracer:
                     "from real to complex or back"
                 )
         middle = a + share * (b - a)
-        intervals.divide((a, middle), (middle, b))
+        intervals.add_parts((a, middle), (middle, b))
         return []
 
     def _exchange_between(self, left: Anchor, right: Anchor) -> Crossing | None:
@@ -224,11 +225,11 @@ class Tracer:
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
             step = -(w_real.real - w_pair.real) / slope
-            error = (e_real + e_pair) / abs(slope) + LEADING_EIGENVALUE_SETTINGS.rounding * abs(p)
+            error = (e_real + e_pair) / abs(slope) + LEADING_EIGENVALUE_SETTINGS.rounding_error * abs(p)
             p += step
             if not ends[0] <= p <= ends[1]:
                 return None
-            if abs(step) <= LEADING_EIGENVALUE_SETTINGS.converged * error:
+            if abs(step) <= LEADING_EIGENVALUE_SETTINGS.converged_step_in_errors * error:
                 return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
             w_real = w_real + step * s_real
             w_pair = w_pair + step * s_pair

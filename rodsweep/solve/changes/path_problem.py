@@ -14,7 +14,7 @@ class PathProblem(ABC):
 
     def __init__(self, path: Path):
         self.path = path
-        self.solves = 0
+        self.solve_count = 0
         """Number of eigenvalue problems solved so far."""
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
@@ -24,7 +24,7 @@ class PathProblem(ABC):
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.rod_at(p), request)
-            self.solves += 1
+            self.solve_count += 1
         return self._spectra[key]
 
     @abstractmethod

@@ -90,7 +90,7 @@ class _MarchedMotion:
                 errors = errors_of_pair(
                     before, path, MARCHING_SETTINGS.settled_distance * self.request.accuracy
                 )
-                if errors.largest <= enough:
+                if errors.largest_error <= enough:
                     break
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
@@ -227,13 +227,13 @@ class _MarchedMotion:
 
     def _with_measures(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
         """The outcome `straight` with the status, measures and errors of the settled cycle of `path`."""
-        enough = errors.largest <= self.request.accuracy
+        enough = errors.largest_error <= self.request.accuracy
         cycle = replace(
             straight,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
             message=""
             if enough
-            else f"the cycle's errors, up to {errors.largest:.1e}, exceed the requested accuracy",
+            else f"the cycle's errors, up to {errors.largest_error:.1e}, exceed the requested accuracy",
             periods=self.returns,
         )
         return with_measures(cycle, self.request, path, measures_of(path), errors)

@@ -20,7 +20,7 @@ from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import at_orbit, newton
+from ..orbit.newton import newton, with_orbit_matrix
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
@@ -170,14 +170,14 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     rod = form.rod
     at = replace(rod, F=hopf.F)
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
-    if not normal.amplitude > 0:
+    if not normal.amplitude_coefficient > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces")
     if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh(rod))
     for distance in HOPF_START_SETTINGS.start_distances:
         try:
-            return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
+            return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why
@@ -198,7 +198,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     if not w.real <= HOPF_START_SETTINGS.max_direct_distance * rate:
         raise Unsolvable(f"F = {form.rod.F:g} is too far from a Hopf point for the normal form")
     normal = _normal_form(form, w)
-    if not normal.supercritical:
+    if not normal.is_supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
@@ -213,13 +213,13 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
     return replace(normal, w=w)
 
 
-def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
+def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
     raises Unsolvable."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.branch_tolerance
-    found = at_orbit(newton(start, tolerance, workspace, "F"), tolerance, "F")
-    squared = normal.cycle(F)[0]
+    found = with_orbit_matrix(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    squared = normal.squared_y_and_frequency(F)[0]
     least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
     if not least < found.orbit.form.tip_coordinates(found.orbit.start)[1] ** 2 / squared < most:
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
@@ -230,7 +230,7 @@ def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: Newto
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
     """The orbit that a normal form predicts for the rod in `form`, whose force is near the Hopf point."""
-    squared, frequency = normal.cycle(form.rod.F)
+    squared, frequency = normal.squared_y_and_frequency(form.rod.F)
     return orbit_of_amplitude(normal, form, squared**0.5, frequency)
 
 
@@ -238,7 +238,7 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
     times = node_times(HOPF_START_SETTINGS.intervals, HOPF_START_SETTINGS.stages)
-    X = normal.motion(amplitude, np.pi * times)
+    X = normal.cycle_states(amplitude, np.pi * times)
     S, V = normal.form.stresses_and_velocities(X)
     source = normal.form.mesh
     target = form.mesh

@@ -137,7 +137,7 @@ def _with_motion_data(
 ) -> Cycle:
     """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of the
     integrated motion `transient`. end: outcome of this motion."""
-    trace = transient.trace
+    trace = transient.record
     return replace(
         straight,
         periods=end.periods,

@@ -36,7 +36,7 @@ class BautinEnd(IntEnum):
     closed = 5
 
 
-END_OTHERWISE = {
+END_BY_STOP_REASON = {
     CurveStop.closed: BautinEnd.closed,
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
@@ -83,7 +83,7 @@ class BautinSpace:
     accuracy: float
     side: float = 1.0
 
-    def scaled(self, values: Array, frequency: float) -> Array:
+    def scaled_coordinates(self, values: Array, frequency: float) -> Array:
         """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
         places = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
@@ -99,7 +99,7 @@ class BautinSpace:
         accuracy = min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
         hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)
         start = guess[[*free, 3]]
-        point = self._zero(hopf, start, boundary.tangent(start))
+        point = self._zero_by_secants(hopf, start, boundary.tangent(start))
         found_values = np.empty(3)
         errors = np.zeros(3)
         found_values[free] = point.values
@@ -108,7 +108,7 @@ class BautinSpace:
         found = BautinCurvePoint(
             values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
         )
-        return _CurvePoint(self.scaled(found_values, point.frequency), found)
+        return _CurvePoint(self.scaled_coordinates(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
         """The next point after `behind`, predicted along the last chord, at first along the third parameter;
@@ -163,14 +163,14 @@ class BautinSpace:
         return len(behind) > BAUTIN_SETTINGS.min_loop_points and bool(near)
 
     @staticmethod
-    def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
+    def _zero_by_secants(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN_SETTINGS.first_secant
-        last = hopf.at(start, way, hopf.accuracy).relative_real_part
+        last = hopf.hopf_point_on_plane(start, way, hopf.accuracy).relative_real_part
         for _ in range(BAUTIN_SETTINGS.max_secants):
-            here = hopf.at(start + s * way, way, hopf.accuracy)
+            here = hopf.hopf_point_on_plane(start + s * way, way, hopf.accuracy)
             if here.relative_real_part == last:
                 break
             slope = (here.relative_real_part - last) / (s - before)
@@ -179,7 +179,7 @@ class BautinSpace:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN_SETTINGS.tolerance, along):
-                return hopf.as_point(here, 0, way * (along + abs(step)))
+                return hopf.as_generalised_hopf(here, 0, way * (along + abs(step)))
             last = here.relative_real_part
             before = s
             s = s + step
@@ -188,7 +188,7 @@ class BautinSpace:
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
-    here = _CurvePoint(space.scaled(start.values, start.frequency), start)
+    here = _CurvePoint(space.scaled_coordinates(start.values, start.frequency), start)
     back, first = _follow_in_direction(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
         return BautinCurve(tuple(point.point for point in back), (first, first))
@@ -197,7 +197,7 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
 
 
-def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
+def as_curve_point(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
     """A generalised Hopf point of a plane as a point of a curve. third: value of the third parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, third]),
@@ -207,10 +207,10 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
     )
 
 
-def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
+def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
     """Whether `point`, at a requested third parameter, equals a point of `curve`."""
-    v = space.scaled(point.values, point.frequency)
-    others = [space.scaled(other.values, other.frequency) for other in curve.points]
+    v = space.scaled_coordinates(point.values, point.frequency)
+    others = [space.scaled_coordinates(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
 
 
@@ -228,7 +228,7 @@ def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_
             return places, BautinEnd.not_found
     if curve.end is CurveStop.margin:
         return places, BautinEnd.range_end if curve.margin // 2 == 2 else BautinEnd.plane_edge
-    return places, END_OTHERWISE[curve.end]
+    return places, END_BY_STOP_REASON[curve.end]
 
 
 def _report_point_count(places: Sequence[_CurvePoint]) -> None:

@@ -40,7 +40,7 @@ class NormalFormSettings:
     shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate; without an offset the shifted matrix might
     be singular."""
-    found: float = 1e-8
+    converged_distance: float = 1e-8
     """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
     two iterations with this shift reach rounding error."""
     max_shifts: int = 10
@@ -90,13 +90,13 @@ class NormalForm:
         return self.form.rod.F
 
     @property
-    def supercritical(self) -> bool:
+    def is_supercritical(self) -> bool:
         """Whether Re c < 0: the nonlinearity then limits the growth, and cycles are stable if no further mode
         grows."""
         return self.c.real < 0
 
     @property
-    def amplitude(self) -> float:
+    def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
         largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
         squared = -self.slope.real / self.c.real
@@ -108,7 +108,7 @@ class NormalForm:
         Im w + b (F' - F), in 1/tau2."""
         return self.slope.imag - self.c.imag * self.slope.real / self.c.real
 
-    def cycle(self, F: float) -> tuple[float, float]:
+    def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
 
         The eigenvalue at F is approximated by w + slope (F - self.F). If the square is negative, no cycle
@@ -118,7 +118,7 @@ class NormalForm:
         squared = -w.real / self.c.real
         return squared, w.imag + self.c.imag * squared
 
-    def motion(self, amplitude: float, phases: Array) -> Array:
+    def cycle_states(self, amplitude: float, phases: Array) -> Array:
         """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
 
         amplitude: the largest tip y, in L, which is reached at phase 0.
@@ -149,10 +149,10 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w, or too many nodes, as in `normal_form_on`.
     """
-    return normal_form_on(elements_for(rod, w, accuracy), rod, w, accuracy)
+    return normal_form_on(elements_for_coefficient(rod, w, accuracy), rod, w, accuracy)
 
 
-def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
+def elements_for_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
     mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM_SETTINGS.accuracy_share
@@ -160,21 +160,21 @@ def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     if not rod.standard:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
-    return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
+    return with_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
-def of_odd_order(elements: Elements) -> Elements:
+def with_odd_order(elements: Elements) -> Elements:
     """The same elements, with their order increased by 1 if it is even; elements of even order cannot be
     eliminated one by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
-def finer_by_a_third(elements: Elements) -> Elements:
+def elements_with_third_more_unknowns(elements: Elements) -> Elements:
     """Elements with about a third more unknowns than `elements`, of odd order."""
     order = ceil(elements.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
-        return of_odd_order(Elements(elements.edges, order))
-    return of_odd_order(
+        return with_odd_order(Elements(elements.edges, order))
+    return with_odd_order(
         Elements(
             halve_elements(elements.edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * elements.order)
         )
@@ -194,7 +194,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
             f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
         )
     normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
-    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.found) * abs(w):
+    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_distance) * abs(w):
         raise Unsolvable(
             f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest eigenvalue is "
             f"{normal.w:.12g}"
@@ -223,7 +223,7 @@ def _eigenvalue_and_modes(
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
         w = complex(np.vdot(p, elements.apply_A(q)) / np.vdot(p, Mq))
-        if abs(w - shift) <= NORMAL_FORM_SETTINGS.found * abs(w):
+        if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_distance * abs(w):
             break
     else:
         raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")

@@ -24,7 +24,7 @@ class ModeIterationSettings:
 
     iterations: int = 4
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
-    conjugate: float = 1e-12
+    conjugate_tolerance: float = 1e-12
     """An eigenvalue w is the complex conjugate v* of its predecessor v in the list if |w - v*|/|w| is at most
     this."""
 
@@ -118,7 +118,7 @@ def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Compl
         if (
             i
             and w.imag < 0
-            and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION_SETTINGS.conjugate * abs(w)
+            and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION_SETTINGS.conjugate_tolerance * abs(w)
         ):
             X[:, i] = X[:, i - 1].conj()
             Z[:, i] = Z[:, i - 1].conj()

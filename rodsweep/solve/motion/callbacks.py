@@ -2,7 +2,7 @@
 
 numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
 iteration of 5 us would take 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`.
-The memory of this record belongs to a `Workspace`, which must outlive the TS.
+The memory of this record belongs to a `CallbackWorkspace`, which must outlive the TS.
 
 The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even if the full Jacobian
 of the step is implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
@@ -129,7 +129,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     return 0
 
 
-class Workspace:
+class CallbackWorkspace:
     """Arrays and context record used by the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
@@ -147,14 +147,14 @@ class Workspace:
         }
         self._vectors = [PETSc.Vec().createSeq(n, comm=PETSc.COMM_SELF) for _ in range(2)]
         self.context = np.zeros((), CONTEXT_DTYPE)
-        self._set({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
-        self._set({name: array.ctypes.data for name, array in self._arrays.items()})
+        self._set_context_fields({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
+        self._set_context_fields({name: array.ctypes.data for name, array in self._arrays.items()})
 
-    def _set(self, values: Mapping[str, float]) -> None:
+    def _set_context_fields(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             self.context[name] = value
 
-    def prepare(self, beam: Beam, error: float, floor: float) -> None:
+    def set_rod_and_tolerances(self, beam: Beam, error: float, floor: float) -> None:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
         stage.
 
@@ -162,17 +162,17 @@ class Workspace:
         steps stagnate below this size, the stagnation is attributed to rounding errors.
         """
         self._rod = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
-        self._set({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
-        self._set({"jump_count": len(beam.nodal.jumps)})
+        self._set_context_fields({name: array.ctypes.data for name, array in self._rod.items()})
+        self._set_context_fields({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
+        self._set_context_fields({"jump_count": len(beam.nodal.jumps)})
         # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknowns**0.5
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
-        self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
-        self._set({"small_error": error * root, "rounding": floor * root})
+        self._set_context_fields(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
+        self._set_context_fields({"small_error": error * root, "rounding": floor * root})
         take_steps(self.context)
 
-    def predict_as(self, variant: str) -> None:
+    def set_extrapolation_points(self, variant: str) -> None:
         """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if
         `EXTRAPOLATION_POINTS` does not contain the type."""
         self._arrays["points"][:] = extrapolation_points_of(variant)
@@ -187,7 +187,7 @@ class Workspace:
             # Without an explicit part PETSc 3.20 and newer would treat the problem as a DAE, with a separate
             # computation of the first slope.
             call_petsc("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
-            self.predict_as(ts.getARKIMEXType())
+            self.set_extrapolation_points(ts.getARKIMEXType())
             self.context["middle"] = STAGE_PREDICTOR_SETTINGS.matrix_time_fraction
         call_petsc("TSSetIFunction", ts.handle, 0, residual.address, context)
         call_petsc("TSSetIJacobian", ts.handle, B, B, residual_jacobian.address, context)
@@ -202,7 +202,9 @@ class Workspace:
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
         objects = ts, matrix, ksp, *self._vectors
-        self._set({name: entry.handle for name, entry in zip(PETSC_HANDLE_FIELDS, objects, strict=True)})
+        self._set_context_fields(
+            {name: entry.handle for name, entry in zip(PETSC_HANDLE_FIELDS, objects, strict=True)}
+        )
         self.context["most_iterations"] = snes.getTolerances()[3]
         call_petsc("SNESShellSetContext", snes.handle, self.context.ctypes.data)
         call_petsc("SNESShellSetSolve", snes.handle, solve_stage.address)

@@ -48,12 +48,12 @@ class HasMultipliers(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ConvergedOrbit:
-    """Result of Newton's method. matrix: the last Newton matrix. distance: relative distance of `orbit` from
-    the iterate at which `matrix` was assembled."""
+    """Result of Newton's method. matrix: the last Newton matrix. matrix_distance: relative distance of
+    `orbit` from the iterate at which `matrix` was assembled."""
 
     orbit: Orbit
     matrix: HasMultipliers
-    distance: float
+    matrix_distance: float
 
     @property
     def workspace(self) -> NewtonWorkspace:
@@ -111,10 +111,10 @@ def newton(
     )
 
 
-def at_orbit(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
+def with_orbit_matrix(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
     """The orbit `found`, after one more Newton step if its matrix was assembled at a relative distance of
     more than `distance` from the orbit. parameter: as in `newton`."""
-    if found.distance <= distance:
+    if found.matrix_distance <= distance:
         return found
     return newton_step(found, parameter)
 

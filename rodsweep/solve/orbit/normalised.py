@@ -38,7 +38,7 @@ def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArrays:
     return ReflectionArrays(
-        REFLECTION.reversed(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
+        REFLECTION.is_reversed(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
     )
 
 

@@ -74,18 +74,18 @@ class Orbit:
         return self.states_at_starts[:-1]
 
     @property
-    def method(self) -> Collocation:
+    def collocation(self) -> Collocation:
         return radau_method(self.stages)
 
     @property
     def duration(self) -> float:
         """Duration of the solved part of the period in tau2: half the period or the whole period."""
-        return self.period / self.symmetry.parts
+        return self.period / self.symmetry.period_parts
 
     @property
-    def symmetric(self) -> bool:
+    def is_symmetric(self) -> bool:
         """Whether the solved part is shorter than the period (`symmetry.parts` > 1)."""
-        return self.symmetry.parts > 1
+        return self.symmetry.period_parts > 1
 
     @property
     def semidiscrete(self) -> SemidiscreteEquations:
@@ -103,7 +103,7 @@ class Orbit:
 
     def states_at(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
-        at: Array = piecewise((self.intervals, self.stages), times) @ self.points
+        at: Array = time_evaluation_matrix((self.intervals, self.stages), times) @ self.points
         return at
 
     def on_mesh(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
@@ -113,7 +113,7 @@ class Orbit:
         source = self.intervals, self.stages
         target = intervals, stages
         if target != source:
-            points = between_intervals(source, target) @ points
+            points = time_interpolation_matrix(source, target) @ points
         if grid != self.form.mesh:
             points = self.form.states_on_mesh(grid, points)
         return replace(
@@ -132,7 +132,7 @@ def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: 
     d = radau_method(stages).differentiation_matrix
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
-    parts = float(symmetry.parts)
+    parts = float(symmetry.period_parts)
     return SemidiscreteEquations(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
 
 
@@ -161,14 +161,14 @@ def node_times(intervals: int, stages: int) -> Array:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
+def time_interpolation_matrix(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. source,
     target: (intervals K, stages s). Shape: (1 + K s of target, 1 + K s of source)."""
     intervals, stages = target
-    return piecewise(source, node_times(intervals, stages))
+    return time_evaluation_matrix(source, node_times(intervals, stages))
 
 
-def piecewise(source: tuple[int, int], times: Array) -> csr_array:
+def time_evaluation_matrix(source: tuple[int, int], times: Array) -> csr_array:
     """Matrix, (m, 1 + K s), that interpolates states from the time nodes of `source` = (K, s) to `times` in
     [0, 1], (m,).
 

@@ -30,10 +30,10 @@ class ArmSolver(ShiftInvertSolver):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
-        self.B.setValuesCSR(self.line, self.line[:-1], found.B)
+        self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], found.B)
         self.B.assemble()
         values = found.A.copy()
-        values[self.diagonal] -= shift * found.B
+        values[self.is_diagonal_entry] -= shift * found.B
         if self.dense:
             flat = self.A.getDenseArray().T.reshape(-1)  # stored by columns
             flat[:] = 0.0

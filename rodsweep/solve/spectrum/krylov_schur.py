@@ -55,7 +55,7 @@ class UniformSolver(ShiftInvertSolver):
         if rod.rotational_drag != self.gamma3:
             self.gamma3 = rod.rotational_drag
             self.inertia = self.pencil.mass_diagonal(rod)
-            self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
+            self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], self.inertia)
             self.B.assemble()
         if self.dense:
             _write_shifted_matrix(
@@ -63,7 +63,7 @@ class UniformSolver(ShiftInvertSolver):
             )
         else:
             values = coefficients @ self.pencil.term_entries
-            values[self.diagonal] -= shift * self.inertia
+            values[self.is_diagonal_entry] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
         return LoadedPencil(finite_eigenvalue_count(rod, self.nodes), shift, deflection_ratio)
 

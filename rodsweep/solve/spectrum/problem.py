@@ -155,12 +155,12 @@ class ArmProblem(TransverseProblem):
     def roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`; if a proof is
         requested, only from the eigenvalues that the proof needs."""
-        in_proof, largest = self._of_proof(raw)
+        in_proof, largest = self._eigenvalues_for_proof(raw)
         return roots_of_arm(
             np.where(in_proof, raw, np.inf), self._determinant, self._hull, most_waves, largest
         )
 
-    def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
+    def _eigenvalues_for_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest
         |w| at which the proof needs D; 0 if unknown.
         """

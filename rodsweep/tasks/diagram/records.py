@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.point import RowSpecialPoint
-    from ...solve.branch.special.special_curves import CycleCurve
+    from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
@@ -98,7 +98,9 @@ def bautin_curve_record(
     )
 
 
-def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[FilledVariable]:
+def cycle_curve_record(
+    found: "Boundaries[SpecialPointCurve]", plane: tuple[str, str]
+) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
     (parameter along a row, parameter that differs between rows).
     """
@@ -174,8 +176,8 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     kinds, at, period, height = map(view.by_point, names)
     return [
         RowSpecialPoint(
-            number=int(i),
-            row=float(rows[i]),
+            row_index=int(i),
+            row_value=float(rows[i]),
             kind=SpecialKind(int(kinds[i, j])),
             at=float(at[i, j]),
             period=float(period[i, j]),
@@ -198,11 +200,11 @@ def unstored_special_count(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "Boundaries[CycleCurve]",
+    found: "Boundaries[SpecialPointCurve]",
     plane: "Plane",
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
-) -> "Boundaries[CycleCurve]":
+) -> "Boundaries[SpecialPointCurve]":
     """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced`.

@@ -149,7 +149,7 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
 def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     orbit = known.breakings[0].point.orbit
     whole = extended_to_whole_period(orbit)
-    assert not whole.symmetric
+    assert not whole.is_symmetric
     times = np.linspace(0, 1, 21)
     assert (
         np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max() < 1e-4 * np.abs(orbit.points).max()

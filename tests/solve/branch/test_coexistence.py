@@ -25,7 +25,7 @@ from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, s
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curves import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, HalfCurve, SpecialPointCurve
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import make_job
@@ -135,7 +135,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
             fold, 149.9
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
-    curve = CycleCurve.joined(SpecialKind.fold, *halves)
+    curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
     last = curve.points[-1]
     assert last.row == 150.0
@@ -156,16 +156,16 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
     ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
-    truth = FoldFunction(own, border, small=False).value(fold.orbit)
+    truth = FoldFunction(own, border, has_small_cycles=False).value(fold.orbit)
     other = (
         BorderCondition.at_arc_length(scale, border, fold.orbit, 1e-4)
         .solve_cycle(fold.orbit, 1e-10, NewtonWorkspace())
         .orbit
     )
-    function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, small=False)
+    function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, has_small_cycles=False)
     before = abs(function.value(fold.orbit) - truth)
     for _ in range(8):
-        function.correct(fold.orbit)
+        function.correct_vectors(fold.orbit)
     assert abs(function.value(fold.orbit) - truth) < 1e-2 * before
 
 

@@ -29,7 +29,7 @@ from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
-from rodsweep.solve.orbit.newton import at_orbit, newton
+from rodsweep.solve.orbit.newton import newton, with_orbit_matrix
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
@@ -333,7 +333,7 @@ def repeated(half, times):
     number = np.floor(at + 1e-9)
     states = half.states_at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
-    states[later] = REFLECTION.of(states[later], half.form.layout)
+    states[later] = REFLECTION.apply(states[later], half.form.layout)
     return Orbit.of(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
 
 
@@ -344,7 +344,7 @@ def test_three_periods_are_recognised_and_cut_to_one():
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
     assert over_minimal_period(half) is half
-    once = at_orbit(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
+    once = with_orbit_matrix(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 
@@ -360,7 +360,7 @@ def orbit_on(elements, order):
 def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
     path, form = CyclePath(half), half.form
-    states = np.concatenate((half.regular_states, REFLECTION.of(half.regular_states, form.layout)))
+    states = np.concatenate((half.regular_states, REFLECTION.apply(half.regular_states, form.layout)))
     tip = form.tip_coordinates(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
     strains = form.element_strains(states)

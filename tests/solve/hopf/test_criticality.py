@@ -153,7 +153,10 @@ def test_errors_are_below_their_estimates(accuracy):
             )
             assert abs(known.landau / exact.c - 1) <= known.landau_error <= accuracy
             assert abs(known.growth_slope / exact.slope - 1) <= known.growth_slope_error <= accuracy
-            assert abs(known.amplitude_coefficient / exact.amplitude - 1) <= known.amplitude_coefficient_error
+            assert (
+                abs(known.amplitude_coefficient / exact.amplitude_coefficient - 1)
+                <= known.amplitude_coefficient_error
+            )
             assert abs(known.frequency_slope / exact.frequency_slope - 1) <= known.frequency_slope_error
             seen += 1
     assert seen > 25

@@ -252,7 +252,7 @@ def test_cycle_of_a_neighbouring_eigenvalue_is_the_same_in_the_limit():
     off = []
     for part in (4e-3, 2e-3):
         rod = beyond(SOFT, part)
-        squared, frequency = normal_form(form_of(rod), SOFT[1]).cycle(rod.F)
+        squared, frequency = normal_form(form_of(rod), SOFT[1]).squared_y_and_frequency(rod.F)
         exact = near_by(SOFT, part, 1.0) * (part * SOFT[0].F) + [0, SOFT[1].imag]
         off.append(np.abs([squared, frequency] / exact - 1))
     assert off[1][0] <= 0.01

@@ -29,9 +29,9 @@ from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
 from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, largest_norm
+from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
-from rodsweep.solve.modes.propagator import Propagator, exponential
+from rodsweep.solve.modes.propagator import Propagator, matrix_exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -485,7 +485,7 @@ def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters
 def toy(generator):
     """exp(L t) of a small matrix L, all modes kept."""
     propagator = Propagator(np.linalg.inv(np.array(generator, dtype=float)))
-    assert propagator.truncate(len(generator)) == len(generator)
+    assert propagator.use_leading_modes(len(generator)) == len(generator)
     return propagator
 
 
@@ -501,7 +501,9 @@ def test_a_peak_later_than_the_decay_time_is_found():
     """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
     propagator = toy(np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1))
     end, tail = growth_module._end_of_growth(propagator, 1e-3, 20.0)
-    (largest, time), bound = largest_norm(propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6)
+    (largest, time), bound = largest_propagator_norm(
+        propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6
+    )
     assert propagator.norm(end)[0] < 1
     assert tail == 0
     assert time == pytest.approx(2, rel=1e-2)
@@ -520,9 +522,9 @@ def test_all_modes_of_a_mesh_say_the_same_as_few():
     propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble_pencil(1, 32))
     norms = []
     for k in (12, 18, 32):
-        assert propagator.truncate(k) == k
+        assert propagator.use_leading_modes(k) == k
         assert (np.tril(propagator.generator, -2) == 0).all()
-        norms.append(propagator.norm(4.3e-5)[0])
+        norms.append(propagator.norm_and_log_slope(4.3e-5)[0])
     assert norms == pytest.approx([norms[0]] * 3, rel=5e-14)
 
 
@@ -549,9 +551,9 @@ def test_fast_modes_cost_the_slow_ones_no_digits(fast):
     L = np.array([[-0.3, 2.0, 0.7], [-1.0, -0.2, 0.4], [0.0, 0.0, -1.0]]) * [1.0, 1.0, fast**0.5]
     L[2, 2] = -fast
     exact = np.array(mp.expm(mp.matrix(L.tolist())).tolist(), dtype=float)
-    assert abs(exponential(L) - exact)[:2].max() < 1e-14 * abs(exact).max()
-    many = exponential(L * np.array([0.5, 1.0])[:, None, None])
-    assert many[1] == pytest.approx(exponential(L), abs=1e-14)
+    assert abs(matrix_exponential(L) - exact)[:2].max() < 1e-14 * abs(exact).max()
+    many = matrix_exponential(L * np.array([0.5, 1.0])[:, None, None])
+    assert many[1] == pytest.approx(matrix_exponential(L), abs=1e-14)
     assert many[0] @ many[0] == pytest.approx(many[1], abs=1e-13)
 
 
@@ -559,7 +561,9 @@ def test_fast_modes_cost_the_slow_ones_no_digits(fast):
 def test_a_peak_between_two_times_is_found(frequency):
     """A damped pair with |exp(L t)| up to 9 twice a turn: the times to start with see few of the peaks."""
     propagator = toy([[-0.05, 9 * frequency], [-frequency / 9, -0.05]])
-    (largest, time), bound = largest_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    (largest, time), bound = largest_propagator_norm(
+        propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8
+    )
     first = (np.ceil(frequency / np.pi - 0.5) + 0.5) * np.pi / frequency
     assert time == pytest.approx(first, rel=1e-2)
     assert largest == pytest.approx(9 * np.exp(-0.05 * first), rel=1e-3)
@@ -603,7 +607,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
 def test_a_search_that_is_given_up_leaves_the_bound_where_it_is(monkeypatch):
     monkeypatch.setattr(peak_module, "NORM_MAXIMUM_SETTINGS", replace(NORM_MAXIMUM_SETTINGS, max_halvings=1))
     propagator = toy([[-0.05, 9 * 155.0], [-155.0 / 9, -0.05]])
-    (largest, _), bound = largest_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    (largest, _), bound = largest_propagator_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
     scan = brute_force(propagator, np.linspace(1, 8, 4000)).max()
     assert scan < bound
     assert bound > 1.01 * largest

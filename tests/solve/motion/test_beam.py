@@ -156,7 +156,7 @@ def test_small_start_grows_like_the_leading_eigenvalue():
     start = 1e-7 * mode.z.real
     values, left = np.linalg.eig(beam.jacobian(np.zeros(60)).T)
     row = left[:, np.argmin(np.abs(values - mode.w))]
-    run = evolve(beam, start, duration, TimeScheme(tolerance=1e-11, newton=0.01))
+    run = evolve(beam, start, duration, TimeScheme(tolerance=1e-11, newton_tolerance_ratio=0.01))
     assert run.ending == RunEnding.reached
     grown = np.log((row @ run.states[-1]) / (row @ run.states[0]) * np.exp(-1j * mode.w.imag * duration))
     assert grown.real / duration == pytest.approx(mode.w.real, rel=1e-6)
@@ -168,7 +168,7 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
     """On a rod whose stiffness the steps resolve; order reduction is a stiff rod's."""
     beam = Beam(Rod(F=5.0, k1=10.0, k2=10.0, gamma3=1.0), uniform_mesh(1, 3))
     start, duration = bent(beam), 0.02
-    method = TimeScheme("arkimex", variant, tolerance=1e-8, newton=1e-6, equal_steps=True)
+    method = TimeScheme("arkimex", variant, tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True)
 
     def end(steps):
         run = integrator(beam.mesh, method).run(beam, start, duration, duration / steps)
@@ -212,7 +212,7 @@ if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whos
 def test_every_method_follows_the_same_motion(method):
     beam = Beam(ROD, uniform_mesh(1, 14))
     start = 0.3 * leading_mode(beam).z.real
-    exact = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-10, newton=0.01)).states[-1]
+    exact = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-10, newton_tolerance_ratio=0.01)).states[-1]
     run = evolve(beam, start, 0.03, method)
     assert run.ending == RunEnding.reached
     assert run.times[-1] == pytest.approx(0.03)
@@ -241,7 +241,7 @@ def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
     beam = Beam(ROD, uniform_mesh(1, 14))
     start, scheme = 0.3 * leading_mode(beam).z.real, TimeScheme("arkimex", variant, 1e-6)
     predicting, plain = Integrator(beam.mesh, scheme), Integrator(beam.mesh, scheme)
-    plain.workspace.predict_as("")
+    plain.workspace.set_extrapolation_points("")
     ends, iterations = [], []
     for made in (predicting, plain):
         ends.append(made.run(beam, start, 0.03).states[-1])
@@ -255,7 +255,7 @@ def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
     beam, shift = Beam(ROD, uniform_mesh(1, 8)), 1e3
     made = integrator(beam.mesh, TimeScheme())
     z, rows = bent(beam), list(range(beam.layout.unknowns))
-    made.workspace.prepare(beam, 1e-8, 1e-8)
+    made.workspace.set_rod_and_tolerances(beam, 1e-8, 1e-8)
     made.workspace.base[:] = z
     state, slope = made.vector.duplicate(), made.vector.duplicate()
     state.array_w[:] = z

@@ -63,5 +63,9 @@ def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     length = beam.tip_coordinates(np.zeros(beam.unknowns))[0]
     x, y = beam.tip_coordinates(equilibrium_at_tip(beam, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
-        (0.6 * FIXED_TIP_SETTINGS.reach * length, 0.8 * FIXED_TIP_SETTINGS.reach * length), abs=1e-8
+        (
+            0.6 * FIXED_TIP_SETTINGS.max_tip_distance * length,
+            0.8 * FIXED_TIP_SETTINGS.max_tip_distance * length,
+        ),
+        abs=1e-8,
     )

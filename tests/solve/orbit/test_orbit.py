@@ -22,5 +22,5 @@ def test_an_orbit_from_another_rank_is_the_same_to_the_last_bit(symmetry):
     sent = pickle.loads(pickle.dumps(orbit))
     own, finer = mesh_of(orbit), mesh_of(orbit).finer
     assert mesh_of(sent) == own
-    assert own.interpolate(sent).values.tobytes() == orbit.values.tobytes()
-    assert finer.interpolate(sent).values.tobytes() == finer.interpolate(orbit).values.tobytes()
+    assert own.interpolated_orbit(sent).values.tobytes() == orbit.values.tobytes()
+    assert finer.interpolated_orbit(sent).values.tobytes() == finer.interpolated_orbit(orbit).values.tobytes()

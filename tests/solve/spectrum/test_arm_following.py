@@ -11,7 +11,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_count
-from rodsweep.solve.spectrum.path.arm_count import count_at
+from rodsweep.solve.spectrum.path.arm_count import confirmed_count_at
 from rodsweep.solve.spectrum.path.arm_spectra import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.stretch import Stretch
@@ -94,7 +94,9 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
         lambda path, found, p, *rest: None if p > 40.5 else confirmed(path, found, p, *rest),
     )
     single = []
-    monkeypatch.setattr(arm_spectra, "count_at", lambda *words: single.append(words[2]) or count_at(*words))
+    monkeypatch.setattr(
+        arm_spectra, "count_at", lambda *words: single.append(words[2]) or confirmed_count_at(*words)
+    )
     followed = follow_stretch_of_arms(path, values, REQUEST)
     assert followed.accepted.all()
     assert len(single) == len(values)

@@ -19,7 +19,7 @@ from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ...certificate.winding_number import NO_INTEGER, PHASE_LOST, WINDING_SETTINGS, EigenvalueCount
 from ..completeness import has_conjugate
-from ..determinant import ArmDeterminant, BoundedPropagators
+from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..elements.settings import ARM_ELEMENT_SETTINGS
 from ..hull.region import EigenvalueHull
 from ..local_waves import ArmSamples, wave_number_and_length_at
@@ -97,7 +97,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_upper_box_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
+        determinant.propagators_for(abs(_upper_box_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
     except FloatingPointError:
         return False
     return True
@@ -106,7 +106,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
     corner = _upper_box_corner(line, hull)
-    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.length(corner)
+    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.phase_change_length(corner)
 
 
 def _upper_box_corner(line: float, hull: EigenvalueHull) -> complex:
@@ -115,7 +115,7 @@ def _upper_box_corner(line: float, hull: EigenvalueHull) -> complex:
     """
     real, imag = hull.box(max(-line, 0.0))
     return complex(
-        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.width_added,
+        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,
         max(imag, WINDING_SETTINGS.min_height * abs(line)),
     )
 
@@ -131,9 +131,9 @@ def _phase_change(
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest = largest_w_of_count(line, determinant, hull)
-    level = determinant.level(largest, CONTOUR_SETTINGS.max_level_ratio)
+    level = determinant.propagators_for(largest, CONTOUR_SETTINGS.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
-    unit = determinant.length(corners[0])
+    unit = determinant.phase_change_length(corners[0])
     trial = unit, min(CONTOUR_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
@@ -143,7 +143,7 @@ def _phase_change(
             break
         if walk.needed_largest_w == math.inf:
             raise PhaseLost(walk.node_count)
-        level = determinant.level(walk.needed_largest_w, CONTOUR_SETTINGS.max_level_ratio)
+        level = determinant.propagators_for(walk.needed_largest_w, CONTOUR_SETTINGS.max_level_ratio)
     return walk.phase_change, walk.node_count
 
 
@@ -154,7 +154,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     known: Complex,
     hull: EigenvalueHull,
     samples: tuple[ArmSamples, ArmSamples],
-    level: BoundedPropagators,
+    level: PropagatorsUpToW,
 ) -> BoundaryTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 

@@ -25,7 +25,7 @@ from ....arrays import Complex
 from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENT_SETTINGS
 from ...value import DeterminantValue
-from ..determinant import BoundedPropagators
+from ..determinant import PropagatorsUpToW
 from ..hull.region import EigenvalueHull, distance_and_normal
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain, log_modulus_by_chain
@@ -63,7 +63,7 @@ def phase_node(
     known: Complex,
     trial: tuple[float, float],
     hull: EigenvalueHull,
-    arm: tuple[ArmSamples, BoundedPropagators],
+    arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w, inside or outside the hull.
 
@@ -94,7 +94,7 @@ def _node_inside(
     value: DeterminantValue,
     known: Complex,
     trial: tuple[float, float],
-    arm: tuple[ArmSamples, BoundedPropagators],
+    arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest reach.
 

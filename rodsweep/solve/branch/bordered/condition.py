@@ -84,7 +84,7 @@ class BorderCondition:
     ) -> ConvergedOrbit:
         """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.
         tolerance, distance: as in `solve_cycle`."""
-        return self.solve_cycle(mesh.interpolate(found.orbit), tolerance, found.workspace, distance)
+        return self.solve_cycle(mesh.interpolated_orbit(found.orbit), tolerance, found.workspace, distance)
 
 
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:

@@ -20,8 +20,8 @@ from .special_curves import (
     Arrays,
     CurveEnd,
     CurvePoint,
-    CycleCurve,
     HalfCurve,
+    SpecialPointCurve,
     TracedHalfCurve,
 )
 
@@ -52,7 +52,7 @@ class SpecialBoundaries:
             likely += curves.possible_items(search)
         return needed + likely if needed else []
 
-    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
+    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
@@ -76,25 +76,25 @@ class SpecialBoundaries:
         index, behind = divmod(item, 2)
         one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _trace_half_curve(limits, one, located(one.number), self.special).arrays()
+        return _trace_half_curve(limits, one, located(one.row_index), self.special).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
-        return self.special[item // 2].number
+        return self.special[item // 2].row_index
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
         index, behind = divmod(item, 2)
         one = self.special[index]
         way = "down" if behind else "up"
-        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row_value:.5g} {way}"
 
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
     """Curve of two halves. distances: distances of nearby special points in row lengths, by point index."""
 
-    curve: CycleCurve
+    curve: SpecialPointCurve
     distances: Mapping[int, float]
 
 
@@ -127,8 +127,10 @@ class _CurvesOfKind:
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Numbers of the half curves that may be needed later: from all special points on the rows on which
         the needed half curves start."""
-        rows = {self.special[item // 2].row for item in search.missing_items}
-        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._position)
+        rows = {self.special[item // 2].row_value for item in search.missing_items}
+        beside = sorted(
+            (i for i in search.open_seeds if self.special[i].row_value in rows), key=self._position
+        )
         return [item for i in beside for item in self.missing_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
@@ -140,7 +142,7 @@ class _CurvesOfKind:
         behind = TracedHalfCurve(None) if closed else TracedHalfCurve.of(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
-        curve = CycleCurve.joined(self.kind, ahead.half, behind.half)
+        curve = SpecialPointCurve.joined(self.kind, ahead.half, behind.half)
         near = dict(ahead.distances)
         for i, distance in behind.distances.items():
             near[i] = min(distance, near.get(i, math.inf))
@@ -162,14 +164,14 @@ class _CurvesOfKind:
 
     def _position(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.special[i].row, self.special[i].at
+        return self.special[i].row_value, self.special[i].at
 
-    def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
+    def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
         ends = curve.points[0], curve.points[-1]
         return sorted((p.row_coordinate, self.line.coordinate(p.at)) for p in ends)
 
-    def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
+    def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
@@ -179,7 +181,7 @@ class _CurvesOfKind:
             x = self.line.coordinate(end.at)
             y = self.rows.coordinate(end.row)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.coordinate(one.row) - y) / (last.row_coordinate - y)
+            share = (self.rows.coordinate(one.row_value) - y) / (last.row_coordinate - y)
             chord = x + share * (self.line.coordinate(last.at) - x)
             distance = abs(chord - self.line.coordinate(one.at))
             if 0 <= share <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
@@ -206,7 +208,7 @@ def _trace_half_curve(
     if not same:
         return TracedHalfCurve(None)
     try:
-        points, end = limits.follow_from(same[0], one.row)
+        points, end = limits.follow_from(same[0], one.row_value)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
@@ -218,18 +220,21 @@ def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], on
     """Distance along the row of special point `one` from a curve, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
-    row_coordinate = limits.rows.coordinate(one.row)
+    row_coordinate = limits.rows.coordinate(one.row_value)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
         if not low <= row_coordinate <= high or not _near_chord(limits, a, b, one):
             continue
         try:
-            crossing = limits.on_row(a, b, row_coordinate)
+            crossing = limits.point_on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
-            best = min(best, abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)))
+            best = min(
+                best,
+                abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)),
+            )
     return best
 
 

@@ -22,7 +22,7 @@ from ..arc import ArcPoint
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import Scale
-from .augmented.functions import TorusFunction, correct_fully
+from .augmented.functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .segment import BranchSegment
@@ -31,7 +31,7 @@ from .segment import BranchSegment
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
     """Kind of the special point at which a multiplier of `orbit`, over the solved time interval, passes
     -1."""
-    return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
+    return SpecialKind.symmetry_breaking if orbit.is_symmetric else SpecialKind.period_doubling
 
 
 def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
@@ -43,7 +43,7 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
         return least_stretch(CyclePath(found.orbit))
     if kind == SpecialKind.torus:
         function = TorusFunction(bordered_matrix_of(found))
-        correct_fully(function, found.orbit)
+        correct_until_converged(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
     return multiplier_test_function(kind, matrix.partial_multipliers)
@@ -83,14 +83,14 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
     aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
-        segment.start_on(mesh_of(end.orbit))
+        segment.set_mesh(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
         mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
-            segment.start_on(mesh)
+            segment.set_mesh(mesh)
             length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
             last = point
             point = _special_point_at(kind, orbit, start.scale.name)
@@ -101,7 +101,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
             # Every second mesh is chosen from the measured error; the next mesh is only slightly finer, for
             # comparison.
             mesh = _finer_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
-            if not mesh.allowed:
+            if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
             raise Unsolvable("no mesh of allowed size reaches the requested accuracy")

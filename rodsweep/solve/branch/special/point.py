@@ -140,11 +140,11 @@ class SpecialPoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
-    """A special point as the result file stores it. number: index of the row. row: value of the row
+    """A special point as the result file stores it. row_index: index of the row. row_value: value of the row
     parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
 
-    number: int
-    row: float
+    row_index: int
+    row_value: float
     kind: SpecialKind
     at: float
     period: float

@@ -157,7 +157,7 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 
 
 @dataclass(frozen=True, slots=True)
-class CycleCurve:
+class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
     vanishing: for each end the Hopf point at which the cycles vanish; None for an end with another reason."""
 
@@ -167,7 +167,7 @@ class CycleCurve:
     vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
 
     @classmethod
-    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
+    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
         """The curve joined from the halves `ahead` and `behind`, which start at the same point; behind: None
         for a closed curve."""
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
@@ -179,7 +179,9 @@ class CycleCurve:
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
-def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
+def with_located_ends(
+    curve: SpecialPointCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]
+) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
     `known`, which is more accurate than the extrapolation. A curve of torus points, and an end without an
     identical point, are unchanged.

@@ -29,7 +29,7 @@ class BoundaryAssignmentSettings:
     the second parameter differ by less than this, relatively."""
     max_secants: int = 20
     """Maximum number of secant steps to the point of a curve at a given value of the second parameter."""
-    coincident_ends: float = 1e-6
+    max_end_distance: float = 1e-6
     """Two curves are identical if an end of the first and an end of the second (coordinates and log
     |eigenvalue|) are closer than this, because curves do not cross."""
     change_distance: float = 1e-7
@@ -98,7 +98,7 @@ class _ChangeBoundaries:
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
             one.sign == other.sign
-            and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.coincident_ends
+            and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.max_end_distance
         )
 
 

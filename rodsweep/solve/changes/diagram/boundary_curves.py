@@ -74,7 +74,7 @@ def trace_boundary(
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
-        first = BoundaryPoint.on(curve.near(guess, tangent), tangent)
+        first = BoundaryPoint.oriented(curve.boundary_point_near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
     ahead = follow_curve(curve, first, BOUNDARY_STEPS, lambda _: report())
@@ -85,7 +85,7 @@ def trace_boundary(
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.coincident_points
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
     return _curve_with_folds(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
@@ -123,8 +123,8 @@ def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint,
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
-        found[length] = there = curve.near(a.v + length / size * chord, chord / size)
-        return float(BoundaryPoint.on(there, chord).tangent[axis])
+        found[length] = there = curve.boundary_point_near(a.v + length / size * chord, chord / size)
+        return float(BoundaryPoint.oriented(there, chord).tangent[axis])
 
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
@@ -144,7 +144,7 @@ def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint,
 
 def _tangent_error(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
-    if not boundary.plane.standard:
+    if not boundary.plane.has_standard_rods:
         return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
     return (
         BOUNDARY_CURVE_SETTINGS.double_tangent_error

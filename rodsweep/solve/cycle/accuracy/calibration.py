@@ -21,7 +21,7 @@ from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
 
-MULTIPLIER = 4
+MULTIPLIER_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
 indices are the indices of `path_differences`."""
 ERROR_COUNT = 5
@@ -69,17 +69,17 @@ class Calibration:
     def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a chain; `reach` is inf if the orbit
         has shrunk too much. change: relative change of the parameter since the previous orbit."""
-        tails = _tails(orbit)
+        tails = _tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
-        growth = _growth(self.tails, tails)
+        growth = _growth_factors(self.tails, tails)
         return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
-        growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
-        return replace(self, error_growth=growth)
+        after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0)
+        return replace(self, error_growth=_growth_factors(self.tails, after))
 
     @property
     def rates_only(self) -> "Calibration":
@@ -99,7 +99,7 @@ class Calibration:
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        shrinkage = np.minimum(_tail_growth(self.tails, _tails(orbit)), 1.0)
+        shrinkage = np.minimum(_tail_growth(self.tails, _tails_and_size(orbit)), 1.0)
         in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * shrinkage
         return in_space * self.space, in_time * self.time
 
@@ -161,19 +161,19 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
         np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
         np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
         np.maximum(whole[WORST_EXTREMUM], CALIBRATION_SETTINGS.min_extrema_error_share * apart),
-        whole[MULTIPLIER],
+        whole[MULTIPLIER_INDEX],
     ]
     least = max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
     errors: Array = np.maximum(np.array(stated), least)
     return errors
 
 
-def _tails(orbit: Orbit) -> Array:
+def _tails_and_size(orbit: Orbit) -> Array:
     """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
 
 
-def _growth(before: Array, after: Array) -> Array:
+def _growth_factors(before: Array, after: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
     before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
@@ -203,7 +203,7 @@ def calibration_of(
     order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
     in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
     """
-    tails = _tails(orbit)
+    tails = _tails_and_size(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).decay
         fall = _limited_space_decay(np.full(ERROR_COUNT, decay))

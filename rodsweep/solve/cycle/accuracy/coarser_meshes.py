@@ -71,7 +71,7 @@ class CoarserMeshes:
         self.mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
         self._workspace = workspace
-        self._coarse = self._solved(self.mesh, near)
+        self._coarse = self._solve_on_mesh(self.mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
@@ -86,30 +86,30 @@ class CoarserMeshes:
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
-        space = self._on(replace(self.mesh, order=mesh.order))
-        time = self._on(replace(self.mesh, intervals=mesh.intervals))
-        fine_in_space = mesh.interpolate(space.orbit)
-        fine_in_time = mesh.interpolate(time.orbit)
-        coarse = mesh.interpolate(self._coarse.orbit)
+        space = self._cycle_on_mesh(replace(self.mesh, order=mesh.order))
+        time = self._cycle_on_mesh(replace(self.mesh, intervals=mesh.intervals))
+        fine_in_space = mesh.interpolated_orbit(space.orbit)
+        fine_in_time = mesh.interpolated_orbit(time.orbit)
+        coarse = mesh.interpolated_orbit(self._coarse.orbit)
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
         by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
         of_multipliers = multiplier_change(space.multipliers, time.multipliers)
-        in_space = np.append(self._errors(space, by_orders), 0.0)
-        in_time = np.append(self._errors(time, by_intervals), of_multipliers)
+        in_space = np.append(self._errors_of_finer_mesh(space, by_orders), 0.0)
+        in_time = np.append(self._errors_of_finer_mesh(time, by_intervals), of_multipliers)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
-    def _on(self, mesh: OrbitMesh) -> ComparedCycle:
+    def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._finer:
-            self._finer[mesh] = self._solved(mesh, self._coarse.orbit)
+            self._finer[mesh] = self._solve_on_mesh(mesh, self._coarse.orbit)
         return self._finer[mesh]
 
-    def _solved(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
-        return ComparedCycle(newton(mesh.interpolate(near), self._tolerance, self._workspace))
+    def _solve_on_mesh(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
+        return ComparedCycle(newton(mesh.interpolated_orbit(near), self._tolerance, self._workspace))
 
-    def _errors(self, finer: ComparedCycle, factor: float) -> Array:
+    def _errors_of_finer_mesh(self, finer: ComparedCycle, factor: float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the
         cycles on this mesh and on the coarse mesh.
 

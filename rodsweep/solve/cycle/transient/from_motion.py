@@ -54,8 +54,8 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
         if relative_asymmetry(beam, whole) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
-    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals * turns // symmetry.parts
-    duration = period / symmetry.parts
+    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals * turns // symmetry.period_parts
+    duration = period / symmetry.period_parts
     at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     at = np.where(at > run.times[-1], at - period, at)
     states = form_states(beam, form, spline(at))

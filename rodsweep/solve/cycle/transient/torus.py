@@ -100,8 +100,8 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
 def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
     """Candidates for the unstable cycle inside a torus: a cycle found during the motion, then the cycle on
     the branch from the Hopf point below the force."""
-    if transient.unstable is not None:
-        yield transient.unstable
+    if transient.unstable_cycle is not None:
+        yield transient.unstable_cycle
     try:
         hopf = hopf_point_below(transient.form.rod)
         if hopf is not None:

@@ -29,7 +29,7 @@ class TipTrace:
         state, (unknowns,)."""
         return False
 
-    def begin(self, z: Array, relaxed: Array, duration: float) -> None:
+    def begin_with_relaxation(self, z: Array, relaxed: Array, duration: float) -> None:
         """Records a straight line from the tip at the start state z to the tip at the state `relaxed`, both
         (unknowns,), over `duration`, in tau2.
 
@@ -40,7 +40,7 @@ class TipTrace:
         self.times.append(np.array([0.0, duration]))
         self.tips.append(np.concatenate([tips, np.repeat(slope, 2, axis=1)]))
 
-    def add(self, run: Trajectory, clock: float) -> None:
+    def add_run(self, run: Trajectory, clock: float) -> None:
         """Records the time steps of a run that begins at the time `clock`, in tau2."""
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)

@@ -42,10 +42,10 @@ class Transient:
     """Integration of the motion of one rod from a start; `follow` is called only once.
 
     form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. along:
-    parameter along which the cycle's tangent is computed, or None. unstable: a nearby unstable cycle, or
-    None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a
-    limiting rod (k1 = inf, ...). trace: record of the tip's path or of shapes, or None if not requested.
-    """
+    parameter along which the cycle's tangent is computed, or None. unstable_cycle: a nearby unstable cycle,
+    or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a
+    limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None if not
+    requested."""
 
     def __init__(
         self,
@@ -63,16 +63,16 @@ class Transient:
         self.workspace = workspace
         self.accuracy = request.accuracy
         self.most_periods = request.most_periods
-        self.unstable = unstable
+        self.unstable_cycle = unstable
         self.mode = leading_mode(self.beam)
-        self.trace = self._trace(request)
+        self.record = self._new_record(request)
         self.tip_angle_row = tip_angle_row(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
         schemes = schemes_for_growth(rate * period, request.transient > 0)
         self.first_scheme, self.scheme, noise, steps = schemes
         self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns)
-        self.amplitude = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
+        self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
@@ -84,7 +84,7 @@ class Transient:
         self.unsolved_message = ""
         """Message that no cycle is found near a periodic motion; "" while the search continues."""
 
-    def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
+    def _new_record(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
         """A new record of the tip's path or of shapes, as requested; None if neither is requested."""
         if request.frames:
             return ShapeTrace(self.beam)
@@ -107,29 +107,29 @@ class Transient:
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
-                if self.trace or self.jumps >= TRANSIENT_SETTINGS.max_jumps:
+                if self.record or self.jumps >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
                 z = self._after_jump(TRANSIENT_SETTINGS.restart_deflection * self.mode.z.real)
                 continue
             early = first
             first = False
-            if len(times) < 3 or (early and self.amplitude.is_slow_mode(times, states)):
+            if len(times) < 3 or (early and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
-            shown = self.trace is not None and self.trace.needs_more_motion(z)
-            if not early and not shown and self.amplitude.decays_as_linear(times, states):
+            shown = self.record is not None and self.record.needs_more_motion(z)
+            if not early and not shown and self.amplitude_equation.decays_as_linear(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
             jumps = not early and self.jumps < TRANSIENT_SETTINGS.max_jumps
-            factor = self.amplitude.scale_to_cycle(times, states) if jumps else None
+            factor = self.amplitude_equation.scale_to_cycle(times, states) if jumps else None
             if factor is not None:
-                if self.trace and not self.trace.is_full:
+                if self.record and not self.record.is_full:
                     continue  # a motion with a stored path has no jumps
                 scaled = factor * z
-                pull = self.beam.layout.stress_field(scaled, "n1")
-                pull *= factor  # the stretch is quadratic in the deflection
+                self.beam.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
                 z = self._after_jump(scaled)
                 continue
-            cycle = None if self.amplitude.decays_faster(times, states) else self._cycle_from_returns(run)
+            decays = self.amplitude_equation.decays_faster(times, states)
+            cycle = None if decays else self._cycle_from_returns(run)
             if cycle is not None:
                 return self._result(*cycle.verdict(self.accuracy), cycle)
         return self._result(CycleStatus.not_settled, self._not_settled(z))
@@ -179,9 +179,9 @@ class Transient:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
         after = relax_fast_components(self.beam, z, self.mode.period)
-        if self.trace:
+        if self.record:
             self.elapsed = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
-            self.trace.begin(z, after, self.elapsed)
+            self.record.begin_with_relaxation(z, after, self.elapsed)
         return after
 
     def _result(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
@@ -200,8 +200,8 @@ class Transient:
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
-        if self.trace:
-            self.trace.add(run, self.elapsed)
+        if self.record:
+            self.record.add_run(run, self.elapsed)
         return run
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
@@ -225,7 +225,7 @@ class Transient:
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
         distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.failures
-        settles = self.trace and self.returns < self.most_periods // 2
+        settles = self.record and self.returns < self.most_periods // 2
         return min(distance, TRANSIENT_SETTINGS.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
@@ -244,7 +244,7 @@ class Transient:
             return None
         self.failed_starts = 0
         if found.stable is False:
-            self.unstable = found
+            self.unstable_cycle = found
         # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
         is_isolated = 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance
         return found if found.stable and is_isolated else None

@@ -51,7 +51,7 @@ def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
 
 def multipliers_over_period(partial: Complex, orbit: Orbit) -> Complex:
     """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
-    values: Complex = partial**orbit.symmetry.parts
+    values: Complex = partial**orbit.symmetry.period_parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 

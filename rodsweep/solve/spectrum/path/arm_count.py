@@ -16,7 +16,7 @@ from .carried_count import leading_eigenvalues
 from .prediction import Track
 
 
-def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
+def confirmed_count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
     right of a line; 0 if no count confirms this.
 

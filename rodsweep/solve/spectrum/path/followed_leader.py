@@ -86,7 +86,7 @@ def _follow_leader_of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEi
     size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
     if not isfinite(size):
         size = largest_w_of_count(next(_lines_for_count(first)), determinant, hull)
-    determinant.level(size)  # the elements for the proof also serve the eigenvalues
+    determinant.propagators_for(size)  # the elements for the proof also serve the eigenvalues
     found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
     w = np.array([root for root, _ in found])
     error = np.array([error for _, error in found])
