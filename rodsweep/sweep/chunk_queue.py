@@ -131,9 +131,11 @@ class ChunkQueue:
 
 
 class ItemChooser(Protocol):
-    """Chooses the items to solve next, the most urgent item first, from the results of solved items."""
+    """Chooses the items to solve next from the results of solved items."""
 
-    def items_to_solve(self, results: Mapping[int, Any]) -> list[int]: ...
+    def items_to_solve(self, results: Mapping[int, Any]) -> list[int]:
+        """Numbers of the items still to be solved, most urgent first; empty if no item is left. results:
+        results of the solved items, by number."""
 
 
 class DependentItemQueue(ChunkQueue):
@@ -142,9 +144,9 @@ class DependentItemQueue(ChunkQueue):
     item_chooser: chooses the next items from the results. results: results of solved items, by number of the
     item; at first from an earlier run, later also from the reports. ranks: number of ranks."""
 
-    def __init__(self, work: ItemChooser, results: dict[int, Any], ranks: int):
+    def __init__(self, item_chooser: ItemChooser, results: dict[int, Any], ranks: int):
         super().__init__([], ranks)
-        self.item_chooser = work
+        self.item_chooser = item_chooser
         self.results = results
         self.in_progress: dict[int, IndexRange] = {}
         """Range of the item that a rank is solving, by rank."""

@@ -74,7 +74,7 @@ class DiagramCurves:
         """
         self.special.update(starts)
 
-    def items(self, view: View) -> "SpecialBoundaries | None":
+    def work_items(self, view: View) -> "SpecialBoundaries | None":
         """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
         requested, or if fewer than two rows have a finite value.
 

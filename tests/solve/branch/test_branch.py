@@ -82,7 +82,7 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     assert all(point.at_error <= 1e-7 for point in curve.points)
     steep = [abs(slope) > 100 for slope in slopes(curve)]
     assert all(
-        point.errors.largest <= 1e-7
+        point.errors.largest_error <= 1e-7
         for point, is_steep in zip(curve.points, steep, strict=True)
         if not is_steep
     )

@@ -131,7 +131,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
 def turned_back(here):
     """A cycle of a branch that is followed to its other side."""
     derivatives = replace(here.derivatives, tangent=-here.tangent, unit_tangent=-here.unit_tangent)
-    return replace(here, derivatives=derivatives, before=None)
+    return replace(here, derivatives=derivatives, previous=None)
 
 
 def test_followed_back_the_branch_ends_where_it_was_born(known):

@@ -100,7 +100,7 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
     cone = row("F", [5.0, 20.0, 49.0, 51.0, 60.0], Rod(F=0.0, k1=200.0, **ROD, taper=0.5))
     assert cone.rod_class.tolist()[3:] == [RodClass.crushed] * 2
     assert RodClass.crushed not in cone.rod_class.tolist()[:3]
-    assert cone.changes.end == pytest.approx(50.0, rel=2e-6)
+    assert cone.thresholds.end == pytest.approx(50.0, rel=2e-6)
     along_k1 = row("k1", [20.0, 39.0, 41.0, 200.0], Rod(F=10.0, k1=np.inf, **ROD, taper=0.5))
     assert (along_k1.rod_class == RodClass.crushed).tolist() == [True, True, False, False]
 

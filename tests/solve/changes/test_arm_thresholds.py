@@ -177,13 +177,13 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
     """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
-    counted, whole = [], followed_arms.count_at
+    counted, whole = [], followed_arms.confirmed_count_at
 
     def count(path, hulls, p, modes, here):
         counted.append(p)
         return whole(path, hulls, p, modes, here)
 
-    monkeypatch.setattr(followed_arms, "count_at", count)
+    monkeypatch.setattr(followed_arms, "confirmed_count_at", count)
     rod = STEPPED.changed(k2=100.0)
     found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
     assert found.status == ThresholdStatus.ok

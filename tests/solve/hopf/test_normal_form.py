@@ -162,7 +162,7 @@ def test_filament_is_the_limit_of_rods():
 def test_axial_drag_changes_the_cycles_and_not_the_linear_problem():
     one, other = (normal_of(*SOFT, gamma1) for gamma1 in (1.0, 0.5))
     assert other.slope == pytest.approx(one.slope, rel=1e-9)
-    assert abs(other.amplitude) > 1.2 * abs(one.amplitude)
+    assert abs(other.amplitude_coefficient) > 1.2 * abs(one.amplitude_coefficient)
 
 
 # --- cycles -----------------------------------------------------------------------------------------------
@@ -175,7 +175,7 @@ def test_motion_solves_the_equations_to_second_order(rod, w):
     phases = 2 * np.pi * np.arange(9) / 9
     left = []
     for amplitude in (1e-3, 1e-4):
-        X = normal.motion(amplitude, phases)
+        X = normal.cycle_states(amplitude, phases)
         assert form.tip_y_row @ X.T == pytest.approx(amplitude * np.cos(phases), abs=1e-12 * amplitude)
         left.append(np.abs(w.imag * form.M * (harmonic_derivative(9) @ X) - mixed.rate(form, X)).max())
     assert left[0] / left[1] == pytest.approx(1000, rel=0.01)
@@ -219,7 +219,7 @@ def near_by(point, part, gamma1, order=14, phases=9):
     normal, rod = normal_of(*point, gamma1, order=order), beyond(point, part)
     form, step = mixed_form(rod.changed(gamma1=gamma1), 1, order), part * point[0].F
     squared, frequency = normal.cycle(rod.F)
-    start = normal.motion(squared**0.5, 2 * np.pi * np.arange(phases) / phases)
+    start = normal.cycle_states(squared**0.5, 2 * np.pi * np.arange(phases) / phases)
     amplitude, frequency = solved_cycle(form, start, frequency)
     return np.array([amplitude**2, frequency - point[1].imag]) / step
 
@@ -241,10 +241,10 @@ def test_cycles_by_fourier_collocation_are_born_as_the_normal_form_says(point, g
     near, far = near_by(point, part / 2, gamma1), near_by(point, part, gamma1)
     squared, slope = 2 * near - far  # at the Hopf point, but for the square of the part
     normal = normal_of(*point, gamma1)
-    assert np.sign(normal.amplitude) == side
-    assert squared * point[0].F * side == pytest.approx(normal.amplitude**2, rel=accuracy)
+    assert np.sign(normal.amplitude_coefficient) == side
+    assert squared * point[0].F * side == pytest.approx(normal.amplitude_coefficient**2, rel=accuracy)
     assert slope == pytest.approx(normal.frequency_slope, rel=accuracy)
-    assert normal.supercritical == (side * normal.slope.real > 0)
+    assert normal.is_supercritical == (side * normal.slope.real > 0)
 
 
 def test_cycle_of_a_neighbouring_eigenvalue_is_the_same_in_the_limit():
@@ -272,5 +272,5 @@ def test_cycles_that_a_motion_in_time_reaches_are_born_as_the_normal_form_says()
         change = [cycle.measures.tip_y_max**2, cycle.measures.frequency - SOFT[1].imag]
         found.append(np.array(change) / (part * SOFT[0].F))
     squared, slope = 2 * found[0] - found[1]
-    assert squared * SOFT[0].F == pytest.approx(normal_of(*SOFT).amplitude ** 2, rel=1e-4)
+    assert squared * SOFT[0].F == pytest.approx(normal_of(*SOFT).amplitude_coefficient ** 2, rel=1e-4)
     assert slope == pytest.approx(normal_of(*SOFT).frequency_slope, rel=1e-4)

@@ -504,7 +504,7 @@ def test_a_peak_later_than_the_decay_time_is_found():
     (largest, time), bound = largest_propagator_norm(
         propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6
     )
-    assert propagator.norm(end)[0] < 1
+    assert propagator.norm_and_log_slope(end)[0] < 1
     assert tail == 0
     assert time == pytest.approx(2, rel=1e-2)
     assert largest == pytest.approx(4 * 1800 * np.exp(-2), rel=1e-2)
@@ -514,7 +514,7 @@ def test_a_peak_later_than_the_decay_time_is_found():
 
 def test_no_pair_is_cut():
     propagator = toy([[-1.0, 5.0, 0.3], [-5.0, -1.0, 0.2], [0.0, 0.0, -2.0]])
-    assert [propagator.truncate(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
+    assert [propagator.use_leading_modes(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
 
 
 def test_all_modes_of_a_mesh_say_the_same_as_few():
@@ -581,7 +581,7 @@ def test_no_time_within_an_interval_exceeds_its_bound(seed):
     propagator = toy(generator)
     abscissa = abscissa_of(propagator)
     for t, h in ((0.1, 1e-3), (0.1, 0.03), (0.4, 0.2), (1.0, 1.0)):
-        squares, bends = propagator.squares(np.array([t, t + h]))
+        squares, bends = propagator.squared_norms_and_bounds(np.array([t, t + h]))
         inside = brute_force(propagator, np.linspace(t, t + h, 60)) ** 2
         assert squares == pytest.approx(inside[[0, -1]], rel=1e-9)
         for bend in (bends[0], INF):  # both orders together, and the first alone
@@ -596,7 +596,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
     propagator = toy([[0.0, 9.0], [-1 / 9, 0.0]])
     h = 1e-4
     ends = np.pi / 2 + np.array([-h / 2, h / 2])
-    squares, bends = propagator.squares(ends)
+    squares, bends = propagator.squared_norms_and_bounds(ends)
     bound = peak_module._squared_norm_bound(
         np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator)
     )
@@ -620,10 +620,10 @@ def test_the_bend_is_that_of_the_most_concave_square():
     matrices = [expm(propagator.generator * x) for x in (t - h, t, t + h)]
     low, middle, high = (E.T @ E for E in matrices)
     exact = -np.linalg.eigvalsh((low - 2 * middle + high) / h**2)[0]
-    assert propagator.squares(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
+    assert propagator.squared_norms_and_bounds(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
     assert exact > 1
     symmetric = toy(np.diag([-1.0, -2.0]) + 0.1 * np.ones((2, 2)))
-    assert symmetric.squares(np.array([t]))[1][0] == 0
+    assert symmetric.squared_norms_and_bounds(np.array([t]))[1][0] == 0
 
 
 def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only():

@@ -95,7 +95,9 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
     )
     single = []
     monkeypatch.setattr(
-        arm_spectra, "count_at", lambda *words: single.append(words[2]) or confirmed_count_at(*words)
+        arm_spectra,
+        "confirmed_count_at",
+        lambda *words: single.append(words[2]) or confirmed_count_at(*words),
     )
     followed = follow_stretch_of_arms(path, values, REQUEST)
     assert followed.accepted.all()
