@@ -58,22 +58,22 @@ class BoundarySolution(NamedTuple):
 class Boundary:
     """A stability boundary in a plane: all Hopf points, or all double real eigenvalues of one sign.
 
-    sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign.
+    eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign.
     """
 
     plane: Plane
-    sign: float
+    eigenvalue_sign: float
 
     def eigenvalue(self, h: float) -> tuple[float, float]:
         """(growth rate, frequency), in 1/tau2, of the eigenvalue at a point whose third coordinate is h."""
         size = math.exp(h)
-        return (self.sign * size, 0.0) if self.sign else (0.0, size)
+        return (self.eigenvalue_sign * size, 0.0) if self.eigenvalue_sign else (0.0, size)
 
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array, float]:
         """Returns (residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of
         the boundary at v = (x, y, h).
         """
-        return self._double_equations(v) if self.sign else self._hopf_equations(v)
+        return self._double_equations(v) if self.eigenvalue_sign else self._hopf_equations(v)
 
     def tangent(self, v: Array) -> Array:
         """Unit tangent of the boundary at v, (3,)."""
@@ -142,7 +142,7 @@ class Boundary:
                 step[i] = offset * h
                 shifted = v + step
                 w = self._real_eigenvalue(shifted)
-                neighbour = self.plane.value(w, shifted[0], shifted[1])
+                neighbour = self.plane.determinant_value(w, shifted[0], shifted[1])
                 jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
@@ -150,4 +150,4 @@ class Boundary:
 
     def _real_eigenvalue(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""
-        return complex(self.sign * math.exp(v[2]), 0.0)
+        return complex(self.eigenvalue_sign * math.exp(v[2]), 0.0)

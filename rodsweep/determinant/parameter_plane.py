@@ -117,7 +117,7 @@ class Plane:
         blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
-    def value(self, w: complex, x: float, y: float) -> DeterminantValue:
+    def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         return (
@@ -138,13 +138,15 @@ class Plane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
         differences.
         """
-        D, D_w, S, noise = self.value(w, x, y)
+        D, D_w, S, noise = self.determinant_value(w, x, y)
         slopes = []
         for which in range(2):
             stencil, h = self.stencil(x, y, which)
             slope = 0j
             for offset, weight in stencil:
-                neighbour = self.value(w, *((x + offset * h, y) if which == 0 else (x, y + offset * h)))
+                neighbour = self.determinant_value(
+                    w, *((x + offset * h, y) if which == 0 else (x, y + offset * h))
+                )
                 slope += weight * neighbour.D * exp(neighbour.S - S) / h
             slopes.append(slope)
         D_x, D_y = slopes

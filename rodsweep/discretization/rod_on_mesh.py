@@ -61,7 +61,7 @@ class RodOnMesh(ABC):
         return self.layout.unknowns
 
     @cached_property
-    def nodal(self) -> NodalRod:
+    def nodal_rod(self) -> NodalRod:
         """The rod at the nodes of the mesh, as an argument of compiled functions."""
         rod = self.rod
         mesh = self.mesh
@@ -74,14 +74,14 @@ class RodOnMesh(ABC):
         """Whether S is continuous along the rod. S is continuous if the material does not jump or the law is
         linear.
         """
-        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
+        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
 
     def strains(self, x: Values) -> Values:
         """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the
         mean of both sides.
         """
         S = self.stresses(x)
-        c = self.nodal
+        c = self.nodal_rod
         return _broadcast_to_field(c.rest_strain, S) + _broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
@@ -90,7 +90,9 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_strains(_flatten_middle_axes(S), self.nodal, self.mesh.order, _flatten_middle_axes(out))
+        write_element_strains(
+            _flatten_middle_axes(S), self.nodal_rod, self.mesh.order, _flatten_middle_axes(out)
+        )
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
@@ -100,12 +102,12 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         dS = self.stresses(change)
-        moved = _broadcast_to_field(self.nodal.compliance, dS) * dS
+        moved = _broadcast_to_field(self.nodal_rod.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strain_changes(
             _flatten_middle_axes(S),
             _flatten_middle_axes(moved),
-            self.nodal,
+            self.nodal_rod,
             self.mesh.order,
             _flatten_middle_axes(out),
         )
@@ -127,7 +129,7 @@ class RodOnMesh(ABC):
         For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
         S = self.stresses(x)
-        c = self.nodal
+        c = self.nodal_rod
         nu = _broadcast_to_field(c.rest_strain, S)[0]
         (c1, c2, c3) = _broadcast_to_field(c.compliance, S)
         density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
@@ -169,7 +171,7 @@ class RodOnMesh(ABC):
         Without convexity the equations are ill-posed: the shortest waves of the mesh grow fastest.
         """
         S = self.stresses(x)
-        c = self.nodal
+        c = self.nodal_rod
         sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
             # The energy must be convex on each side; a section with the mean material does not exist.

@@ -64,7 +64,7 @@ def test_both_sides_of_a_jump_have_one_stress_and_its_strain_on_average(names):
     stresses = []
     for strain, nu, factors in zip(sides.T, rest, ((1, 1, 1), FACTORS[:3]), strict=True):
         c1, c2, c3 = 1 / (np.array([VALUES["k1"], VALUES["k2"], 1.0]) * factors)
-        law = form.nodal.law
+        law = form.nodal_rod.law
         beyond_rest = stress_beyond_rest(law, LocalSection(nu, c1, c3), (strain[0] - nu) / c1, strain[2] / c3)
         stresses.append([beyond_rest.N, strain[1] / c2, beyond_rest.M])
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)

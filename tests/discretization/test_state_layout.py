@@ -57,14 +57,14 @@ def test_a_field_is_known_by_its_name():
 def test_a_symmetry_maps_motions_to_motions(form, symmetry):
     def motion(x):
         V, G = np.empty((2, 3, form.mesh.nodes + 1))
-        write_balance(x, V, G, form.nodal, form.mesh.matrices)
+        write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
         return V, form.layout.state(G, V)
 
     x = states(form.layout)
     V, rate = motion(x)
-    image, rate_of_image = motion(symmetry.of(x, form.layout))
+    image, rate_of_image = motion(symmetry.apply(x, form.layout))
     assert image == pytest.approx(symmetry.component_matrix @ V, abs=1e-12 * np.abs(V).max())
-    assert rate_of_image == pytest.approx(symmetry.of(rate, form.layout), abs=1e-12 * np.abs(rate).max())
+    assert rate_of_image == pytest.approx(symmetry.apply(rate, form.layout), abs=1e-12 * np.abs(rate).max())
 
 
 @EACH

@@ -30,7 +30,7 @@ def guess_at(orbit, m):
     form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.nodes + 1))
     states, reaction = orbit.states_at(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
-        write_balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
+        write_balance(x, velocities, reaction, form.nodal_rod, form.mesh.matrices)
     mixed = MixedForm(form.rod, form.mesh)
     return mixed.state(form.stresses(states), V.swapaxes(0, 1))
 
@@ -64,7 +64,7 @@ def period_and_largest_y(orbit, phases):
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
     S, _ = form.stresses_and_velocities(X)
     E = np.empty((*S.shape[:-1], form.mesh.element_nodes.size))
-    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal, form.mesh.order, E)
+    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal_rod, form.mesh.order, E)
     y = shape_from_strains(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
     return 2 * np.pi / frequency, float(series_maxima(fourier_coefficients(whole), whole)[0])

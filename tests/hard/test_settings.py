@@ -96,7 +96,7 @@ def branch_answer(rod: Rod, start: float, stop: float, accuracy: float) -> Answe
         return None
     answer: dict[str, tuple[float, float]] = {}
     for number, curve in enumerate(found.curves):
-        for place, point in enumerate(curve.special):
+        for place, point in enumerate(curve.special_points):
             name = f"branch {number}, special point {place}, {point.kind.name}: "
             answer[name + "at"] = point.at, point.error
             answer[name + "period"] = point.period, point.period_error * point.period
@@ -121,7 +121,7 @@ def branch_of_legs(accuracy: float) -> Answer:
 def fold() -> Any:
     """The fold of a branch, from which a curve of folds is followed."""
     request = BranchRequest("F", 60.0, 110.0, 1e-7, False, 500, 50)
-    points = [point for curve in solve_branches(WITH_FOLD, request).curves for point in curve.special]
+    points = [point for curve in solve_branches(WITH_FOLD, request).curves for point in curve.special_points]
     return next(point for point in points if point.kind is SpecialKind.fold)
 
 

@@ -183,12 +183,14 @@ def half(items, item):
     one = items.special[place]
     last = 1.0 if behind else 5.0
     points = tuple(
-        CurvePoint(at=one.at, row=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
-        for row in (one.row, last)
+        CurvePoint(
+            at=one.at, row_value=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1
+        )
+        for row in (one.row_value, last)
     )
     near = {i: 0.0 for i, other in enumerate(items.special) if other.at == one.at}
-    low, high = sorted((one.row, last))
-    near = {i: d for i, d in near.items() if low <= items.special[i].row <= high}
+    low, high = sorted((one.row_value, last))
+    near = {i: d for i, d in near.items() if low <= items.special[i].row_value <= high}
     return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 

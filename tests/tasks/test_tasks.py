@@ -327,7 +327,7 @@ def test_check_says_what_every_task_would_compute(command, task, words):
 
 
 def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
-    point = CurvePoint(at=60.0, row=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
+    point = CurvePoint(at=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
     curve = SpecialPointCurve(
         SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
     )

@@ -56,9 +56,9 @@ class WindingSettings(CompiledSettings):
 
 WINDING_SETTINGS = WindingSettings()
 
-PHASE_LOST = "an eigenvalue lies too close to the contour, or the contour is too long"
+PHASE_LOST_MESSAGE = "an eigenvalue lies too close to the contour, or the contour is too long"
 """Reason of a failed count: the change of arg D along the contour could not be proved."""
-NO_INTEGER = "the winding number of D is not an integer within rounding errors"
+NO_INTEGER_MESSAGE = "the winding number of D is not an integer within rounding errors"
 """Reason of a failed count: rounding errors are too large."""
 
 
@@ -196,10 +196,10 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     imag = max(imag, WINDING_SETTINGS.min_height * abs(line))
     change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
-        return EigenvalueCount(None, -nodes, PHASE_LOST)
+        return EigenvalueCount(None, -nodes, PHASE_LOST_MESSAGE)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
-        return EigenvalueCount(None, nodes, NO_INTEGER)
+        return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
     return EigenvalueCount(number, nodes)

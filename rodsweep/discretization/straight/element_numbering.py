@@ -18,16 +18,17 @@ class ElementNumbering:
     """Indices of the unknowns of every element, for static condensation.
 
     An element has `local` unknowns. state_indices: index of each unknown in a state, (elements, local);
-    stresses at the tip are not unknowns and have an index one beyond the state. interior, interface: local
-    indices of interior unknowns, and of unknowns at both ends, the left end first; for a single element
-    `interior` is empty and `interface` contains all unknowns. interface_indices: indices of an element's end
-    unknowns in the list of the end unknowns of all elements, (elements, ends). is_unknown: one entry for each
-    end unknown of all elements, False for stresses at the tip.
+    stresses at the tip are not unknowns and have an index one beyond the state. interior_positions,
+    interface_positions: local indices of interior unknowns, and of unknowns at both ends, the left end first;
+    for a single element `interior_positions` is empty and `interface_positions` contains all unknowns.
+    interface_indices: indices of an element's end unknowns in the list of the end unknowns of all elements,
+    (elements, ends). is_unknown: one entry for each end unknown of all elements, False for stresses at the
+    tip.
     """
 
     state_indices: Indices
-    interior: Indices
-    interface: Indices
+    interior_positions: Indices
+    interface_positions: Indices
     interface_indices: Indices
     is_unknown: NDArray[np.bool_]
 

@@ -103,7 +103,7 @@ class StraightElements:
         """Product M x, (unknowns,)."""
         return self.assemble(self.gather(x) * self.M)
 
-    def size_of_product(self, p: Values, q: Values) -> float:
+    def product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,).
         """
@@ -123,10 +123,10 @@ class StraightElements:
         """LU factorisation of A - shift M by static condensation."""
         numbering = self.numbering
         K = self.A - np.diag(shift * self.M).astype(complex)
-        condensed = K[np.ix_(numbering.interface, numbering.interface)]
+        condensed = K[np.ix_(numbering.interface_positions, numbering.interface_positions)]
         inside = None
-        if numbering.interior.size:
-            inside = _InteriorElimination.of(K, numbering)
+        if numbering.interior_positions.size:
+            inside = _InteriorElimination.from_matrix(K, numbering)
             condensed -= inside.K_ei @ inside.solved_K_ie
         exists = numbering.is_unknown
         whole = np.zeros((len(exists), len(exists)), complex)
@@ -155,10 +155,10 @@ class _InteriorElimination:
     adjoint_solved_K_ei: Complex
 
     @classmethod
-    def of(cls, K: Complex, numbering: ElementNumbering) -> Self:
+    def from_matrix(cls, K: Complex, numbering: ElementNumbering) -> Self:
         """The elimination of the interior unknowns from an element matrix K, (local, local)."""
-        inside = numbering.interior
-        ends = numbering.interface
+        inside = numbering.interior_positions
+        ends = numbering.interface_positions
         factors = lu_factorisation(K[np.ix_(inside, inside)])
         leaving = K[np.ix_(inside, ends)]
         entering = K[np.ix_(ends, inside)]
@@ -168,7 +168,7 @@ class _InteriorElimination:
             interior_factors=factors, K_ie=leaving, K_ei=entering, solved_K_ie=right, adjoint_solved_K_ei=left
         )
 
-    def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
+    def coupling_matrices(self, adjoint: bool) -> tuple[Complex, Complex]:
         """Returns (K_ei, K_ii^-1 K_ie); if `adjoint`, the same two matrices of K^H."""
         return (self.K_ie.conj().T, self.adjoint_solved_K_ei) if adjoint else (self.K_ei, self.solved_K_ie)
 
@@ -204,15 +204,15 @@ class ElementFactors:
     def _eliminated_right_side(self, b: Values, adjoint: bool) -> Complex:
         numbering = self.elements.numbering
         inside = self.interior
-        within = numbering.state_indices[:, numbering.interior]
-        ends = numbering.state_indices[:, numbering.interface]
+        within = numbering.state_indices[:, numbering.interior_positions]
+        ends = numbering.state_indices[:, numbering.interface_positions]
         right = np.zeros(len(numbering.is_unknown), complex)
         between = np.zeros(len(numbering.is_unknown), complex)
         b = np.append(b, 0)
         x = np.zeros(len(b), complex)
         right[numbering.interface_indices] = b[ends]
         if inside is not None:
-            to_ends, from_ends = inside.coupling(adjoint)
+            to_ends, from_ends = inside.coupling_matrices(adjoint)
             alone = solve_factorised(inside.interior_factors, b[within].T, adjoint).T
             np.subtract.at(right, numbering.interface_indices, alone @ to_ends.T)
         between[numbering.is_unknown] = solve_factorised(self.interface, right[numbering.is_unknown], adjoint)

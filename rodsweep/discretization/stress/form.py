@@ -73,12 +73,12 @@ class StressForm(RodOnMesh):
         return nodal_change(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
 
     @cached_property
-    def mass(self) -> Array:
+    def mass_diagonal(self) -> Array:
         """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
-        return self.mass_of(self.nodal)
+        return self.mass_of(self.nodal_rod)
 
     def mass_of(self, rod: NodalRod | NodalChange) -> Array:
-        """The diagonal `mass` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
+        """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
         of a rod.
         """
         weighted = rod.compliance * self.mesh.quadrature
@@ -89,5 +89,5 @@ class StressForm(RodOnMesh):
         straight rod.
         """
         # x M x is twice the elastic energy of a linear rod; Omega has mass 0.
-        amplitude: Array = np.sqrt(x**2 @ self.mass)
+        amplitude: Array = np.sqrt(x**2 @ self.mass_diagonal)
         return amplitude

@@ -95,7 +95,7 @@ class ArcPoint:
     @property
     def coordinate(self) -> float:
         """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
-        return self.orbit.form.rod.coordinate(self.scale.name)
+        return self.orbit.form.rod.coordinate(self.scale.parameter)
 
     @property
     def parameter_rate(self) -> float:
@@ -126,13 +126,13 @@ class ArcPoint:
         change = length * self.tangent
         if self.previous is not None:
             change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
-        return moved_orbit(self.orbit, self.scale.name, change)
+        return moved_orbit(self.orbit, self.scale.parameter, change)
 
     def _cubic_coefficients(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
         its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
         cubic."""
-        name = self.scale.name
+        name = self.scale.parameter
         mesh = mesh_of(self.orbit)
         last = mesh.interpolated_orbit(before.orbit)
         coordinate = last.form.rod.coordinate(name)
@@ -156,7 +156,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
     In the result curvature and multiplier rate are 0, to be set by the caller.
     """
-    own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
+    own = Scale.of(found.orbit, scale.parameter, scale.min_deflection_unit)
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)

@@ -41,7 +41,7 @@ class BranchPoint:
         beyond = sizes - 1
         undecided = bool((np.abs(beyond) <= _multiplier_modulus_error(point)).any())
         return cls(
-            at=getattr(point.orbit.form.rod, point.scale.name),
+            at=getattr(point.orbit.form.rod, point.scale.parameter),
             at_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
@@ -83,7 +83,7 @@ class BranchCurve:
     start_hopf: int
     """Index of the Hopf point where the branch starts; -1 for an asymmetric branch."""
     points: list[BranchPoint] = field(default_factory=list)
-    special: list[SpecialPoint] = field(default_factory=list)
+    special_points: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
     """Index of the Hopf point where the branch ends; -1 if the branch has another end."""
     start_breaking: SymmetryBreaking | None = None
@@ -100,7 +100,7 @@ class BranchCurve:
 
     def add_special_point(self, special: SpecialPoint) -> None:
         """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
-        self.special.append(replace(special, after=len(self.points) - 1))
+        self.special_points.append(replace(special, after=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
         """Appends the special points `between`, which lie between the present last cycle and the next cycle.
@@ -117,7 +117,7 @@ class BranchCurve:
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
         del self.points[-count:]
-        self.special[:] = [point for point in self.special if point.after < len(self.points)]
+        self.special_points[:] = [point for point in self.special_points if point.after < len(self.points)]
 
     def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the

@@ -18,7 +18,7 @@ def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialP
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
     the caller. message: cause of a failure."""
     measures = point.cycle.measures
-    at = getattr(point.orbit.form.rod, point.scale.name)
+    at = getattr(point.orbit.form.rod, point.scale.parameter)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,

@@ -73,7 +73,7 @@ class BranchStatus(PointStatus):
 class BranchRequest:
     """Request, the same for every rod. along, start, stop: name and range of the continuation parameter.
     accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing.
-    cycles, special: maximum numbers of stored cycles and special points."""
+    cycles, max_special: maximum numbers of stored cycles and special points."""
 
     along: str
     start: float
@@ -81,7 +81,7 @@ class BranchRequest:
     accuracy: float
     certify: bool
     cycles: int
-    special: int
+    max_special: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,7 +205,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
         arrived.add(curve.end_hopf)
         left -= len(curve.points)
         curves.append(curve)
-    breakings = symmetry_breakings_in([curve.special for curve in curves])
+    breakings = symmetry_breakings_in([curve.special_points for curve in curves])
     met: list[SymmetryBreaking] = []
     for which, breaking in enumerate(breakings):
         if breaking in met:
@@ -229,11 +229,11 @@ def _status_and_message(
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)
-        for special in curve.special
+        for special in curve.special_points
         if special.message
     ]
-    count = sum(len(curve.special) for curve in curves)
-    special = [point for curve in curves for point in curve.special]
+    count = sum(len(curve.special_points) for curve in curves)
+    special = [point for curve in curves for point in curve.special_points]
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.multipliers_explained for curve in curves):
@@ -241,7 +241,7 @@ def _status_and_message(
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.list_full for curve in curves),
-        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
+        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.max_special,
         BranchStatus.special_undecided: inaccurate
         or any(not curve.multipliers_explained for curve in curves),
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),

@@ -222,7 +222,7 @@ def _differences_between_meshes(
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
-    slid = moved_orbit(fine.orbit, scale.name, length * along)
+    slid = moved_orbit(fine.orbit, scale.parameter, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
         length * derivatives.multiplier_rate
     )
@@ -238,11 +238,8 @@ def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
-    ahead = CyclePath(
-        moved_orbit(
-            orbit, derivatives.scale.name, BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
-        )
-    )
+    step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
+    ahead = CyclePath(moved_orbit(orbit, derivatives.scale.parameter, step))
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(

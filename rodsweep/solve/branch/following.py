@@ -102,7 +102,7 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
 
 def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
-    name = start.scale.name
+    name = start.scale.parameter
     # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.unit_tangent[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.coordinate)
@@ -110,13 +110,13 @@ def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) 
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(
         words,
-        fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.coordinate, aim),
+        fraction_done(PARAMETERS[name].coordinate(curve.special_points[0].at), start.coordinate, aim),
     )
 
 
 def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
-    born = curve.special[0]
+    born = curve.special_points[0]
     return replace(
         born,
         kind=SpecialKind.end,
@@ -167,7 +167,7 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
-    at = getattr(last.orbit.form.rod, last.scale.name)
+    at = getattr(last.orbit.form.rod, last.scale.parameter)
     error = BRANCH_END_SETTINGS.range_end_error * abs(at)
     return BranchEnd(replace(end_point(last, limits.reasons[outside]), error=error), complete=True)
 

@@ -238,7 +238,7 @@ def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
-        symmetric_at = symmetric.form.rod.coordinate(start.scale.name)
+        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter)
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
         tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)

@@ -109,7 +109,7 @@ def transitions(
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
     tracer = LeaderExchangeSearch(problem, certify)
-    edges = problem.edges(low, high)
+    edges = problem.interval_edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
         changes, reach = tracer.changes([*(p for p in edges if p < found.end.p), found.end.p])
@@ -190,7 +190,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
-    found, reach = search.crossings(problem.edges(*ends), most)
+    found, reach = search.crossings(problem.interval_edges(*ends), most)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
     return AxisCrossings(problem.path, found, gaps, reach)

@@ -67,11 +67,11 @@ LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
 
 class LeaderExchange(NamedTuple):
     """Exchange of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a
-    real eigenvalue and a pair with equal real parts. error: error of p. growth_rate: the common real part.
-    frequency: Im w of the pair. All in 1/tau2, except for p and its error."""
+    real eigenvalue and a pair with equal real parts. error_of_p: error of p. growth_rate: the common real
+    part. frequency: Im w of the pair. All in 1/tau2, except for p and its error."""
 
     p: float
-    error: float
+    error_of_p: float
     growth_rate: float
     frequency: float
 
@@ -186,7 +186,7 @@ class LeaderExchangeSearch:
             # unproved.
             if count.number in (meeting, None):
                 self.leaders_proved = self.leaders_proved and count.number == meeting
-                at, error = self.path.value(found.p, found.error)
+                at, error = self.path.value(found.p, found.error_of_p)
                 return Crossing(at, kind, found.frequency, found.growth_rate, error)
         return None
 

@@ -28,7 +28,7 @@ class PathProblem(ABC):
         return self._spectra[key]
 
     @abstractmethod
-    def edges(self, low: float, high: float) -> list[float]:
+    def interval_edges(self, low: float, high: float) -> list[float]:
         """Path variables from `low` to `high`, both included, spaced so closely that neighbouring rods differ
         little."""
 
@@ -61,7 +61,7 @@ class UniformPath(PathProblem):
     """Eigenvalue problem along a path of uniform rods of linear material, whose determinant D has a closed
     form."""
 
-    def edges(self, low: float, high: float) -> list[float]:
+    def interval_edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in path_intervals(self.path, low, high)] + [high]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:

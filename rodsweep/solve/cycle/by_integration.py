@@ -63,24 +63,24 @@ class _MarchedMotion:
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
-        self.limit = rod
+        self.limiting_rod = rod
         self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
         tolerance = MARCHING_SETTINGS.local_tolerance * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
-        self.returns = 0
+        self.return_count = 0
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
-        w = straight_rod(self.limit).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
+        w = straight_rod(self.limiting_rod).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
             z = relax_fast_components(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._integrate_until_settled(z)
             path = self._path(settled)
-            in_limit = self.rod != self.limit
+            in_limit = self.rod != self.limiting_rod
             share = MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
             enough = self.request.accuracy * share
             for _ in range(MARCHING_SETTINGS.max_comparisons):
@@ -95,7 +95,7 @@ class _MarchedMotion:
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
         except NoCycleFound as end:
-            return replace(straight, status=end.status, message=end.message, periods=self.returns)
+            return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, path, errors)
 
     def _beam(self) -> Beam:
@@ -120,8 +120,8 @@ class _MarchedMotion:
         last = nan
         rate = 0.0
         most = self.request.most_periods
-        while self.returns < most:
-            report(lambda: SolvePosition(f"{self.returns} of at most {most} returns of the tip"))
+        while self.return_count < most:
+            report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
             run = self._run(
                 z,
                 MARCHING_SETTINGS.max_run_duration * MARCHING_SETTINGS.returns_per_test * self.mode.period,
@@ -133,7 +133,7 @@ class _MarchedMotion:
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.stress_field(states, "m3"))
-            self.returns += max(len(states), 1)
+            self.return_count += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
@@ -149,7 +149,7 @@ class _MarchedMotion:
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             if distance <= MARCHING_SETTINGS.settled_distance * self.request.accuracy * (1 - rate):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(MarchedStatus.not_settled, why_not_settled(self.returns, len(past), last))
+        raise NoCycleFound(MarchedStatus.not_settled, why_not_settled(self.return_count, len(past), last))
 
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -157,7 +157,7 @@ class _MarchedMotion:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
-        if end := early_end(self.beam, run, self.returns):
+        if end := early_end(self.beam, run, self.return_count):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
             raise NoCycleFound(status, end.message)
         return run
@@ -192,7 +192,7 @@ class _MarchedMotion:
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
             raise NoCycleFound(
-                MarchedStatus.not_settled, f"the tip stops returning after {self.returns} returns"
+                MarchedStatus.not_settled, f"the tip stops returning after {self.return_count} returns"
             )
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
@@ -208,7 +208,7 @@ class _MarchedMotion:
 
         Raises NoCycleFound."""
         known = path.orbit.form.rod
-        limit = self.limit
+        limit = self.limiting_rod
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
         coordinates = {
@@ -234,6 +234,6 @@ class _MarchedMotion:
             message=""
             if enough
             else f"the cycle's errors, up to {errors.largest_error:.1e}, exceed the requested accuracy",
-            periods=self.returns,
+            periods=self.return_count,
         )
         return with_measures(cycle, self.request, path, measures_of(path), errors)

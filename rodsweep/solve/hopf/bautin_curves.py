@@ -75,13 +75,13 @@ class _CurvePoint:
 class BautinSpace:
     """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
     values of the fixed parameters. requested_values: values of the third parameter of further points, (m,).
-    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1."""
+    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or -1."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
     requested_values: Array
     accuracy: float
-    side: float = 1.0
+    direction: float = 1.0
 
     def scaled_coordinates(self, values: Array, frequency: float) -> Array:
         """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
@@ -114,7 +114,7 @@ class BautinSpace:
         """The next point after `behind`, predicted along the last chord, at first along the third parameter;
         raises Unsolvable. length: largest predicted change of a parameter, divided by its range."""
         here = behind[-1].v
-        tangent = np.array([0.0, 0.0, self.side, 0.0])
+        tangent = np.array([0.0, 0.0, self.direction, 0.0])
         if len(behind) > 1:
             chord = here - behind[-2].v
             # Step lengths are shares of a parameter's range; the frequency has no range.
@@ -189,7 +189,7 @@ class BautinSpace:
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
     here = _CurvePoint(space.scaled_coordinates(start.values, start.frequency), start)
-    back, first = _follow_in_direction(replace(space, side=-1.0), here)
+    back, first = _follow_in_direction(replace(space, direction=-1.0), here)
     if first is BautinEnd.closed:
         return BautinCurve(tuple(point.point for point in back), (first, first))
     on, last = _follow_in_direction(space, here)
@@ -217,7 +217,7 @@ def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurv
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """(points from `start` in the direction `space.side` of the third parameter, including points at its
     requested values; reason for the end of the curve)."""
-    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
+    if not 0 < start.v[2] + space.direction * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report_point_count)
     places = curve.solutions[:1]

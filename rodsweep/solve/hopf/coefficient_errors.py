@@ -185,5 +185,5 @@ def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
 
 def _landau_rounding_error(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
-    sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
+    sizes = straight_matrices(normal.form, TRANSVERSE).product_magnitude(normal.p, normal.q)
     return HOPF_COEFFICIENT_SETTINGS.landau_rounding * sizes / abs(normal.w)

@@ -95,7 +95,9 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
     hopf = HopfCurve(
-        Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
+        Boundary(plane, curve.eigenvalue_sign),
+        curve.scaled,
+        min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy),
     )
     signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled))])
     points = []

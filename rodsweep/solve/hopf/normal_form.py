@@ -28,7 +28,7 @@ from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolutio
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...discretization.straight.mixed_form import MixedForm
-from ...discretization.straight.whole_matrices import WholeMatrices, straight_matrices
+from ...discretization.straight.whole_matrices import WholeRodMatrices, straight_matrices
 from ...model.rod import Rod
 from ..point import Unsolvable
 
@@ -203,7 +203,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _eigenvalue_and_modes(
-    elements: StraightElements | WholeMatrices, guess: complex
+    elements: StraightElements | WholeRodMatrices, guess: complex
 ) -> tuple[complex, Complex, Complex]:
     """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
     docstring.

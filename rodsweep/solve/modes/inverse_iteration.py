@@ -78,7 +78,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        unknown_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
+        placeholder_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
         right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
         deformation=form.strains(X, points),
         left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),
@@ -88,7 +88,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
+def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
     """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of modes and
     points."""
     shape = np.full((2, modes, points), np.nan + 0j)

@@ -25,7 +25,7 @@ from ..point import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
-from .inverse_iteration import ModeVectors, unknown_vectors
+from .inverse_iteration import ModeVectors, placeholder_vectors
 from .transient_growth import Growth, growth_of
 
 
@@ -79,7 +79,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     if rod.uniform and not rod.standard:
         return _modes_by_equivalent_rod(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = unknown_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
+    vectors = placeholder_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,

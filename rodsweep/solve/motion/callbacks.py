@@ -163,8 +163,8 @@ class CallbackWorkspace:
         """
         self._rod = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
         self._set_context_fields({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set_context_fields({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
-        self._set_context_fields({"jump_count": len(beam.nodal.jumps)})
+        self._set_context_fields({"components": len(self._rod["tip_stress"]), "law": beam.nodal_rod.law})
+        self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknowns**0.5
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
@@ -177,7 +177,7 @@ class CallbackWorkspace:
         `EXTRAPOLATION_POINTS` does not contain the type."""
         self._arrays["points"][:] = extrapolation_points_of(variant)
 
-    def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
+    def register_callbacks(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
         """Registers the callbacks in `ts`, whose options must already be set. matrix: the matrix in which
         PETSc stores the Jacobian of a stage."""
         context = self.context.ctypes.data

@@ -98,7 +98,7 @@ iterate of Newton's method."""
 
 def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:
     """Arrays of the rod `beam` by the names in `ROD_ARRAY_FIELDS`; the shapes differ."""
-    own = beam.nodal._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
+    own = beam.nodal_rod._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
     return {name: own[name] for name in ROD_ARRAY_FIELDS}
 
 

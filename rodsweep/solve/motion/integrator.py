@@ -134,7 +134,7 @@ class Integrator:
         finally:
             for name in ours:  # the remaining options are the user's, and are recorded as such
                 database.delValue(name)
-        self.workspace.attach(ts, self.matrix)
+        self.workspace.register_callbacks(ts, self.matrix)
         return ts
 
     def _stop_at_limit(self, ts: "PETSc.TS") -> None:

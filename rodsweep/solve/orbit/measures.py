@@ -129,7 +129,7 @@ class CyclePath:
         samples)."""
         return self._series_from_start_phase(self.tip_coefficients, samples).T
 
-    def energy(self, samples: int) -> Array:
+    def energy_and_powers(self, samples: int) -> Array:
         """(elastic energy U, injected power, dissipated power) at `samples` equidistant times of a period
         from `start_phase`, (3, samples)."""
         period = self.orbit.period

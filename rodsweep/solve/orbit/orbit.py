@@ -133,7 +133,7 @@ def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: 
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
     parts = float(symmetry.period_parts)
-    return SemidiscreteEquations(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
+    return SemidiscreteEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)

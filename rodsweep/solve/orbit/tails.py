@@ -145,7 +145,7 @@ def _stresses_by_element(orbit: Orbit, states: Array) -> Array:
     """n1, n2 and m3 at the nodes of each element, (3, m, elements, p + 1), p: order. states: states of
     `orbit`, (m, n)."""
     form = orbit.form
-    return stresses_by_element(form.nodal, form.mesh, form.stresses(states))
+    return stresses_by_element(form.nodal_rod, form.mesh, form.stresses(states))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

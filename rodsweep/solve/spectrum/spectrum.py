@@ -92,14 +92,14 @@ class Spectrum:
 class FollowedPoints:
     """Leading eigenvalues w and their absolute errors, (n, modes), at n successive points of a sweep.
 
-    unstable_count: number of unstable modes, (n,). accepted: whether the point is certified and accurate,
+    unstable_count: number of unstable modes, (n,). is_accepted: whether the point is certified and accurate,
     (n,).
     """
 
     w: Complex
     error: Array
     unstable_count: NDArray[np.int64]
-    accepted: NDArray[np.bool_]
+    is_accepted: NDArray[np.bool_]
 
 
 def vectors_on_nodes(

@@ -109,11 +109,14 @@ def cycle_curve_record(
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
         for (beside, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
-            named = dict(zip(plane, (point.at, point.row), strict=True)) | beside | reasons
+            named = dict(zip(plane, (point.at, point.row_value), strict=True)) | beside | reasons
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **named), point))
     declared = cycle_curve_variables(*plane)
     values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
-    values |= {"cycle_curve_agreement": found.agreement, "cycle_curves_untraced": found.untraced}
+    values |= {
+        "cycle_curve_agreement": found.agreement,
+        "cycle_curves_untraced": found.untraced,
+    }
     return _filled_variables(declared, values)
 
 

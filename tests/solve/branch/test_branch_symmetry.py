@@ -5,6 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rodsweep.solve.branch.special_points import locating
+from rodsweep.solve.branch.special_points.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
+from rodsweep.solve.branch.special_points.points import special_kinds_between
 from scipy.integrate import solve_ivp
 from test_paper import stated
 
@@ -24,9 +27,6 @@ from rodsweep.solve.branch.following import (
     follow_from_cycle,
 )
 from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
-from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
-from rodsweep.solve.branch.special.points import special_kinds_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
     extended_to_whole_period,
@@ -61,7 +61,7 @@ def symmetric(limits):
 @pytest.fixture(scope="module")
 def known(limits, symmetric):
     """The limits with the one symmetry breaking."""
-    (breaking,) = symmetry_breakings_in([symmetric.special])
+    (breaking,) = symmetry_breakings_in([symmetric.special_points])
     return following.replace(limits, breakings=[breaking])
 
 
@@ -71,15 +71,15 @@ def asymmetric(known):
 
 
 def kinds(curve):
-    return [point.kind.name for point in curve.special]
+    return [point.kind.name for point in curve.special_points]
 
 
 def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(symmetric, asymmetric):
     assert kinds(symmetric) == ["hopf", "symmetry_breaking", "end"]
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
-    born, fold, end = asymmetric.special
+    born, fold, end = asymmetric.special_points
     # NaN does not equal NaN, but has the same text.
-    assert repr(born) == repr(following.replace(symmetric.special[1], after=-1))
+    assert repr(born) == repr(following.replace(symmetric.special_points[1], after=-1))
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5
@@ -87,7 +87,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert max(born.error, fold.error) < 1e-3
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
-    turn = symmetric.special[1].after + 1
+    turn = symmetric.special_points[1].after + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
     turn = fold.after + 1
@@ -98,7 +98,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
     """So do largest and smallest y; symmetric cycles have none."""
     assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.points)
-    born = asymmetric.special[0]
+    born = asymmetric.special_points[0]
     (near, F), (far, beyond) = (
         ((point.measures.tip_y_max + point.measures.tip_y_min) ** 2, point.at)
         for point in asymmetric.points[:2]
@@ -161,8 +161,8 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
-    assert curve.special[-1].reason == EndReason.no_cycle_found
-    assert "no known symmetry breaking is near" in curve.special[-1].message
+    assert curve.special_points[-1].reason == EndReason.no_cycle_found
+    assert "no known symmetry breaking is near" in curve.special_points[-1].message
 
 
 @pytest.mark.parametrize(("has", "kind"), [(True, "symmetry_breaking"), (False, "period_doubling")])

@@ -8,6 +8,15 @@ import numpy as np
 import pytest
 from conftest import Command
 from contents import content, same
+from rodsweep.solve.branch.special_points.augmented.functions import FoldFunction
+from rodsweep.solve.branch.special_points.curves import SpecialCurveProblem
+from rodsweep.solve.branch.special_points.point import SpecialKind
+from rodsweep.solve.branch.special_points.special_curves import (
+    CurveEnd,
+    CurvePoint,
+    HalfCurve,
+    SpecialPointCurve,
+)
 from surveyed import survey_only
 from test_paper import stated
 
@@ -22,10 +31,6 @@ from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
-from rodsweep.solve.branch.special.augmented.functions import FoldFunction
-from rodsweep.solve.branch.special.curves import SpecialCurveProblem
-from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, HalfCurve, SpecialPointCurve
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import make_job
@@ -60,11 +65,11 @@ def fig_2c():
 def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2c):
     assert fig_2c.status == CoexistenceStatus.ok
     assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]
-    kinds = [point.kind for point in fig_2c.special]
+    kinds = [point.kind for point in fig_2c.special_points]
     assert kinds == [SpecialKind.hopf, SpecialKind.fold, SpecialKind.hopf]
-    assert fig_2c.special[1].at == pytest.approx(FOLD, abs=2e-9)
-    assert fig_2c.special[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
-    assert fig_2c.special[1].error <= 1e-9 * FOLD
+    assert fig_2c.special_points[1].at == pytest.approx(FOLD, abs=2e-9)
+    assert fig_2c.special_points[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
+    assert fig_2c.special_points[1].error <= 1e-9 * FOLD
 
 
 def test_a_cycle_on_the_last_value_of_a_row_counts():
@@ -138,7 +143,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
     last = curve.points[-1]
-    assert last.row == 150.0
+    assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.at
     end = curve.vanishing[0]

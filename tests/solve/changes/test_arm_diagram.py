@@ -49,7 +49,7 @@ def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
 def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
     curve = traced(Build(), kind)
     boundaries = [
-        Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.sign)
+        Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.eigenvalue_sign)
         for build in (Build(), ONES)
     ]
     for v in curve.scaled[::6]:

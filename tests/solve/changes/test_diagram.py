@@ -166,10 +166,10 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
     plane = Plane(rod, axes)
     _, seeds = rows(axes, rod, 2)
     for seed in seeds:
-        boundary = Boundary(plane, seed.sign)
+        boundary = Boundary(plane, seed.eigenvalue_sign)
         scaled = [axis.coordinate(value) for axis, value in zip(axes, seed.values, strict=True)]
         start = boundary.point_near(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
-        assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
+        assert boundary.eigenvalue(start.v[2])[int(seed.eigenvalue_sign == 0)] == pytest.approx(
             seed.eigenvalue, rel=1e-6
         )
         tangent = start.tangent

@@ -67,7 +67,7 @@ def moving(form, size, seed=0):
     """(state, V, G) of a random state."""
     x = size * np.random.default_rng(seed).standard_normal(form.unknowns)
     V, G = np.empty((2, 3, form.mesh.nodes + 1))
-    write_balance(x, V, G, form.nodal, form.mesh.matrices)
+    write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
     return x, V, G
 
 
@@ -92,7 +92,7 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
     x, V, _ = moving(form, 1.0)
     change = np.empty((3, *V.shape))
     write_balance_derivative(
-        x, V, change, form.parameter_derivative(parameter), form.nodal, form.mesh.matrices
+        x, V, change, form.parameter_derivative(parameter), form.nodal_rod, form.mesh.matrices
     )
     at = form.rod.coordinate(parameter)
     h = 1e-6 * max(abs(at), 1e-3)
@@ -108,13 +108,13 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
 def test_the_energy_grows_by_what_the_force_gives_and_the_fluid_takes(name):
     form = on_mesh(name)
     x, V, G = moving(form, 0.3)
-    weighted = form.nodal.compliance * form.mesh.quadrature
+    weighted = form.nodal_rod.compliance * form.mesh.quadrature
     rates = form.layout.state(G / weighted, V)
     h = 1e-4 / np.abs(rates).max()
     steps = [form.elastic_energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
     growth = (steps[0] - 8 * steps[1] + 8 * steps[2] - steps[3]) / (12 * h)
-    lost = np.sum(form.mesh.quadrature * form.nodal.drag * V**2)
-    power = -form.nodal.tip_stress @ G[:, -1] - lost
+    lost = np.sum(form.mesh.quadrature * form.nodal_rod.drag * V**2)
+    power = -form.nodal_rod.tip_stress @ G[:, -1] - lost
     assert growth == pytest.approx(power, abs=1e-7 * lost)
 
 
@@ -261,7 +261,7 @@ def test_a_jump_of_factor_one_is_none():
     grid = mesh_with_edges((0.0, 0.4, 1.0), 7)
     builds = (Build("neo_hookean", "swelling", profile) for profile in (None, JUMP_OF_ONE))
     plain, jumping = (StressForm(Rod(**values, build=build), grid) for build in builds)
-    assert (len(plain.nodal.jumps), len(jumping.nodal.jumps)) == (0, 1)
+    assert (len(plain.nodal_rod.jumps), len(jumping.nodal_rod.jumps)) == (0, 1)
     (x, V, G), (_, V_jumping, G_jumping) = (moving(form, 5.0) for form in (plain, jumping))
     assert np.abs(V_jumping - V).max() < 1e-13 * np.abs(V).max()
     assert np.abs(G_jumping - G).max() < 1e-13 * np.abs(G).max()
@@ -272,14 +272,16 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     form = on_mesh("swelling segments", F=40.0)
     x = 20.0 * np.random.default_rng(3).standard_normal(form.unknowns)
     S = form.stresses(x)
-    ((before, behind),) = stresses_beside_jumps(form.nodal, S)
-    (node,), (sides,) = form.nodal.jumps, form.nodal.jump_sides
+    ((before, behind),) = stresses_beside_jumps(form.nodal_rod, S)
+    (node,), (sides,) = form.nodal_rod.jumps, form.nodal_rod.jump_sides
     both = list(zip(sides, (before, behind), strict=True))
     stresses = [stress_beyond_rest(2, LocalSection(*side[:3]), *q) for side, q in both]
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)
     for component, place, own in ((0, 1, 0), (2, 2, 1)):
         mean = sum(side[5] * side[place] * q[own] for side, q in both)
-        assert mean == pytest.approx(form.nodal.compliance[component, node] * S[component, node], rel=1e-12)
+        assert mean == pytest.approx(
+            form.nodal_rod.compliance[component, node] * S[component, node], rel=1e-12
+        )
     assert before[0] != pytest.approx(behind[0], rel=1e-3)
 
 
@@ -295,7 +297,7 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
         before, behind = (lambda u: np.cos(5 * u), lambda u: 2 + np.sin(4 * u))
         fields = []
         for form in (source, target):
-            u, (node,), (sides,) = form.mesh.positions, form.nodal.jumps, form.nodal.jump_sides
+            u, (node,), (sides,) = form.mesh.positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
             S = np.array([np.where(u < u[node], before(u), behind(u)), np.cos(3 * u), 0 * u])
             S[2] = S[0]
             for component, share in ((0, 3), (2, 4)):

@@ -47,7 +47,10 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
     coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY, MEMORY)
     orbit, _ = coarser.predicted(FINE)
     exact = newton(orbit, 1e-13, MEMORY).orbit
-    between = [replace(coarser.mesh, order=FINE.order), replace(coarser.mesh, intervals=FINE.intervals)]
+    between = [
+        replace(coarser.coarse_mesh, order=FINE.order),
+        replace(coarser.coarse_mesh, intervals=FINE.intervals),
+    ]
     errors = [
         off(FINE.interpolated_orbit(newton(m.interpolated_orbit(exact), 1e-13, MEMORY).orbit), exact)
         for m in between

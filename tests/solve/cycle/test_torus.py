@@ -84,7 +84,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
                 low, high = (middle, high) if row @ state(middle) < 0 else (low, middle)
             returns.append(beam.layout.stress_field(state(low), "m3"))
     found = modulation_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
-    assert found.angle == pytest.approx(ROTATION, abs=1e-3)
+    assert found.angle_per_return == pytest.approx(ROTATION, abs=1e-3)
     assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error / 5
 
 
@@ -99,7 +99,7 @@ def closed_curve(phases):
 
 def test_rotation_on_a_closed_curve_is_found():
     found = modulation_of(closed_curve(ANGLE * NUMBERS), ANGLE + 0.1)
-    assert found.angle == pytest.approx(ANGLE, abs=1e-6)
+    assert found.angle_per_return == pytest.approx(ANGLE, abs=1e-6)
     assert found.prediction_error < 1e-3
 
 

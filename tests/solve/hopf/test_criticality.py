@@ -253,7 +253,7 @@ def test_hopf_point_that_fails_does_not_lose_the_others(monkeypatch):
     found = solved(STRETCHABLE)
     assert found.status == CriticalityStatus.coefficients_failed
     assert found.message == "Hopf point at F = 49.7580049162: no mesh is fine enough"
-    assert [known.known for known in found.coefficients] == [False, True]
+    assert [known.are_known for known in found.coefficients] == [False, True]
     assert math.isnan(found.coefficients[0].criticality)
     assert found.coefficients[1].criticality == 1
 

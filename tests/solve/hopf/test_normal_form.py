@@ -218,7 +218,7 @@ def near_by(point, part, gamma1, order=14, phases=9):
     """(squared amplitude, frequency less that of the Hopf point), both over F - F_H, of a cycle near by."""
     normal, rod = normal_of(*point, gamma1, order=order), beyond(point, part)
     form, step = mixed_form(rod.changed(gamma1=gamma1), 1, order), part * point[0].F
-    squared, frequency = normal.cycle(rod.F)
+    squared, frequency = normal.squared_y_and_frequency(rod.F)
     start = normal.cycle_states(squared**0.5, 2 * np.pi * np.arange(phases) / phases)
     amplitude, frequency = solved_cycle(form, start, frequency)
     return np.array([amplitude**2, frequency - point[1].imag]) / step
@@ -265,7 +265,7 @@ def test_cycles_that_a_motion_in_time_reaches_are_born_as_the_normal_form_says()
     found = []
     for part in (2e-3, 4e-3):
         rod = beyond(SOFT, part)
-        y = normal_of(*SOFT).cycle(rod.F)[0] ** 0.5
+        y = normal_of(*SOFT).squared_y_and_frequency(rod.F)[0] ** 0.5
         point = Rod(F=rod.F, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3, gamma1=1.0)
         cycle = solve_cycle(point, CycleRequest(1e-8, y, 1, 0, 0, 0, 300))
         assert cycle.status == CycleStatus.cycle

@@ -112,7 +112,7 @@ def no_width_in_p(at, y, direction, half, tilt):
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("is_remainder_below", holds_always), ("is_free_of_zeros", no_width_in_p)],
+    [("is_remainder_below", holds_always), ("examine_rectangle", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):

@@ -17,7 +17,12 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ...certificate.winding_number import NO_INTEGER, PHASE_LOST, WINDING_SETTINGS, EigenvalueCount
+from ...certificate.winding_number import (
+    NO_INTEGER_MESSAGE,
+    PHASE_LOST_MESSAGE,
+    WINDING_SETTINGS,
+    EigenvalueCount,
+)
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..elements.settings import ARM_ELEMENT_SETTINGS
@@ -34,7 +39,7 @@ class PhaseLost(ArithmeticError):
     """The change of arg D along the contour could not be determined; node_count: number of nodes used."""
 
     def __init__(self, nodes: int):
-        super().__init__(PHASE_LOST)
+        super().__init__(PHASE_LOST_MESSAGE)
         self.node_count = nodes
 
 
@@ -86,7 +91,7 @@ def count_right_of(
         return EigenvalueCount(None, 0, str(unresolved))
     number = round(total / math.pi)
     if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
-        return EigenvalueCount(None, nodes, NO_INTEGER)
+        return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
     return EigenvalueCount(number + int((known.real > line).sum()), nodes)
 
 

@@ -58,7 +58,7 @@ class BorderCondition:
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
                 raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
-            orbit = moved_orbit(orbit, self.scale.name, step)
+            orbit = moved_orbit(orbit, self.scale.parameter, step)
             off = off + change
             rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.

@@ -40,7 +40,7 @@ class BorderedMatrix:
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
         p = orbit.semidiscrete
-        along = parameter_derivatives(orbit.form, scale.name)
+        along = parameter_derivatives(orbit.form, scale.parameter)
         K, s, n = orbit.states.shape
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
@@ -51,11 +51,11 @@ class BorderedMatrix:
             orbit.points, V, orbit.duration, p, self._memory.factors, self._columns
         )
         self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
-        m = len(self._shooting_intervals.maps)
+        m = len(self._shooting_intervals.flow_maps)
         self._matrix = np.zeros((m * n + 2, m * n + 2))
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
-            self._matrix[rows, rows] = self._shooting_intervals.maps[j]
+            self._matrix[rows, rows] = self._shooting_intervals.flow_maps[j]
             # The last shooting interval ends at the symmetric image of the first interval's start.
 
             if j < m - 1:
@@ -100,7 +100,7 @@ class BorderedMatrix:
 
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
-        along = parameter_derivatives(orbit.form, self.scale.name)
+        along = parameter_derivatives(orbit.form, self.scale.parameter)
         equations = orbit.semidiscrete
         p = self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
@@ -126,7 +126,7 @@ class BorderedMatrix:
     def partial_multipliers(self) -> Complex:
         """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
         the reflection for a symmetric orbit."""
-        if len(self._shooting_intervals.maps) == 1:
+        if len(self._shooting_intervals.flow_maps) == 1:
             return partial_multipliers(self.propagator, self.orbit)
         return self._shooting_intervals.multipliers(self.orbit)
 
@@ -155,7 +155,7 @@ class BorderedMatrix:
         fixed start, (1, n).
         """
         p = self.orbit.semidiscrete
-        sides = -self._shooting_intervals.ends(self._memory.factors, columns, ends, p)[:, 0]
+        sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
@@ -191,7 +191,7 @@ class BorderedMatrix:
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._shooting_intervals.substituted(factors, starts, columns, self.orbit.semidiscrete)
+        out = self._shooting_intervals.stage_changes(factors, starts, columns, self.orbit.semidiscrete)
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 

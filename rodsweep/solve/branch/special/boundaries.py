@@ -179,7 +179,7 @@ class _CurvesOfKind:
             if end is None:
                 continue
             x = self.line.coordinate(end.at)
-            y = self.rows.coordinate(end.row)
+            y = self.rows.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
             share = (self.rows.coordinate(one.row_value) - y) / (last.row_coordinate - y)
             chord = x + share * (self.line.coordinate(last.at) - x)

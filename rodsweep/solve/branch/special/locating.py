@@ -93,7 +93,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
             segment.set_mesh(mesh)
             length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
             last = point
-            point = _special_point_at(kind, orbit, start.scale.name)
+            point = _special_point_at(kind, orbit, start.scale.parameter)
             if last is not None:
                 point = _with_mesh_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
@@ -141,7 +141,7 @@ def _with_mesh_errors(
     share = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
-        name = start.scale.name
+        name = start.scale.parameter
         length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
         moved = SPECIAL_POINT_SETTINGS.slope_factor * error / length if length else 1.0
         share = SPECIAL_POINT_SETTINGS.secant_error + min(moved, 1.0)
@@ -175,7 +175,7 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
 def _unlocated_point(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
     """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
     the differences between the two cycles as errors. message: cause of the failure."""
-    name = start.scale.name
+    name = start.scale.parameter
     measures = end.cycle.measures
     before = start.cycle.measures
     at, other = (getattr(point.orbit.form.rod, name) for point in (end, start))
@@ -244,7 +244,7 @@ def _zero_by_secants(
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
-            return at + step, moved_orbit(orbit, segment.start.scale.name, change), slope
+            return at + step, moved_orbit(orbit, segment.start.scale.parameter, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method for the special point does not converge")

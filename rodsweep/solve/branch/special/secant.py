@@ -124,7 +124,7 @@ class SecantSearch:
         tolerance of the test function always are."""
         if error <= AUGMENTED_SETTINGS.tolerance:
             return True
-        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.name))
+        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter))
         allowed = CURVE_SECANT_SETTINGS.secant_share * CURVE_SECANT_SETTINGS.accuracy * parameter
         return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
 
@@ -153,7 +153,7 @@ class SecantSearch:
             return None
         if abs(present.distance - before.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
             return None
-        name = self.family.scale.name
+        name = self.family.scale.parameter
         # The test function is nearly linear here, so that difference quotients are as good as derivatives.
         span = present.distance - before.distance
         one = before.orbit
@@ -177,7 +177,7 @@ class SecantSearch:
         """The last cycle, moved by `step` across the curve along `derivatives`."""
         change = step * derivatives.on_mesh_of(self.orbit)
         self.nearby.distance += relative_change(self.orbit, change[:-1])
-        return moved_orbit(self.orbit, self.family.scale.name, change)
+        return moved_orbit(self.orbit, self.family.scale.parameter, change)
 
     def _curve_point(self, step: float, derivatives: NormalDerivatives, distance_error: float) -> SolvedPoint:
         """The point of the curve: the last cycle, moved by `step` across the curve along `derivatives`.
@@ -187,14 +187,14 @@ class SecantSearch:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
-        scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
+        scale = Scale.of(orbit, family.scale.parameter, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
             branch_direction=ahead / np.linalg.norm(ahead),
             row_coordinate=row_coordinate,
-            parameter=getattr(orbit.form.rod, scale.name),
+            parameter=getattr(orbit.form.rod, scale.parameter),
             row_parameter=getattr(orbit.form.rod, family.rows.name),
             secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
             normal_derivatives=derivatives,
@@ -204,7 +204,7 @@ class SecantSearch:
         """Displacement of the parameter at a fixed row, for a point at a distance from the curve."""
         rates = self.derivatives
         assert rates is not None
-        parameter = PARAMETERS[self.family.scale.name]
-        at = self.orbit.form.rod.coordinate(self.family.scale.name)
+        parameter = PARAMETERS[self.family.scale.parameter]
+        at = self.orbit.form.rod.coordinate(self.family.scale.parameter)
         moved = parameter.value(at + distance * float(rates.orbit_derivative[-1])) - parameter.value(at)
         return abs(moved - distance * self.line.slope * float(self.line.direction[1]))

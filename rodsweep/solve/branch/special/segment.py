@@ -24,7 +24,7 @@ class BranchSegment:
         )
         self._last_solved: tuple[float, Orbit, Array] | None = None
 
-    def predicted(self, length: float) -> Orbit:
+    def predicted_orbit(self, length: float) -> Orbit:
         """Predicted orbit at the arc length `length` from `start`, on the mesh of `end`, by the cubic through
         the cycles `start` and `end`."""
         # The cubic of `end` passes through both cycles; its variable is the arc length along the tangent at
@@ -41,11 +41,11 @@ class BranchSegment:
         """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises
         Unsolvable."""
         if self._last_solved is None:
-            start = self.mesh.interpolated_orbit(self.predicted(length))
+            start = self.mesh.interpolated_orbit(self.predicted_orbit(length))
         else:
             last, orbit, tangent = self._last_solved
             # From the last cycle along its tangent: a secant method changes the length only a little.
-            start = moved_orbit(orbit, self.start.scale.name, (length - last) * tangent)
+            start = moved_orbit(orbit, self.start.scale.parameter, (length - last) * tangent)
         condition = self.start.arc_length_condition(length)
         workspace = self.start.workspace
         found = condition.solve_cycle(

@@ -78,12 +78,12 @@ class CurveEnd(IntEnum):
 class VanishingPoint:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
-    period: period of the vanishing cycles, in tau2.
+    at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
+    parameter. period: period of the vanishing cycles, in tau2.
     """
 
     at: float
-    row: float
+    row_value: float
     error: float
     period: float
 
@@ -92,12 +92,12 @@ class VanishingPoint:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
-    row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
+    at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
+    parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
     at: float
-    row: float
+    row_value: float
     row_coordinate: float
     error: float
     period: float
@@ -191,7 +191,7 @@ def with_located_ends(
         if end is None or curve.kind != SpecialKind.fold:
             return end
         for point in known:
-            pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
+            pairs = zip(plane.axes, point.values, (end.at, end.row_value), strict=True)
             if all(
                 abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
                 for axis, a, b in pairs
@@ -218,7 +218,7 @@ def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     if len(known) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
-    table = np.array([[point.at, point.row, point.period] for point in known])
+    table = np.array([[point.at, point.row_value, point.period] for point in known])
     # The error estimate is the difference between the polynomials with and without the first point.
     best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)

@@ -98,7 +98,7 @@ class ArmPath(PathProblem):
             family = interpolated_family(self.path, low, high, W)
             self._families += [family] if family is not None else []
 
-    def edges(self, low: float, high: float) -> list[float]:
+    def interval_edges(self, low: float, high: float) -> list[float]:
         edges = np.linspace(low, high, ARM_PATH_SETTINGS.first_interval_count + 1)
         edges[1:-1] -= ARM_PATH_SETTINGS.edge_shift * (high - low) / ARM_PATH_SETTINGS.first_interval_count
         if self._followed is None and low < high:

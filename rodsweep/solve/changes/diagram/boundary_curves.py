@@ -41,13 +41,13 @@ class Fold:
 class BoundaryCurve:
     """A curve of Hopf points, or of double real eigenvalues.
 
-    sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
+    eigenvalue_sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
     values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the eigenvalue,
     in 1/tau2, (points,). ends: reasons for the ends at the first and at the last point.
     """
 
-    sign: float
+    eigenvalue_sign: float
     values: Array
     frequency: Array
     growth_rate: Array
@@ -58,7 +58,7 @@ class BoundaryCurve:
 
     @property
     def hopf(self) -> bool:
-        return self.sign == 0
+        return self.eigenvalue_sign == 0
 
 
 def trace_boundary(
@@ -110,7 +110,7 @@ def _curve_with_folds(
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
-    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), ends, points)
+    return BoundaryCurve(boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
 def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
@@ -148,7 +148,7 @@ def _tangent_error(boundary: Boundary) -> float:
         return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
     return (
         BOUNDARY_CURVE_SETTINGS.double_tangent_error
-        if boundary.sign
+        if boundary.eigenvalue_sign
         else BOUNDARY_CURVE_SETTINGS.hopf_tangent_error
     )
 

@@ -68,10 +68,10 @@ class CoarserMeshes:
         )
         self._highest_order = order + fewer + COARSER_MESH_SETTINGS.max_more_orders
         intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.more_intervals)) + 1
-        self.mesh = replace(mesh, order=order, intervals=intervals)
+        self.coarse_mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
         self._workspace = workspace
-        self._coarse = self._solve_on_mesh(self.mesh, near)
+        self._coarse = self._solve_on_mesh(self.coarse_mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
@@ -81,18 +81,18 @@ class CoarserMeshes:
             mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
         )
-        return near and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
+        return near and (mesh.edges, mesh.stages) == (self.coarse_mesh.edges, self.coarse_mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
-        space = self._cycle_on_mesh(replace(self.mesh, order=mesh.order))
-        time = self._cycle_on_mesh(replace(self.mesh, intervals=mesh.intervals))
+        space = self._cycle_on_mesh(replace(self.coarse_mesh, order=mesh.order))
+        time = self._cycle_on_mesh(replace(self.coarse_mesh, intervals=mesh.intervals))
         fine_in_space = mesh.interpolated_orbit(space.orbit)
         fine_in_time = mesh.interpolated_orbit(time.orbit)
         coarse = mesh.interpolated_orbit(self._coarse.orbit)
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
-        by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.mesh.order))
+        by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
@@ -121,7 +121,7 @@ class CoarserMeshes:
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
         """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
         mesh."""
-        return mesh.full_intervals / self.mesh.full_intervals
+        return mesh.full_intervals / self.coarse_mesh.full_intervals
 
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:

@@ -79,6 +79,6 @@ def form_states(beam: Beam, form: StressForm, z: Array) -> Array:
     if form.is_omega_unknown:
         for k, state in enumerate(beam.layout.state(S, S)):
             velocity = np.empty(G.shape)
-            write_balance(state, velocity, G, beam.nodal, beam.mesh.matrices)
+            write_balance(state, velocity, G, beam.nodal_rod, beam.mesh.matrices)
             V[:, k] = velocity
     return form.layout.state(S, V)

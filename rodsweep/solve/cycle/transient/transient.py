@@ -41,11 +41,11 @@ from .transient_settings import TRANSIENT_SETTINGS
 class Transient:
     """Integration of the motion of one rod from a start; `follow` is called only once.
 
-    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. along:
-    parameter along which the cycle's tangent is computed, or None. unstable_cycle: a nearby unstable cycle,
-    or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a
-    limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None if not
-    requested."""
+    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod.
+    tangent_parameter: parameter along which the cycle's tangent is computed, or None. unstable_cycle: a
+    nearby unstable cycle, or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby
+    rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None
+    if not requested."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class Transient:
         self.beam = Beam(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
-        self.along = along
+        self.tangent_parameter = along
         self.workspace = workspace
         self.accuracy = request.accuracy
         self.most_periods = request.most_periods
@@ -72,7 +72,7 @@ class Transient:
         schemes = schemes_for_growth(rate * period, request.transient > 0)
         self.first_scheme, self.scheme, noise, steps = schemes
         self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns)
-        self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
+        self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._beam_growth_rate(rate), noise)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
@@ -165,7 +165,7 @@ class Transient:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
         return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_size)
 
-    def _rate_of_the_beam(self, rate: float) -> float:
+    def _beam_growth_rate(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
 
         rate: linear growth rate of the rod in `form`, returned if the integrated rod is the same rod or its
@@ -238,7 +238,7 @@ class Transient:
                 return None
         orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
         try:
-            found = refined_cycle(orbit, self.accuracy, self.workspace, self.along)
+            found = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
         except Unsolvable:
             self.failed_starts += 1
             return None

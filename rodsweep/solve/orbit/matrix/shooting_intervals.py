@@ -40,13 +40,15 @@ SHOOTING_INTERVAL_SETTINGS = ShootingIntervalSettings()
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
     """The m shooting intervals of an orbit. edges: index of the first time interval of each shooting
-    interval, and the number of time intervals, m + 1 numbers. maps: derivative of the end of each shooting
-    interval with respect to its start, (m, n, n)."""
+    interval, and the number of time intervals, m + 1 numbers. flow_maps: derivative of the end of each
+    shooting interval with respect to its start, (m, n, n)."""
 
     edges: tuple[int, ...]
-    maps: Array
+    flow_maps: Array
 
-    def ends(self, factors: NewtonFactors, columns: Array, whole: Array, p: SemidiscreteEquations) -> Array:
+    def end_changes(
+        self, factors: NewtonFactors, columns: Array, whole: Array, p: SemidiscreteEquations
+    ) -> Array:
         """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
         the shooting intervals, (m, k, n).
 
@@ -54,7 +56,7 @@ class ShootingIntervals:
         for a fixed start of the first time interval, (k, n). factors: eliminated matrix. p: equations of the
         orbit.
         """
-        ends = np.zeros((len(self.maps), *whole.shape))
+        ends = np.zeros((len(self.flow_maps), *whole.shape))
         if len(ends) == 1:
             return whole[None]
         columns = np.ascontiguousarray(columns)
@@ -63,7 +65,7 @@ class ShootingIntervals:
                 map_start_to_end(factors.eliminated_blocks[k], columns[k], p, end)
         return ends
 
-    def substituted(
+    def stage_changes(
         self, factors: NewtonFactors, starts: Array, columns: Array, p: SemidiscreteEquations
     ) -> Array:
         """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
@@ -82,7 +84,7 @@ class ShootingIntervals:
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.
         """
-        *others, last = self.maps
+        *others, last = self.flow_maps
         ahead = triangle = np.eye(len(last))
         for _ in range(SHOOTING_INTERVAL_SETTINGS.sweeps):
             # Directions that decay to nothing over a period are dropped, to save time.

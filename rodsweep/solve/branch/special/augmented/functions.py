@@ -92,7 +92,7 @@ class FoldFunction:
         columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start))
         write_phase_row(orbit.start, p.rod, p.node_matrices, row)
-        along = orbit.form.parameter_derivative(matrix.scale.name)
+        along = orbit.form.parameter_derivative(matrix.scale.parameter)
         shift = phase_right_side(orbit.start, along, p.rod, p.node_matrices)
         closing = matrix.closing_sides(closing_residual(change.points, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start

@@ -106,4 +106,4 @@ class NearbyCycleSolver:
         if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
             raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
         self.distance += change
-        return moved_orbit(orbit, self.scale.name, step), change
+        return moved_orbit(orbit, self.scale.parameter, step), change
