@@ -126,7 +126,7 @@ class PhaseDiagramTask(CertifiedTask):
             warm_up=warm_up_branches,
             solve=solve,
             record=lambda index, result: (
-                of_rows.record(index, result.row) | cycles_record(result, request.name)
+                of_rows.record(index, result.straight_rod_row) | cycles_record(result, request.name)
             ),
         )
 

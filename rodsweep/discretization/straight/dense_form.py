@@ -72,7 +72,7 @@ def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
 
 
 def _points_inside_elements(mesh: Elements, points: Array) -> Array:
-    """The points, (n,), each moved just inside the element to which `Elements.by_element` assigns the
+    """The points, (n,), each moved just inside the element to which `Elements.points_by_element` assigns the
     point."""
     moved = np.array(points, dtype=float)
     for first, inside, local in mesh.points_by_element(points):

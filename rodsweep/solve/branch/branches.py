@@ -73,7 +73,7 @@ class BranchStatus(PointStatus):
 class BranchRequest:
     """Request, the same for every rod. along, start, stop: name and range of the continuation parameter.
     accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing.
-    cycles, max_special: maximum numbers of stored cycles and special points."""
+    cycles, special: maximum numbers of stored cycles and special points."""
 
     along: str
     start: float
@@ -81,7 +81,7 @@ class BranchRequest:
     accuracy: float
     certify: bool
     cycles: int
-    max_special: int
+    special: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -241,7 +241,7 @@ def _status_and_message(
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.list_full for curve in curves),
-        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.max_special,
+        BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
         BranchStatus.special_undecided: inaccurate
         or any(not curve.multipliers_explained for curve in curves),
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),

@@ -126,7 +126,7 @@ def row_branches(
         accuracy=request.cycle_accuracy,
         certify=request.certify,
         cycles=BRANCH_SETTINGS.max_row_cycles,
-        max_special=special,
+        special=special,
     )
     return solve_branches(rod, asked, workspace)
 

@@ -6,10 +6,6 @@ from functools import lru_cache
 import numba
 import numpy as np
 import pytest
-from rodsweep.solve.branch.special_points.augmented.functions import pair_nearest_unit_circle
-from rodsweep.solve.branch.special_points.curves import SpecialCurveProblem
-from rodsweep.solve.branch.special_points.point import EndReason, SpecialKind
-from rodsweep.solve.branch.special_points.special_curves import CurveEnd
 from surveyed import survey_only
 
 from rodsweep.determinant.parameter_path import Path
@@ -22,6 +18,10 @@ from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
+from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
+from rodsweep.solve.branch.special.curves import SpecialCurveProblem
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
@@ -337,7 +337,7 @@ def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_
 def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
     """Another maximum of y(t) becomes the largest at a corner, which a figure locates from both sides."""
     rod = Rod(F=0.0, k1=419.6, k2=23447.0, gamma3=0.1237, gamma1=0.645)
-    request = BranchRequest("F", 0.0, 124.34, 3e-4, certify=False, cycles=100, max_special=10)
+    request = BranchRequest("F", 0.0, 124.34, 3e-4, certify=False, cycles=100, special=10)
     (branch,) = solve_branches(rod, request, NewtonWorkspace()).curves
     sizes = [point.measures.tip_y_max for point in branch.points[-4:]]
     assert np.diff(sizes) == pytest.approx([-0.0083, 0.011, 0.026], abs=1e-3)

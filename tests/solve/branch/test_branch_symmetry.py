@@ -5,9 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from rodsweep.solve.branch.special_points import locating
-from rodsweep.solve.branch.special_points.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
-from rodsweep.solve.branch.special_points.points import special_kinds_between
 from scipy.integrate import solve_ivp
 from test_paper import stated
 
@@ -27,6 +24,9 @@ from rodsweep.solve.branch.following import (
     follow_from_cycle,
 )
 from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
+from rodsweep.solve.branch.special import locating
+from rodsweep.solve.branch.special.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
+from rodsweep.solve.branch.special.points import special_kinds_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
     extended_to_whole_period,

@@ -8,15 +8,6 @@ import numpy as np
 import pytest
 from conftest import Command
 from contents import content, same
-from rodsweep.solve.branch.special_points.augmented.functions import FoldFunction
-from rodsweep.solve.branch.special_points.curves import SpecialCurveProblem
-from rodsweep.solve.branch.special_points.point import SpecialKind
-from rodsweep.solve.branch.special_points.special_curves import (
-    CurveEnd,
-    CurvePoint,
-    HalfCurve,
-    SpecialPointCurve,
-)
 from surveyed import survey_only
 from test_paper import stated
 
@@ -31,6 +22,15 @@ from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
+from rodsweep.solve.branch.special.augmented.functions import FoldFunction
+from rodsweep.solve.branch.special.curves import SpecialCurveProblem
+from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.special_curves import (
+    CurveEnd,
+    CurvePoint,
+    HalfCurve,
+    SpecialPointCurve,
+)
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import make_job

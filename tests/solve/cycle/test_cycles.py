@@ -385,7 +385,10 @@ def test_extrema_are_those_of_a_dense_path():
 def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
     m, stages = measures_of(CyclePath(half)), half.states.reshape(-1, half.form.unknowns)
-    power, weights = np.empty((2, len(stages))), np.outer(interval_lengths(12), half.method.weights).ravel()
+    power, weights = (
+        np.empty((2, len(stages))),
+        np.outer(interval_lengths(12), half.collocation.weights).ravel(),
+    )
     write_powers(stages, power, half.semidiscrete)
     mean = power @ weights
     rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)

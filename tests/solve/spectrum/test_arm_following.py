@@ -75,7 +75,8 @@ def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
     path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(20, 60, 160)
     followed = [follow_stretch_of_arms(path, part, REQUEST) for part in np.split(values, 2)]
     accepted, unstable = (
-        np.concatenate([getattr(part, name) for part in followed]) for name in ("accepted", "unstable_count")
+        np.concatenate([getattr(part, name) for part in followed])
+        for name in ("is_accepted", "unstable_count")
     )
     assert accepted.all()
     assert len(counted) < len(values) / 8

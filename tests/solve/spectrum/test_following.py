@@ -74,7 +74,7 @@ def random_strips(count: int):
         i, j = sorted(rng.choice(len(whole), 2, replace=False))
         ends, counts = [], []
         for at, gap in zip((i, j), rng.integers(2, 6, 2), strict=True):
-            rod = whole.rod(int(at))
+            rod = whole.rod_at(int(at))
             w = eigenvalues(rod)
             at_line = float(w[gap - 1].real + w[gap].real) / 2
             ends.append(IntervalEnd(float(whole.path_variables[at]), rod.coefficients, at_line))
@@ -164,7 +164,7 @@ def test_cubics_are_extrapolated_exactly():
 
 def test_coefficients_of_a_line_are_those_of_its_rods():
     for whole in LINES.values():
-        rods = np.array([whole.rod(i).coefficients for i in range(len(whole))])
+        rods = np.array([whole.rod_at(i).coefficients for i in range(len(whole))])
         assert np.array_equal(whole.coefficients, rods)
 
 
@@ -172,7 +172,7 @@ def test_a_double_eigenvalue_is_left_to_the_solver_of_single_points():
     onset = 20.0080206921031
     whole = line("F", onset + np.arange(-10, 10) * 0.01, k1=1e4, k2=1e4, gamma3=1e-4)
     found = solve_stretch(whole, REQUEST)
-    alone = solve_spectrum(whole.rod(10), REQUEST)
+    alone = solve_spectrum(whole.rod_at(10), REQUEST)
     assert found.status[10] == alone.status == SpectrumStatus.accuracy_not_reached
     assert found.elements[10] == alone.elements > 0
     assert found.message[10] == alone.message
@@ -187,7 +187,7 @@ def test_where_no_bound_applies_every_point_is_solved_alone():
     found = solve_stretch(whole, REQUEST)
     assert not found.certified.any()
     for i in range(20):
-        alone = solve_spectrum(whole.rod(i), REQUEST)
+        alone = solve_spectrum(whole.rod_at(i), REQUEST)
         assert found.status[i] == alone.status
         assert np.array_equal(found.eigenvalues[i], alone.eigenvalues, equal_nan=True)
 
