@@ -148,7 +148,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert last.error <= 1e-7 * last.at
     end = curve.vanishing[0]
     assert abs(end.at - BAUTIN_F) <= end.error
-    assert end.row == pytest.approx(BAUTIN_K1, rel=1e-5)
+    assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
     assert curve.vanishing[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
