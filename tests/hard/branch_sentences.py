@@ -44,10 +44,7 @@ def branch_sentences(view, page, keywords, fine):
     true = {rod: RodBranches(fine, rod).curves for rod in rods}
     own = {rod: RodBranches(view, rod).curves for rod in rods}
     kinds = [
-        {
-            rod: [[(s.kind, s.reason) for s in curve.special_points] for curve in each]
-            for rod, each in some.items()
-        }
+        {rod: [[(s.kind, s.reason) for s in curve.special] for curve in each] for rod, each in some.items()}
         for some in (own, true)
     ]
     if kinds[0] != kinds[1]:
@@ -90,7 +87,7 @@ def _one_rod(view, page, fine, own, true):
 
 def _branch_line(view, page, line, own, true):
     """From where to where a branch leads, its cycles, and how wide they beat."""
-    first, last, found = true.special_points[0], true.special_points[-1], []
+    first, last, found = true.special[0], true.special[-1], []
     places = read(page, rf"F = NUMBER \(\+- ({NUMBER})\)", only=line)
     for place, special in zip(places, (first, last), strict=False):
         found.append((line, with_error(place[1][1], place[1][2], special.at)))
@@ -141,9 +138,7 @@ def _special_line(page, line, kind, true):
     for _, match in read(
         page, stated + rf", largest tip y (?:NUMBER|({NUMBER}) \(\+- ({NUMBER})\)) L", only=line
     ):
-        near = min(
-            (s for s in true.special_points if s.kind == kind), key=lambda s: abs(s.at - float(match[1]))
-        )
+        near = min((s for s in true.special if s.kind == kind), key=lambda s: abs(s.at - float(match[1])))
         why = [with_error(match[1], match[2], near.at)]
         for (plain, stated_, error), value in zip(
             ((match[3], match[4], match[5]), (match[6], match[7], match[8])),
@@ -244,7 +239,7 @@ def _grid(view, page, fine, own, true):
         (rod, s)
         for rod, each in true.items()
         for number, curve in enumerate(each, 1)
-        for s in curve.special_points
+        for s in curve.special
         if not 0 < s.meets < number
     ]
     for words, kind in PLURALS.items():

@@ -443,7 +443,7 @@ def branch_figure(d, view, fine):
                     s
                     for each in own.values()
                     for curve in each
-                    for s in curve.special_points
+                    for s in curve.special
                     if BRANCH_WORDS[text] in (s.kind, s.reason)
                 ]
                 values = [s.tip_y_max if name == "y" else s.period for s in of_kind]
@@ -477,7 +477,7 @@ def branch_figure(d, view, fine):
 
 def _beside(curve):
     """(|at/at_H - 1|, y/|a|) of the cycles beside the Hopf points at both ends, until they turn back."""
-    for special, order in ((curve.special_points[0], 1), (curve.special_points[-1], -1)):
+    for special, order in ((curve.special[0], 1), (curve.special[-1], -1)):
         a, at, y = special.amplitude_coefficient, curve.at[::order], curve.y[::order]
         if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
             continue
