@@ -71,7 +71,7 @@ def warm_up_uniform() -> None:
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
     states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknowns))
-    orbit = Orbit.of(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
+    orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
     memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknowns)
     variations = np.zeros((1, len(orbit.values) + 1))
     of_rod = orbit.semidiscrete

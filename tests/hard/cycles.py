@@ -78,7 +78,7 @@ def chain_of(case, parameter, ratio, points):
     memory = NewtonWorkspace()
     start = orbit_from_hopf(form, hopf_point_below(rod), memory)
     found = refined_cycle(start, case.accuracy, memory, parameter)
-    neighbour = Neighbour.of(found, None, parameter, case.accuracy)
+    neighbour = Neighbour.from_cycle(found, None, parameter, case.accuracy)
     for _ in range(points):
         rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
         try:
@@ -86,7 +86,7 @@ def chain_of(case, parameter, ratio, points):
         except Unsolvable:
             return
         yield found
-        neighbour = Neighbour.of(found, neighbour, parameter, case.accuracy)
+        neighbour = Neighbour.from_cycle(found, neighbour, parameter, case.accuracy)
 
 
 def finer(orbit):

@@ -105,7 +105,7 @@ def broken_promises(case: Case) -> list[str]:
     """What of the cycles of a case is further off than it says, or than the accuracy."""
     wrong = []
     for point in islice(cycles_of(case), 0, None, EACH):
-        stored, mesh = BranchPoint.of(point, case.accuracy), mesh_of(point.orbit)
+        stored, mesh = BranchPoint.from_cycle(point, case.accuracy), mesh_of(point.orbit)
         longer = ceil(1.7 * mesh.intervals) + 1
         fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
         exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))

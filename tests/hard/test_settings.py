@@ -43,7 +43,7 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
-from rodsweep.solve.branch.special.curves import SpecialCurveProblem
+from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
@@ -514,7 +514,7 @@ CASES = {
     "CURVE_SECANT_SETTINGS": CURVE,
     "AUGMENTED_SETTINGS": CURVE,
     "END_SETTINGS": CURVE,
-    "CURVE_STEPS": CURVE,
+    "CURVE_STEP_CONTROL": CURVE,
     "NORMAL_FORM_SETTINGS": HOPF,
     "HOPF_COEFFICIENT_SETTINGS": HOPF,
     "GENERALISED_HOPF_SETTINGS": BAUTIN_POINT,

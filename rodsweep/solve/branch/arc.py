@@ -156,7 +156,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
     In the result curvature and multiplier rate are 0, to be set by the caller.
     """
-    own = Scale.of(found.orbit, scale.parameter, scale.min_deflection_unit)
+    own = Scale.at_orbit(found.orbit, scale.parameter, scale.min_deflection_unit)
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)

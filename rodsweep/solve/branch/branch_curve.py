@@ -33,7 +33,7 @@ class BranchPoint:
     within its error."""
 
     @classmethod
-    def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
+    def from_cycle(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle

@@ -194,7 +194,7 @@ def _cycle_of_amplitude(
     if finer:
         start = wanted_mesh(start, aim, stages_for(aim)).interpolated_orbit(start)
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = Scale.of(start, hopf.name, least)
+    scale = Scale.at_orbit(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)

@@ -142,7 +142,7 @@ def first_asymmetric_cycle(
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)
-    scale = Scale.of(whole, name, 0.0)
+    scale = Scale.at_orbit(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()

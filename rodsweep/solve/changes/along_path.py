@@ -71,28 +71,28 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. end: end of the search. box_count: number of evaluations of D in the covering."""
+    crossings. search_end: end of the search. box_count: number of evaluations of D in the covering."""
 
     path: Path
     crossings: list[Crossing]
     gaps: list[tuple[float, float]]
-    end: SearchEnd
+    search_end: SearchEnd
     box_count: int = 0
 
     def restricted_to(self, reach: SearchEnd) -> "AxisCrossings":
         """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
         end."""
-        if reach.p == self.end.p:
+        if reach.p == self.search_end.p:
             return self
         crossings = [c for c in self.crossings if self.path.coordinate(c.at) <= reach.p]
         gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= reach.p]
-        return replace(self, crossings=crossings, gaps=gaps, end=reach)
+        return replace(self, crossings=crossings, gaps=gaps, search_end=reach)
 
     def searched_interval(self, start: float, stop: float) -> tuple[float, float]:
         """The searched part (low, high) of the requested parameter interval from `start` to `stop`."""
-        if not self.end.reason:
+        if not self.search_end.reason:
             return start, stop
-        end = self.path.parameter.value(self.end.p)
+        end = self.path.parameter.value(self.search_end.p)
         return (end, stop) if self.path.is_compliance else (start, end)
 
 
@@ -112,7 +112,7 @@ def transitions(
     edges = problem.interval_edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
-        changes, reach = tracer.changes([*(p for p in edges if p < found.end.p), found.end.p])
+        changes, reach = tracer.changes([*(p for p in edges if p < found.search_end.p), found.search_end.p])
         found = found.restricted_to(reach) if reach.reason else found
         ends = found.searched_interval(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
@@ -172,8 +172,8 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
 def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched_interval(*asked)
-    reason = found.end.reason
-    end = found.path.parameter.value(found.end.p)
+    reason = found.search_end.reason
+    end = found.path.parameter.value(found.search_end.p)
     early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
     return replace(
         counted,

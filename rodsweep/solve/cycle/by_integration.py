@@ -201,7 +201,9 @@ class _MarchedMotion:
             times[0] + period * node_times(MARCHING_SETTINGS.measured_intervals * settled.turns, stages)
         )
         form = StressForm(self.rod, self.beam.mesh)
-        return CyclePath(Orbit.of(form, NO_SYMMETRY, period, form_states(self.beam, form, states), stages))
+        return CyclePath(
+            Orbit.from_states(form, NO_SYMMETRY, period, form_states(self.beam, form, states), stages)
+        )
 
     def _limit_errors(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod.

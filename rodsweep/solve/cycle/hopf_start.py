@@ -245,4 +245,4 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     states = form.layout.state(
         interpolate_stress(form.rod, S, source, target), V @ interpolation_matrix(source, target).T
     )
-    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.stages)
+    return Orbit.from_states(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.stages)

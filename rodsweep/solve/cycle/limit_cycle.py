@@ -169,7 +169,7 @@ def _with_chain_state(
     if along is None:
         return cycle
     eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
-    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, eigenvalues))
+    return replace(cycle, neighbour=Neighbour.from_cycle(found, before, along, accuracy, eigenvalues))
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:

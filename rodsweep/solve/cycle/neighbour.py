@@ -75,7 +75,7 @@ class Neighbour:
     eigenvalues: Complex = field(default_factory=UNKNOWN_EIGENVALUES.copy)
 
     @classmethod
-    def of(
+    def from_cycle(
         cls,
         found: RefinedCycle,
         before: "Neighbour | None",

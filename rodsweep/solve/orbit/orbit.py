@@ -37,7 +37,9 @@ class Orbit:
     values: Array
 
     @classmethod
-    def of(cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int) -> "Orbit":
+    def from_states(
+        cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int
+    ) -> "Orbit":
         """The orbit with the period `period`, in tau2. states: states at t = 0 and at all stages, (1 + K s,
         n)."""
         values = np.append(states.ravel(), period)

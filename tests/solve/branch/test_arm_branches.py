@@ -30,6 +30,6 @@ def test_the_deflection_of_a_shape_does_not_depend_on_the_mesh(order, names):
     bent = form.mesh.lengths * [before[order], behind[order] / SOFTER]
     m3[order] = bent.sum() / (form.mesh.lengths @ [1, 1 / SOFTER])
     x = form.layout.state_with_stresses({"m3": m3[:-1]})
-    orbit = Orbit.of(form, REFLECTION, 1.0, np.array([x] * 7), 3)
+    orbit = Orbit.from_states(form, REFLECTION, 1.0, np.array([x] * 7), 3)
     exact = 2 * JUMP - 1.5 * JUMP**2 + JUMP**3 / 3 + 0.5 * (1 - JUMP) ** 3 / SOFTER
     assert deflection_of(orbit) == pytest.approx(exact, rel=1e-13)

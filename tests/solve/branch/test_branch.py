@@ -19,7 +19,7 @@ from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
-from rodsweep.solve.branch.special.curves import SpecialCurveProblem
+from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd
 from rodsweep.solve.changes.along_path import pair_crossings

@@ -334,7 +334,7 @@ def repeated(half, times):
     states = half.states_at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
     states[later] = REFLECTION.apply(states[later], half.form.layout)
-    return Orbit.of(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
+    return Orbit.from_states(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
@@ -479,7 +479,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     half = orbit_at_fifty()
     monkeypatch.setattr(refinement, "newton", fails)
     points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
-    orbit = Orbit.of(half.form, half.symmetry, repeats * half.period, points, half.stages)
+    orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stages)
     with pytest.raises(Unsolvable):
         refinement.refined_at_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes

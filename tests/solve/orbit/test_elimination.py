@@ -38,7 +38,7 @@ def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
     form = StressForm(rod.changed(gamma1=0.7), uniform_mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
-    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
+    return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
 
 def velocities(orbit):
@@ -155,8 +155,8 @@ def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth)
     states -= 150 * form.layout.state_with_stresses(
         {"n1": np.ones(8)}
     )  # beside the straight rod, which is unstable
-    orbit, border = Orbit.of(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
-    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 0.1), NewtonWorkspace())
+    orbit, border = Orbit.from_states(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
+    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
     assert np.linalg.norm(matrix.propagator) > growth
     A, right = whole_matrix(matrix)
     tangent = matrix.direction(border)

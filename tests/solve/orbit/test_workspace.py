@@ -25,7 +25,7 @@ def orbit_with(stages):
     """Any states: what is tested holds for orbits and for what is none."""
     form = StressForm(ROD, uniform_mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
-    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
+    return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
 
 def matrix_of_a_cycle(orbit, workspace):
@@ -36,7 +36,7 @@ def matrix_of_a_cycle(orbit, workspace):
 
 def matrix_of_a_branch(orbit, workspace):
     """The same with the force as a further unknown."""
-    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 1.0), workspace)
+    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 1.0), workspace)
     return matrix, lambda: matrix.correction(orbit, MOMENT, 0.0)
 
 

@@ -41,7 +41,7 @@ class Scale:
     min_deflection_unit: float
 
     @classmethod
-    def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
+    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "Scale":
         """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
         the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
         deflection, in L."""

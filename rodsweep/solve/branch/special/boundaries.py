@@ -12,7 +12,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import END_SETTINGS, SpecialCurveProblem
+from .curve_problem import END_SETTINGS, SpecialCurveProblem
 from .on_curve import SolvedPoint
 from .point import RowSpecialPoint, SpecialKind, SpecialPoint
 from .special_curves import (
@@ -119,7 +119,7 @@ class _CurvesOfKind:
         behind = 2 * seed + 1
         if ahead not in self.results:
             return [item for item in (ahead, behind) if item not in self.results]
-        half = TracedHalfCurve.of(self.results[ahead]).half
+        half = TracedHalfCurve.from_arrays(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
@@ -135,11 +135,11 @@ class _CurvesOfKind:
 
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through special point `seed`, joined from two halves; None if a half was not followed."""
-        ahead = TracedHalfCurve.of(self.results[2 * seed])
+        ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if ahead.half is None:
             return None
         closed = ahead.half.end is CurveEnd.closed
-        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.of(self.results[2 * seed + 1])
+        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
         curve = SpecialPointCurve.joined(self.kind, ahead.half, behind.half)
@@ -213,7 +213,7 @@ def _trace_half_curve(
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
     near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_distance}
-    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
+    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 
 
 def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:

@@ -55,7 +55,7 @@ def first_point_of_curve(
     )
     orbit = rough.interpolated_orbit(orbit)
     least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
-    scale = Scale.of(orbit, line, least)
+    scale = Scale.at_orbit(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     row_coordinate = rows.coordinate(row)

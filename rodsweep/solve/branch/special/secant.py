@@ -187,7 +187,7 @@ class SecantSearch:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
-        scale = Scale.of(orbit, family.scale.parameter, family.scale.min_deflection_unit)
+        scale = Scale.at_orbit(orbit, family.scale.parameter, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,

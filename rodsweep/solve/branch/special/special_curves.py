@@ -104,7 +104,7 @@ class CurvePoint:
     tip_y_max: float
 
     @classmethod
-    def of(cls, point: SolvedPoint) -> "CurvePoint":
+    def from_solved_point(cls, point: SolvedPoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
         period = point.orbit.period
         return cls(
@@ -145,7 +145,7 @@ class TracedHalfCurve:
         }
 
     @classmethod
-    def of(cls, arrays: Arrays) -> "TracedHalfCurve":
+    def from_arrays(cls, arrays: Arrays) -> "TracedHalfCurve":
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None

@@ -59,7 +59,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     at = np.where(at > run.times[-1], at - period, at)
     states = form_states(beam, form, spline(at))
-    return Orbit.of(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
+    return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 
 def relative_asymmetry(beam: Beam, states: Array) -> float:

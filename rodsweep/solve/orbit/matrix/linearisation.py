@@ -44,14 +44,14 @@ class Linearisation:
             else parameter_derivatives(orbit.form, parameter)
         )
         count = 2 if parameter is None else 3
-        steps, self._by_period = eliminate_at_orbit(orbit.values, count, along, p, factors)
+        steps, self._period_derivative = eliminate_at_orbit(orbit.values, count, along, p, factors)
         self.step = steps[0]
         self.tangent = None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = newton_step_with_factors(
-            orbit.values, self._by_period, orbit.semidiscrete, self._memory.factors
+            orbit.values, self._period_derivative, orbit.semidiscrete, self._memory.factors
         )
         return step
 

@@ -31,7 +31,7 @@ from .on_curve import (
 from .point import SpecialKind, SpecialPoint
 from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
 
-CURVE_STEPS = StepControl(
+CURVE_STEP_CONTROL = StepControl(
     first_length=0.01,
     max_length=0.1,
     min_length=1e-4,
@@ -92,7 +92,7 @@ class SpecialCurveProblem:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
         curve); raises Unsolvable. row: value of the row parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
-        curve = follow_curve(self, first, CURVE_STEPS, self._report)
+        curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
         return with_larger_errors(curve.solutions), self._end_reason(curve)
 
     def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEnd:
@@ -129,7 +129,7 @@ class SpecialCurveProblem:
         # Prediction and point can be compared only on the same mesh.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
-            return StepResult(point, min(off, CURVE_STEPS.max_error), 1.0)
+            return StepResult(point, min(off, CURVE_STEP_CONTROL.max_error), 1.0)
         one = last.step_from(behind[-2])
         other = point.step_from(last)
         return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
