@@ -89,8 +89,8 @@ def search(index=0, **more):
             crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
             open_range=(np.nan, np.nan),
             proved=True,
-            boxes=100,
-            solves=7,
+            box_count=100,
+            solve_count=7,
             unstable_at_end=0,
         ),
         seconds=0.25,
@@ -370,7 +370,7 @@ def solve_thresholds(rod, request):
         os._exit(9)
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
     found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
-    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, boxes=3, solves=4)
+    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, box_count=3, solve_count=4)
     return real.Thresholds(
         status=status, transitions=found, end=request.F_max, seconds=0.01, message="a message"
     )

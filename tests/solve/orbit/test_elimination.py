@@ -132,7 +132,7 @@ def whole_matrix(matrix):
     """Newton's matrix without its last row, of all states, period and parameter, (N, N + 1)."""
     orbit = matrix.orbit
     p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
-    along, columns = parameter_derivatives(orbit.form, matrix.scale.name), np.empty((K, s, 3, n))
+    along, columns = parameter_derivatives(orbit.form, matrix.scale.parameter), np.empty((K, s, 3, n))
     write_right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
     A = np.zeros((len(orbit.values), len(orbit.values) + 1))
     A[:n, :n] -= p.symmetry
