@@ -62,10 +62,10 @@ class FoldFunction:
     whether the derivative is divided by the deflection; without this division the derivative vanishes at a
     Hopf point too."""
 
-    def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
+    def __init__(self, matrix: BorderedMatrix, border: Array, has_small_cycles: bool) -> None:
         self.matrix = matrix
         self.border = border
-        self.has_small_cycles = small
+        self.has_small_cycles = has_small_cycles
         tangent = matrix.direction(border)
         self.vectors = tangent / (matrix.scale.directional_derivative(matrix.orbit, tangent) @ border)
 
