@@ -84,8 +84,8 @@ def dense_count(rod: Rod) -> int | None:
 def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     """Spectra of all rods of a stretch: followed, or else alone, as in a sweep."""
     followed = follow_stretch(stretch, request)
-    for i in np.flatnonzero(~followed.solved).tolist():
-        alone = solve_spectrum(stretch.rod(i), request)
+    for i in np.flatnonzero(~followed.is_solved).tolist():
+        alone = solve_spectrum(stretch.rod_at(i), request)
         for name in (
             "eigenvalues",
             "error_estimate",
@@ -117,12 +117,12 @@ class Comparison:
         for part in parts(whole):
             found = solve_stretch(part, request)
             for i in range(0, len(part), every):
-                self._add_point(part.rod(i), found, i, request)
-                count = dense_count(part.rod(i)) if dense and found.certified[i] else None
+                self._add_point(part.rod_at(i), found, i, request)
+                count = dense_count(part.rod_at(i)) if dense and found.certified[i] else None
                 if count is not None:
                     self.counted += 1
                     if count != found.unstable_count[i]:
-                        self.differences.append(f"{part.rod(i)}: LAPACK counts {count}")
+                        self.differences.append(f"{part.rod_at(i)}: LAPACK counts {count}")
 
     def _add_point(self, rod: Rod, found, i: int, request: SpectrumRequest) -> None:
         self.points += 1

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.model.balance import ad
 
 
 def mixed_form(rod, elements, order):
     """The mixed form on `elements` equal elements of order `order`."""
-    return MixedForm(rod, mesh(elements, order))
+    return MixedForm(rod, uniform_mesh(elements, order))
 
 
 def along(constant, field):
@@ -32,17 +32,17 @@ def reaction(form, X):
 
     F r1 is the power of the force: dU/dt = F r1 - <Gamma V, V> holds to rounding on every mesh.
     """
-    _, V = form.fields(X)
-    WD = -form.mesh.matrices.weak.T
+    _, V = form.stresses_and_velocities(X)
+    WD = -form.mesh.matrices.weak_derivative.T
     return form.mesh.quadrature[-1] * ad(along(form.rod.material.rest, V), V)[..., -1] - V @ WD[:, -1]
 
 
 def energy(form, X):
     """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
-    S, _ = form.fields(X)
+    S, _ = form.stresses_and_velocities(X)
     return form.rod.material.energy(S + along(form.rod.material.tip_stress, S)) @ form.mesh.quadrature
 
 
 def dissipation(form, X):
     """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
-    return form.rod.material.dissipation(form.fields(X)[1]) @ form.mesh.quadrature
+    return form.rod.material.dissipation(form.stresses_and_velocities(X)[1]) @ form.mesh.quadrature

@@ -114,9 +114,9 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     ends included.
     """
     beam, _ = state_on_cycle(orbit)
-    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
+    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.period_parts
     states = orbit.states_at(np.where(turns > 1, turns - 1, turns))
-    states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
+    states[turns > 1] = orbit.symmetry.apply(states[turns > 1], orbit.form.layout)
     z = states * beam.sqrt_compliance[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
 
@@ -147,5 +147,5 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
     """
     beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
-    y = beam.tip(twice[1])[1]
+    y = beam.tip_coordinates(twice[1])[1]
     return largest_y_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))

@@ -30,7 +30,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     orbit_of,
 )
 from rodsweep.bench.study import Measurement, TimedRuns, markdown_table, result_or_error, time_runs
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
@@ -127,7 +127,9 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     """First cycle of AUTO's runs, by the order of the single element in space."""
     near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), along="F"))
     orders = {setting.order for setting in settings}
-    moved = {order: near.on_mesh(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
+    moved = {
+        order: near.on_mesh(uniform_mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders
+    }
     return {
         order: newton(orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         for order, orbit in moved.items()

@@ -62,7 +62,7 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     cvode: the module CVODE_MODULE.
     """
     beam, z, duration = leg
-    arguments = beam.sqrt_compliance, beam.nodal, beam.mesh.matrices
+    arguments = beam.sqrt_compliance, beam.nodal_rod, beam.mesh.matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:

@@ -89,7 +89,7 @@ def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
     pencil = assemble_pencil(mesh.elements, mesh.order)
     n = pencil.nodes
     whole = pencil.dense_terms().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
-    tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.mass[-1]))
+    tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.nodal_masses[-1]))
     return -whole[1, n : 2 * n, n : 2 * n], whole[2, :n, n : 2 * n] + tip, tip
 
 

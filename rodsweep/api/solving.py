@@ -151,7 +151,7 @@ def _solve_joint_variables(together: JointVariables, view: View, shown: Display)
     """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
     progress display.
     """
-    items = together.items(view)
+    items = together.work_items(view)
     results = dict[int, NamedArrays]()
     while items is not None and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])

@@ -58,37 +58,38 @@ class BoundarySolution(NamedTuple):
 class Boundary:
     """A stability boundary in a plane: all Hopf points, or all double real eigenvalues of one sign.
 
-    sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign.
+    eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign.
     """
 
     plane: Plane
-    sign: float
+    eigenvalue_sign: float
 
     def eigenvalue(self, h: float) -> tuple[float, float]:
         """(growth rate, frequency), in 1/tau2, of the eigenvalue at a point whose third coordinate is h."""
         size = math.exp(h)
-        return (self.sign * size, 0.0) if self.sign else (0.0, size)
+        return (self.eigenvalue_sign * size, 0.0) if self.eigenvalue_sign else (0.0, size)
 
-    def equations(self, v: Array) -> tuple[Array, Array, float]:
+    def residual_and_jacobian(self, v: Array) -> tuple[Array, Array, float]:
         """Returns (residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of
         the boundary at v = (x, y, h).
         """
-        return self._double_equations(v) if self.sign else self._hopf_equations(v)
+        return self._double_equations(v) if self.eigenvalue_sign else self._hopf_equations(v)
 
     def tangent(self, v: Array) -> Array:
         """Unit tangent of the boundary at v, (3,)."""
-        _, jacobian, error = self.equations(v)
+        _, jacobian, error = self.residual_and_jacobian(v)
         return BoundarySolution(v, jacobian, error).tangent
 
     def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
         """The point of the boundary on the plane through `guess`, (3,), perpendicular to `normal`, (3,); None
-        if Newton's method fails. guess: start of Newton's method, in the coordinates of `equations`.
+        if Newton's method fails. guess: start of Newton's method, coordinates as in
+        `residual_and_jacobian`.
         """
         v = guess.copy()
         last = math.inf
         for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):
             try:
-                residual, jacobian, blur = self.equations(v)
+                residual, jacobian, blur = self.residual_and_jacobian(v)
             except (ValueError, ArithmeticError):
                 return None
             matrix = np.vstack([jacobian, normal])
@@ -113,7 +114,7 @@ class Boundary:
         return None
 
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
-        """`equations` of Hopf points at v = (x, y, h): D(i exp(h); x, y) = 0."""
+        """`residual_and_jacobian` of Hopf points at v = (x, y, h): D(i exp(h); x, y) = 0."""
         w = complex(0.0, math.exp(v[2]))
         D, D_w, D_x, D_y, _, blur = self.plane.determinant(w, v[0], v[1])
         rows = np.array([D_x, D_y, D_w * w])
@@ -122,9 +123,8 @@ class Boundary:
         return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
 
     def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
-        """`equations` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w = sign
-        exp(h).
-        """
+        """`residual_and_jacobian` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w =
+        sign exp(h)."""
         w = self._real_eigenvalue(v)
         here = self.plane.determinant(w, v[0], v[1])
         slope = (w * here.D_w).real  # w D_w = dD/dh
@@ -142,12 +142,12 @@ class Boundary:
                 step[i] = offset * h
                 shifted = v + step
                 w = self._real_eigenvalue(shifted)
-                neighbour = self.plane.value(w, shifted[0], shifted[1])
+                neighbour = self.plane.determinant_value(w, shifted[0], shifted[1])
                 jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([here.D.real, slope]) / scale
-        return residual, jacobian / scale[:, None], float(here.rounding / scale.min())
+        return residual, jacobian / scale[:, None], float(here.rounding_error / scale.min())
 
     def _real_eigenvalue(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""
-        return complex(self.sign * math.exp(v[2]), 0.0)
+        return complex(self.eigenvalue_sign * math.exp(v[2]), 0.0)

@@ -17,7 +17,7 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX_SETTINGS, box_from_amplification, squared_amplification_between
+from .certificate.box import BOX_SETTINGS, box_from_amplification, squared_amplification_between_rods
 from .certificate.covering import (
     distance_from_zero_bound,
     exponent_changes,
@@ -25,7 +25,7 @@ from .certificate.covering import (
     mean_growth_rates,
 )
 from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
-from .parameter_path import coefficient_derivatives, determinant_along
+from .parameter_path import coefficient_derivatives, determinant_along_path
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class IntervalEnd(NamedTuple):
     line: float
 
 
-class Strip(NamedTuple):
+class UnprovedStrip(NamedTuple):
     """The part above y of the strip over a subinterval of p; D may still have zeros in this part.
 
     p_start, p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: of the
@@ -89,7 +89,7 @@ def interpolate_ends(share: float, first: IntervalEnd, last: IntervalEnd) -> Int
 
 
 @compiled
-def is_free_of_zeros(
+def examine_rectangle(
     at: IntervalEnd, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
 ) -> tuple[bool, float, float]:
     """Returns (proved, cost in y, cost in p). proved: whether D is proved to have no zero on the rectangle
@@ -102,7 +102,7 @@ def is_free_of_zeros(
     if not (half_y > 0 and half_p > 0):  # negative half-widths would pass the tests and prove nothing
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(at.line, y)
-    D, D_w, D_p, S, noise = determinant_along(w, at.coefficients, direction)
+    D, D_w, D_p, S, noise = determinant_along_path(w, at.coefficients, direction)
     rounding = DISC_BOUND_SETTINGS.rounding_over_noise * noise
     centre = bidisc_centre(w, at.coefficients, coefficient_derivatives(at.coefficients, direction), S)
     radii = (math.hypot(half_y, tilt * half_p), half_p)
@@ -140,7 +140,8 @@ def proves_no_crossing(
         first, last = last, first
     depth = -min(first.line, last.line)
     a = math.sqrt(
-        (1 + BOX_SETTINGS.bound_excess) * squared_amplification_between(first.coefficients, last.coefficients)
+        (1 + BOX_SETTINGS.bound_excess)
+        * squared_amplification_between_rods(first.coefficients, last.coefficients)
     )
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
@@ -148,7 +149,7 @@ def proves_no_crossing(
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0
-    stack = [Strip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height * depth)]
+    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
         at = interpolate_ends((start + stop) / 2, first, last)
@@ -161,15 +162,15 @@ def proves_no_crossing(
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             middle = y + half_y if y > 0 else 0.0
             half = ((1 + MOVING_LINE_SETTINGS.overlap) * half_y, (1 + MOVING_LINE_SETTINGS.overlap) * half_p)
-            proved, cost_y, cost_p = is_free_of_zeros(at, middle, direction, half, tilt)
+            proved, cost_y, cost_p = examine_rectangle(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
                 largest = MOVING_LINE_SETTINGS.largest_half_height * math.hypot(at.line, y)
                 half_y = min(MOVING_LINE_SETTINGS.half_height_growth * half_y, largest)
             elif cost_p > cost_y:
                 # Split in p from the height y upwards: the strip below y is already proved for both halves.
-                stack.append(Strip((start + stop) / 2, stop, y, half_y))
-                stack.append(Strip(start, (start + stop) / 2, y, half_y))
+                stack.append(UnprovedStrip((start + stop) / 2, stop, y, half_y))
+                stack.append(UnprovedStrip(start, (start + stop) / 2, y, half_y))
                 break
             else:
                 half_y /= 2

@@ -30,7 +30,7 @@ class CoefficientDerivatives(NamedTuple):
     X2: float
 
 
-class ValueAlong(NamedTuple):
+class PathDeterminantValue(NamedTuple):
     """D, D_w = dD/dw and D_p = dD/dp, all times exp(-S). noise: bound of the rounding error of D exp(-S)."""
 
     D: complex
@@ -129,7 +129,9 @@ def exponent_slopes(
 
 
 @compiled
-def determinant_along(w: complex, coefficients: Coefficients, direction: Coefficients) -> ValueAlong:
+def determinant_along_path(
+    w: complex, coefficients: Coefficients, direction: Coefficients
+) -> PathDeterminantValue:
     """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction:
     d(F, nu, c2, gamma3)/dp.
     """
@@ -144,4 +146,4 @@ def determinant_along(w: complex, coefficients: Coefficients, direction: Coeffic
     square1 = w * (G1 + X1 * w)
     along = T1 * even.s + 4 * (G1 + 2 * X1 * w) * even.d
     along += M1 * (T * even.s_M + 4 * N * even.d_M) + 4 * square1 * (T * even.d_M + 4 * N * even.d_P)
-    return ValueAlong(D, D_w, w / 2 * along, S, noise)
+    return PathDeterminantValue(D, D_w, w / 2 * along, S, noise)

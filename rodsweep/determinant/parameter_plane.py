@@ -9,7 +9,7 @@ from ..model.parameters import CRUSHING_PARAMETERS, PARAMETERS
 from ..model.rod import Rod
 from .arm.determinant import arm_determinant
 from .exponents import ROUND_OFF
-from .parameter_path import ValueAlong, determinant_along
+from .parameter_path import PathDeterminantValue, determinant_along_path
 from .value import DeterminantValue, scaled_determinant
 
 
@@ -77,7 +77,7 @@ class PlaneAxis:
 class ValueOnPlane(NamedTuple):
     """D and the derivatives of D by w, x and y, times exp(-S).
 
-    rounding: rounding error of D exp(-S), including the effect of rounding in w, x and y.
+    rounding_error: rounding error of D exp(-S), including the effect of rounding in w, x and y.
     """
 
     D: complex
@@ -85,7 +85,7 @@ class ValueOnPlane(NamedTuple):
     D_x: complex
     D_y: complex
     S: float
-    rounding: float
+    rounding_error: float
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class Plane:
     axes: tuple[PlaneAxis, PlaneAxis]
 
     @cached_property
-    def standard(self) -> bool:
+    def has_standard_rods(self) -> bool:
         """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
         return self.rod.standard and all(axis.name != "taper" for axis in self.axes)
 
@@ -109,7 +109,7 @@ class Plane:
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        if not self.standard:
+        if not self.has_standard_rods:
             return self._determinant_of_arms(w, x, y)
         (D, D_w, _, S, noise), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
@@ -117,10 +117,14 @@ class Plane:
         blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
-    def value(self, w: complex, x: float, y: float) -> DeterminantValue:
+    def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        return scaled_determinant(w, rod.coefficients) if self.standard else arm_determinant(rod).value(w)
+        return (
+            scaled_determinant(w, rod.coefficients)
+            if self.has_standard_rods
+            else arm_determinant(rod).value(w)
+        )
 
     def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
@@ -134,13 +138,15 @@ class Plane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
         differences.
         """
-        D, D_w, S, noise = self.value(w, x, y)
+        D, D_w, S, noise = self.determinant_value(w, x, y)
         slopes = []
         for which in range(2):
             stencil, h = self.stencil(x, y, which)
             slope = 0j
             for offset, weight in stencil:
-                neighbour = self.value(w, *((x + offset * h, y) if which == 0 else (x, y + offset * h)))
+                neighbour = self.determinant_value(
+                    w, *((x + offset * h, y) if which == 0 else (x, y + offset * h))
+                )
                 slope += weight * neighbour.D * exp(neighbour.S - S) / h
             slopes.append(slope)
         D_x, D_y = slopes
@@ -148,11 +154,13 @@ class Plane:
         return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
     @staticmethod
-    def _determinant_along_axis(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
+    def _determinant_along_axis(
+        w: complex, rod: Rod, axis: PlaneAxis
+    ) -> tuple[PathDeterminantValue, complex]:
         """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
         coordinate of `axis`).
         """
-        value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
+        value = determinant_along_path(w, rod.coefficients, rod.direction(axis.name))
         return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:

@@ -46,12 +46,12 @@ class ForceChange(NamedTuple):
     frequency: float
 
 
-RodsOverForce = tuple[Coefficients, Coefficients]
+CoefficientsOverForce = tuple[Coefficients, Coefficients]
 """Rods that differ in F only: (coefficients at F = 0, derivative of the coefficients by F)."""
 
 
 def onset_between(
-    rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex
+    rods: CoefficientsOverForce, ends: tuple[float, float], before: Complex, after: Complex
 ) -> ForceChange | None:
     """The double real eigenvalue between the two forces `ends`; None if Newton's method does not find it.
 
@@ -74,7 +74,7 @@ def onset_between(
 
 
 def stability_change_between(
-    rods: RodsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
+    rods: CoefficientsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
 ) -> ForceChange | None:
     """The loss or return of stability between the two forces `ends`.
 

@@ -136,7 +136,7 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
 
 
 @compiled
-def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
     """Returns (error, length, wave number) of a uniform rod at w.
 
     error: |D/D'|, in 1/tau2, the distance from w to an eigenvalue to first order, however w was computed. If

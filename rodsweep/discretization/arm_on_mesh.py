@@ -19,11 +19,11 @@ from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
-from .elements.quadrature import gauss_lobatto
+from .elements.quadrature import gauss_lobatto_rule
 from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
 
 
-def material_on(rod: Rod, grid: Mesh) -> Material:
+def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
     """The material of a rod at the nodes of a mesh; compliance, drag and rest of an arm have the shape
     (3, nodes + 1).
 
@@ -31,21 +31,25 @@ def material_on(rod: Rod, grid: Mesh) -> Material:
     """
     if rod.standard:
         return rod.material
-    compliance, drag, rest = _at_nodes(rod.sections(grid.points_inside.ravel()), grid)
+    compliance, drag, rest = _mean_coefficients_at_nodes(
+        rod.sections(grid.points_inside_elements.ravel()), grid
+    )
     return Material(compliance, drag, rod.F, rest)
 
 
-def material_change_on(rod: Rod, name: str, grid: Mesh) -> Material:
-    """The derivative of `material_on` with respect to the coordinate of the parameter `name`: 1/k for a
+def material_derivative_at_nodes(rod: Rod, name: str, grid: Mesh) -> Material:
+    """The derivative of `material_at_nodes` with respect to the coordinate of the parameter `name`: 1/k for a
     stiffness k, else the parameter itself.
     """
     if rod.standard and name != "taper":
         return rod.material_change(name)
-    compliance, drag, rest = _at_nodes(rod.section_changes(name, grid.points_inside.ravel()), grid)
+    compliance, drag, rest = _mean_coefficients_at_nodes(
+        rod.section_changes(name, grid.points_inside_elements.ravel()), grid
+    )
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
-def profile_compliance_on(build: Build, grid: Mesh) -> Array:
+def profile_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
     `build`.
 
@@ -53,18 +57,18 @@ def profile_compliance_on(build: Build, grid: Mesh) -> Array:
     """
     if build.profile is None:
         return np.ones(grid.nodes + 1)
-    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside.ravel())[2:], grid)[0]
+    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside_elements.ravel())[2:], grid)[0]
 
 
-def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
+def jumps_on_mesh(rod: Rod, grid: Mesh) -> Jumps:
     """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of these
     nodes.
     """
-    inside, at = _beside_jumps(rod.build, grid)
+    inside, at = _indices_beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
-    points = grid.points_inside.ravel()[inside]
-    weights = _places_of(grid)[1][inside]
+    points = grid.points_inside_elements.ravel()[inside]
+    weights = _nodes_and_weights_of_points(grid)[1][inside]
     sections = rod.sections(points.ravel())
     c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
@@ -74,22 +78,22 @@ def jumps_on(rod: Rod, grid: Mesh) -> Jumps:
     return Jumps(at, np.ascontiguousarray(sides))
 
 
-def jump_change_on(rod: Rod, name: str, grid: Mesh) -> Array:
+def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
     `name`, (k, 2, 3).
 
     Returns `NO_JUMP_CHANGE` for a rod without jumps and for a linear law, for which the stress at a jump
     depends only on the mean strain.
     """
-    inside, at = _beside_jumps(rod.build, grid)
+    inside, at = _indices_beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_JUMP_CHANGE
-    changes = rod.section_changes(name, grid.points_inside.ravel()[inside].ravel())
+    changes = rod.section_changes(name, grid.points_inside_elements.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
-def _beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
+def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """Returns (points, nodes) of the k jumps. points: indices in `points_inside` of the points before and
     behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
@@ -99,7 +103,7 @@ def _beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]
     return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
 
 
-def _at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
+def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each.
 
     sections: the coefficients at the `points_inside` of the mesh, or derivatives of the coefficients.
@@ -116,15 +120,15 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside`,
     (m, points).
     """
-    element, weights = _places_of(grid)
+    element, weights = _nodes_and_weights_of_points(grid)
     mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / grid.quadrature
     return mean
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _places_of(grid: Mesh) -> tuple[IntegerArray, Array]:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _nodes_and_weights_of_points(grid: Mesh) -> tuple[IntegerArray, Array]:
     """Returns (nodes, weights) of all `points_inside`, (elements (order + 1),) each: node of the mesh, and
     quadrature weight within the element.
     """
-    weights = grid.lengths[:, None] / 2 * gauss_lobatto(grid.order)[1]
+    weights = grid.lengths[:, None] / 2 * gauss_lobatto_rule(grid.order)[1]
     return grid.element_nodes.ravel(), weights.ravel()

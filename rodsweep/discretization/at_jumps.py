@@ -15,21 +15,21 @@ from ..model.compiled.compilation import compiled
 from ..model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
-from .arm_on_mesh import jumps_on
-from .elements.basis import interpolation
+from .arm_on_mesh import jumps_on_mesh
+from .elements.basis import lagrange_interpolation_matrix
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh, interpolation_matrix
-from .elements.quadrature import gauss_lobatto
+from .elements.quadrature import gauss_lobatto_rule
 from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
-STRETCHING = 0
-BENDING = 2
+STRETCHING_STRESS_INDEX = 0
+BENDING_STRESS_INDEX = 2
 """STRETCHING, BENDING: indices of the stretching stress S1 and the bending stress S3, the components of S
 that are discontinuous at a jump."""
 
 
 @compiled
-def split_at_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
+def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
     """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m).
 
     law: number of the constitutive law. q1, q3: means over both sides, (m,). sides: the material on both
@@ -51,10 +51,13 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
     out = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
-    for found, node, sides in zip(out, rod.jumps, rod.sides, strict=True):
-        q1, q3 = (np.ascontiguousarray(S[a, ..., node]).ravel() for a in (STRETCHING, BENDING))
+    for found, node, sides in zip(out, rod.jumps, rod.jump_sides, strict=True):
+        q1, q3 = (
+            np.ascontiguousarray(S[a, ..., node]).ravel()
+            for a in (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX)
+        )
         flat = np.empty((4, q1.size))
-        split_at_jump(rod.law, sides, q1, q3, flat)
+        write_unknowns_beside_jump(rod.law, sides, q1, q3, flat)
         found[...] = flat.reshape(found.shape)
     return out
 
@@ -68,7 +71,9 @@ def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
     fields: Array = S[..., grid.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
         e = node // grid.order
-        for component, before, behind in zip((STRETCHING, BENDING), sides[0], sides[1], strict=True):
+        for component, before, behind in zip(
+            (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX), sides[0], sides[1], strict=True
+        ):
             fields[component, ..., e - 1, -1] = before
             fields[component, ..., e, 0] = behind
     return fields
@@ -84,18 +89,20 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     """
     E = interpolation_matrix(source, target)
     out = S @ E.T
-    there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on(rod, target)
+    there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
     if len(there.nodes):
-        here = jumps_on(rod, source).nodes
-        for column, component in ((3, STRETCHING), (4, BENDING)):
+        here = jumps_on_mesh(rod, source).nodes
+        for column, component in ((3, STRETCHING_STRESS_INDEX), (4, BENDING_STRESS_INDEX)):
             out[component] = (
                 S[component]
-                @ _interpolation_at_jumps(E, source, target, here, there.nodes, there.sides[..., column]).T
+                @ _discontinuous_interpolation(
+                    E, source, target, here, there.nodes, there.jump_sides[..., column]
+                ).T
             )
     return out
 
 
-def _interpolation_at_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
+def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     E: Array, source: Mesh, target: Mesh, here: IntegerArray, there: IntegerArray, shares: Array
 ) -> Array:
     """The interpolation matrix E, (target nodes, source nodes), modified for a field that is discontinuous at
@@ -127,7 +134,7 @@ def _interpolation_at_jumps(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _extrapolation_weights(order: int, starts: bool, stops: bool, first: bool) -> Array:
     """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
     at jumps.
@@ -135,9 +142,9 @@ def _extrapolation_weights(order: int, starts: bool, stops: bool, first: bool) -
     starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. first: whether
     to extrapolate to the first node; otherwise to the last node.
     """
-    x = gauss_lobatto(order)[0]
+    x = gauss_lobatto_rule(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.
     used = slice(int(starts), order + 1 - int(stops))
     row = np.zeros(order + 1)
-    row[used] = interpolation(x[used], np.array([-1.0 if first else 1.0]))[0]
+    row[used] = lagrange_interpolation_matrix(x[used], np.array([-1.0 if first else 1.0]))[0]
     return row

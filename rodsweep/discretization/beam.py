@@ -45,7 +45,7 @@ class Beam(RodOnMesh):
     @cached_property
     def sqrt_compliance(self) -> Array:
         """Square roots of the compliances C, (3, nodes + 1): z = sqrt(C) S, and E - E0 = sqrt(C) z."""
-        return np.sqrt(self.nodal.compliance)
+        return np.sqrt(self.nodal_rod.compliance)
 
     @cached_property
     def crushing_z1(self) -> Array:
@@ -53,31 +53,31 @@ class Beam(RodOnMesh):
 
         At a jump, h1 reaches 0 first on one side if the law is linear, and on both sides at once otherwise.
         """
-        crushed = -self.nodal.rest[0, :-1] / self.sqrt_compliance[0, :-1]
+        crushed = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:
-            for node, sides in zip(self.nodal.jumps, self.nodal.sides, strict=True):
+            for node, sides in zip(self.nodal_rod.jumps, self.nodal_rod.jump_sides, strict=True):
                 # The larger value belongs to the side that is crushed first.
                 crushed[node] = self.sqrt_compliance[0, node] * (-sides[:, 0] / sides[:, 1]).max()
         return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
         scaled = self.layout.stresses(z)
-        return scaled / self._along(scaled)
+        return scaled / self._broadcast_sqrt_compliance(scaled)
 
     def state_of_stresses(self, S: Array) -> Array:
         """States z, (..., unknowns), of stresses S at all nodes, (3, ..., nodes + 1)."""
-        return self.layout.state(S * self._along(S), S)
+        return self.layout.state(S * self._broadcast_sqrt_compliance(S), S)
 
     def state_of_strains(self, strains: Array) -> Array:
         """The state z, (unknowns,), with the given strains (h1, h2, Pi) at all nodes, (3, nodes + 1). Strains
         at the tip are ignored."""
-        return self.layout.state((strains - self.nodal.rest) / self.sqrt_compliance, strains)
+        return self.layout.state((strains - self.nodal_rod.rest_strain) / self.sqrt_compliance, strains)
 
     def state_derivative(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
         flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
-        write_rates(*flat, self.sqrt_compliance, self.nodal, self.mesh.matrices)
+        write_rates(*flat, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
@@ -87,7 +87,7 @@ class Beam(RodOnMesh):
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
         matrices = out.reshape(-1, size, size)
-        write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal, self.mesh.matrices)
+        write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
     def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
@@ -107,6 +107,6 @@ class Beam(RodOnMesh):
         """
         return self.tip_motion(z, direction)[1]
 
-    def _along(self, field: Values) -> Array:
+    def _broadcast_sqrt_compliance(self, field: Values) -> Array:
         """`sqrt_compliance`, reshaped to broadcast against a field (3, ..., nodes + 1)."""
         return self.sqrt_compliance.reshape(3, *(1,) * (field.ndim - 2), -1)

@@ -42,10 +42,10 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
         for k in range(S.shape[1]):
             for i in range(out.shape[2]):
                 node = i - i // (order + 1)
-                out[a, k, i] = rod.rest[a, node] + rod.compliance[a, node] * S[a, k, node]
+                out[a, k, i] = rod.rest_strain[a, node] + rod.compliance[a, node] * S[a, k, node]
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
-        sides = rod.sides[j]
+        sides = rod.jump_sides[j]
         before = index_before_jump(node, order)
         for k in range(S.shape[1]):
             q = LawUnknowns(S[0, k, node], S[2, k, node])
@@ -70,7 +70,7 @@ def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: i
                 out[a, k, i] = rates[a, k, i - i // (order + 1)]
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
-        sides = rod.sides[j]
+        sides = rod.jump_sides[j]
         before = index_before_jump(node, order)
         c1 = rod.compliance[0, node]
         c2 = rod.compliance[1, node]

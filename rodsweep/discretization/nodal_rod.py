@@ -18,31 +18,30 @@ IntegerArray = NDArray[np.int64]
 class NodalRod(NamedTuple):
     """A rod with d stress components at all nodes of a mesh, tip included: an argument of compiled functions.
 
-    tip_stress: stress Sigma(1), (d,). rest: E0, the strain of the straight rod under its force,
-    (d, nodes + 1). compliance, drag: (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are
-    unknowns, (d, nodes + 1). second: -D^T W mobility D, (d, nodes + 1, nodes + 1). unknown_velocities:
-    indices of the components of V that are unknowns. law: number of the constitutive law, see
-    `rodsweep.model.material.response`. jumps: nodes at which the material jumps, increasing, (k,). sides: the
-    material on both sides of each jump, (k, 2, 7), see `rodsweep.model.material.jump`.
-    """
+    tip_stress: stress Sigma(1), (d,). rest_strain: E0, the strain of the straight rod under its force, (d,
+    nodes + 1). compliance, drag: (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are
+    unknowns, (d, nodes + 1). mobility_laplacian: -D^T W mobility D, (d, nodes + 1, nodes + 1).
+    unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law,
+    see `rodsweep.model.material.response`. jumps: nodes at which the material jumps, increasing, (k,).
+    jump_sides: the material on both sides of each jump, (k, 2, 7), see `rodsweep.model.material.jump`."""
 
     tip_stress: Array
-    rest: Array
+    rest_strain: Array
     compliance: Array
     drag: Array
     mobility: Array
-    second: Array
+    mobility_laplacian: Array
     unknown_velocities: IntegerArray
     law: int
     jumps: IntegerArray
-    sides: Array
+    jump_sides: Array
 
 
 class Jumps(NamedTuple):
     """Nodes at which the material jumps, (k,), and the material on both sides of each jump, (k, 2, 7)."""
 
     nodes: IntegerArray
-    sides: Array
+    jump_sides: Array
 
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(SIDE_COLUMNS))))
@@ -58,10 +57,10 @@ class NodalChange(NamedTuple):
     """
 
     tip_stress: Array
-    rest: Array
+    rest_strain: Array
     compliance: Array
     drag: Array
-    sides: Array
+    jump_sides: Array
     """Derivatives of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
 
 
@@ -78,9 +77,9 @@ def nodal_rod(
     jumps: jumps of the material on this mesh.
     """
     size = grid.nodes + 1
-    rest = _at_nodes(material.rest, size)
-    compliance = _at_nodes(material.compliance, size)
-    resistance = _resistance_of(material.drag.tobytes(), material.drag.shape, grid, unknown_velocities)
+    rest = _expanded_to_nodes(material.rest, size)
+    compliance = _expanded_to_nodes(material.compliance, size)
+    resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, grid, unknown_velocities)
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
 
 
@@ -88,15 +87,15 @@ def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) ->
     """The `NodalChange` of a mesh. change: derivative of the material by a parameter. sides: derivatives at
     the jumps, (k, 2, 3), as in `NodalChange`."""
     fields = change.rest, change.compliance, change.drag
-    rest, compliance, drag = (_at_nodes(field, grid.nodes + 1) for field in fields)
+    rest, compliance, drag = (_expanded_to_nodes(field, grid.nodes + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _resistance_of(
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _cached_drag_arrays(
     drag: bytes, shape: tuple[int, ...], grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
-    """The result of `_resistance`, cached by the bytes of the drag, because rods that differ only in F have
+    """The result of `_drag_arrays`, cached by the bytes of the drag, because rods that differ only in F have
     equal drags.
 
     drag, shape: bytes and shape of the array of drags. unknown_velocities: indices of the components of V
@@ -104,25 +103,25 @@ def _resistance_of(
     """
     # Bytes can be a key of the cache, and the array is restored from the bytes.
     values = np.frombuffer(drag).reshape(shape)
-    return _resistance(values if len(shape) > 1 else values[:, None], grid, unknown_velocities)
+    return _drag_arrays(values if len(shape) > 1 else values[:, None], grid, unknown_velocities)
 
 
-def _resistance(
+def _drag_arrays(
     drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """Returns (drag, mobility, second, unknown_velocities), fields of a `NodalRod`. drag: drags of the
     components, (d, 1) or (d, nodes + 1).
     """
-    drag = _at_nodes(drag, grid.nodes + 1)
+    drag = _expanded_to_nodes(drag, grid.nodes + 1)
     mobility = np.zeros(drag.shape)
     eliminated = [a for a in range(len(drag)) if a not in unknown_velocities]
     mobility[eliminated] = 1 / drag[eliminated]
     # The product of the two differentiations of the stress, D* and the weak D, does not depend on the state.
-    second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
+    second = grid.matrices.weak_derivative @ (mobility[:, :, None] * grid.matrices.D)
     return drag, mobility, second, np.array(unknown_velocities, np.int64)
 
 
-def _at_nodes(field: Array, size: int) -> Array:
+def _expanded_to_nodes(field: Array, size: int) -> Array:
     """`field` as an array (d, size). field: (d, size), or one constant per component, (d,) or (d, 1)."""
     out = np.empty((len(field), size))
     out[:] = field.reshape(len(field), -1)

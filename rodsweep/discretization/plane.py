@@ -4,7 +4,7 @@ from ..model.algebra import SE2
 from .stress import balance as stress_balance
 from .stress import jacobian as stress_jacobian
 
-balance = stress_balance.balance.compiled_for(SE2)
-balance_change = stress_balance.balance_change.compiled_for(SE2)
-velocity_balance = stress_balance.velocity_balance.compiled_for(SE2)
-jacobian = stress_jacobian.jacobian.compiled_for(SE2)
+write_balance = stress_balance.write_balance.compiled_for(SE2)
+write_balance_derivative = stress_balance.write_balance_derivative.compiled_for(SE2)
+write_velocity_residuals = stress_balance.write_velocity_residuals.compiled_for(SE2)
+write_jacobian = stress_jacobian.write_jacobian.compiled_for(SE2)

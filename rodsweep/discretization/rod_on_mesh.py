@@ -14,9 +14,9 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.material.laws import LINEAR
-from ..model.material.response import LocalSection, tangent
+from ..model.material.response import LocalSection, stress_tangent
 from ..model.rod import Rod
-from .arm_on_mesh import jumps_on, material_on
+from .arm_on_mesh import jumps_on_mesh, material_at_nodes
 from .at_jumps import interpolate_stress, stresses_beside_jumps
 from .element_strains import write_element_strain_changes, write_element_strains
 from .elements.mesh import Mesh, shape_from_strains
@@ -61,28 +61,28 @@ class RodOnMesh(ABC):
         return self.layout.unknowns
 
     @cached_property
-    def nodal(self) -> NodalRod:
+    def nodal_rod(self) -> NodalRod:
         """The rod at the nodes of the mesh, as an argument of compiled functions."""
         rod = self.rod
         mesh = self.mesh
         law = rod.build.law_number
-        jumps = jumps_on(rod, mesh)
-        return nodal_rod(material_on(rod, mesh), mesh, self.unknown_velocities, law, jumps)
+        jumps = jumps_on_mesh(rod, mesh)
+        return nodal_rod(material_at_nodes(rod, mesh), mesh, self.unknown_velocities, law, jumps)
 
     @property
     def has_continuous_stresses(self) -> bool:
         """Whether S is continuous along the rod. S is continuous if the material does not jump or the law is
         linear.
         """
-        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal.jumps)
+        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
 
     def strains(self, x: Values) -> Values:
         """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the
         mean of both sides.
         """
         S = self.stresses(x)
-        c = self.nodal
-        return _broadcast_to_field(c.rest, S) + _broadcast_to_field(c.compliance, S) * S
+        c = self.nodal_rod
+        return _broadcast_to_field(c.rest_strain, S) + _broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
         """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., elements (order + 1)); at
@@ -90,7 +90,9 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_strains(_flatten_middle_axes(S), self.nodal, self.mesh.order, _flatten_middle_axes(out))
+        write_element_strains(
+            _flatten_middle_axes(S), self.nodal_rod, self.mesh.order, _flatten_middle_axes(out)
+        )
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
@@ -100,12 +102,12 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         dS = self.stresses(change)
-        moved = _broadcast_to_field(self.nodal.compliance, dS) * dS
+        moved = _broadcast_to_field(self.nodal_rod.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strain_changes(
             _flatten_middle_axes(S),
             _flatten_middle_axes(moved),
-            self.nodal,
+            self.nodal_rod,
             self.mesh.order,
             _flatten_middle_axes(out),
         )
@@ -117,21 +119,21 @@ class RodOnMesh(ABC):
         """
         return shape_from_strains(self.mesh, self.element_strains(x), np.zeros(3))
 
-    def tip(self, x: Array) -> Array:
+    def tip_coordinates(self, x: Array) -> Array:
         """Coordinates (x, y) and angle of the tip, in L and rad, (3, ...), for states (..., unknowns)."""
         return self.shape(x)[..., -1]
 
-    def energy(self, x: Array) -> Array:
+    def elastic_energy(self, x: Array) -> Array:
         """Elastic energy U of states x, in k3/L, (...).
 
         For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
         """
         S = self.stresses(x)
-        c = self.nodal
-        nu = _broadcast_to_field(c.rest, S)[0]
+        c = self.nodal_rod
+        nu = _broadcast_to_field(c.rest_strain, S)[0]
         (c1, c2, c3) = _broadcast_to_field(c.compliance, S)
         density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
-        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
@@ -153,7 +155,7 @@ class RodOnMesh(ABC):
         stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
         return stored
 
-    def stresses_on(self, grid: Mesh, x: Array) -> Array:
+    def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:
         """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., grid.nodes + 1)."""
         return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
 
@@ -163,20 +165,20 @@ class RodOnMesh(ABC):
         """
         return float(self.element_strains(x)[0].min())
 
-    def is_convex(self, x: Array) -> bool:
+    def has_convex_energy(self, x: Array) -> bool:
         """Whether the energy of every section is convex in its strain, for one state x, (unknowns,).
 
         Without convexity the equations are ill-posed: the shortest waves of the mesh grow fastest.
         """
         S = self.stresses(x)
-        c = self.nodal
-        sections = np.stack([c.rest[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
-        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.sides, strict=True):
+        c = self.nodal_rod
+        sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
+        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
             # The energy must be convex on each side; a section with the mean material does not exist.
             before, behind = np.column_stack([numbers[:, :3], sides])
             sections[node] = before
             sections = np.vstack([sections, behind])
-        tangents = (tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
+        tangents = (stress_tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
 
 

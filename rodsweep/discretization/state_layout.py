@@ -14,10 +14,10 @@ from ..model.compiled.compilation import compiled_for_vectors
 
 STRESS_NAMES = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stress components, by the number of components: 3 in the plane, 6 in space."""
-PLANE_COMPONENTS = 3
+PLANE_COMPONENT_COUNT = 3
 BENDING_INDEX = 2
-"""PLANE_COMPONENTS: number of stress components in the plane. BENDING_INDEX: index of the component m3. Both
-constants are for compiled code."""
+"""PLANE_COMPONENT_COUNT: number of stress components in the plane. BENDING_INDEX: index of the component m3.
+Both constants are for compiled code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,21 +37,21 @@ class StateLayout:
     def unknowns(self) -> int:
         return self.components * self.nodes + len(self.unknown_velocities) * (self.nodes + 1)
 
-    def field(self, x: Values, name: str) -> Values:
+    def stress_field(self, x: Values, name: str) -> Values:
         """The stress `name` of states x at all nodes except the tip: a view, (..., nodes)."""
-        first = self.index(name)
+        first = self.stress_index(name)
         return x[..., first : first + self.nodes]
 
-    def index(self, name: str, node: int = 0) -> int:
+    def stress_index(self, name: str, node: int = 0) -> int:
         """Index in a state of the stress `name` at a node; node 0 is the clamp."""
         return STRESS_NAMES[self.components].index(name) * self.nodes + node
 
     def stress_at(self, x: Values, name: str, node: int = 0) -> Values:
         """The stress `name` of states x at one node, (...)."""
-        at: Values = x[..., self.index(name, node)]
+        at: Values = x[..., self.stress_index(name, node)]
         return at
 
-    def transverse(self, x: Values) -> Values:
+    def transverse_unknowns(self, x: Values) -> Values:
         """All unknowns of planar states x except the axial stress n1, a view; all these unknowns are 0 for a
         straight rod.
         """
@@ -87,11 +87,11 @@ class StateLayout:
             [*parts, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1
         )
 
-    def vector(self, values: dict[str, Array]) -> Array:
+    def state_with_stresses(self, values: dict[str, Array]) -> Array:
         """A vector (unknowns,) with the given stresses: {name: values, (nodes,)}; all other entries are 0."""
         vector = np.zeros(self.unknowns)
         for name, numbers in values.items():
-            self.field(vector, name)[:] = numbers
+            self.stress_field(vector, name)[:] = numbers
         return vector
 
 
@@ -99,7 +99,7 @@ def plane_layout(nodes: int, unknown_velocities: tuple[int, ...] = ()) -> StateL
     """Layout of the states of a rod in the plane. nodes: number of nodes without the tip. unknown_velocities:
     indices of the components of V that are unknowns.
     """
-    return StateLayout(PLANE_COMPONENTS, nodes, unknown_velocities)
+    return StateLayout(PLANE_COMPONENT_COUNT, nodes, unknown_velocities)
 
 
 @compiled_for_vectors

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..determinant.parameter_path import Path
 from ..determinant.stability_changes import stability_change_between
-from ..discretization.elements.mesh import mesh
+from ..discretization.elements.mesh import uniform_mesh
 from ..discretization.stress.form import StressForm
 from ..model.material.build import Build
 from ..model.material.profile import Profile
@@ -17,7 +17,7 @@ from ..model.rod import Rod
 from .changes.thresholds import ThresholdsRequest, solve_thresholds
 from .cycle.limit_cycle import solve_cycle
 from .cycle.reference_rod import REFERENCE_REQUEST
-from .orbit.matrix.linearisation import change_along, reduced_variations
+from .orbit.matrix.linearisation import parameter_derivatives, reduced_variations
 from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
@@ -69,10 +69,12 @@ def warm_up_uniform() -> None:
     w = np.ones((1, 2), dtype=complex)
     stability_change_between((SAMPLE_ROD.coefficients, SAMPLE_ROD.direction("F")), (1.0, 2.0), -w[0], w[0], 2)
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
-    form = StressForm(SAMPLE_ROD, mesh(1, 4))
+    form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
     states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknowns))
-    orbit = Orbit.of(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
+    orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
     memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknowns)
     variations = np.zeros((1, len(orbit.values) + 1))
     of_rod = orbit.semidiscrete
-    reduced_variations(orbit.values, of_rod, change_along(form, "F"), variations, of_rod, memory.factors)
+    reduced_variations(
+        orbit.values, of_rod, parameter_derivatives(form, "F"), variations, of_rod, memory.factors
+    )

@@ -131,21 +131,22 @@ class ChunkQueue:
 
 
 class ItemChooser(Protocol):
-    """Chooses the items to solve next, the most urgent item first, from the results of solved items."""
+    """Chooses the items to solve next from the results of solved items."""
 
-    def items_to_solve(self, results: Mapping[int, Any]) -> list[int]: ...
+    def items_to_solve(self, results: Mapping[int, Any]) -> list[int]:
+        """Numbers of the items still to be solved, most urgent first; empty if no item is left. results:
+        results of the solved items, by number."""
 
 
 class DependentItemQueue(ChunkQueue):
     """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk.
 
-    work: chooses the next items from the results. results: results of solved items, by number of the item; at
-    first from an earlier run, later also from the reports. ranks: number of ranks.
-    """
+    item_chooser: chooses the next items from the results. results: results of solved items, by number of the
+    item; at first from an earlier run, later also from the reports. ranks: number of ranks."""
 
-    def __init__(self, work: ItemChooser, results: dict[int, Any], ranks: int):
+    def __init__(self, item_chooser: ItemChooser, results: dict[int, Any], ranks: int):
         super().__init__([], ranks)
-        self.work = work
+        self.item_chooser = item_chooser
         self.results = results
         self.in_progress: dict[int, IndexRange] = {}
         """Range of the item that a rank is solving, by rank."""
@@ -153,9 +154,9 @@ class DependentItemQueue(ChunkQueue):
 
     @property
     def ready_items(self) -> list[int]:
-        """Items that `work` has chosen and that no rank is solving, the most urgent item first."""
+        """Items that `item_chooser` has chosen and that no rank is solving, the most urgent item first."""
         if self._items_to_solve is None:
-            self._items_to_solve = self.work.items_to_solve(self.results)
+            self._items_to_solve = self.item_chooser.items_to_solve(self.results)
         in_hand = {first for first, _ in self.in_progress.values()}
         return [item for item in self._items_to_solve if item not in in_hand]
 

@@ -89,7 +89,7 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
         _special_point_values(one, starts[number - 1], after.get(one.at))
         | {"special_branch": number, "special_meets": others.get((number, index), -1)}
         for number, curve in enumerate(result.curves, 1)
-        for index, one in enumerate(curve.special)
+        for index, one in enumerate(curve.special_points)
     ]
     known = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
@@ -109,7 +109,10 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        for breaking, index in ((curve.start_breaking, 0), (curve.end_breaking, len(curve.special) - 1)):
+        for breaking, index in (
+            (curve.start_breaking, 0),
+            (curve.end_breaking, len(curve.special_points) - 1),
+        ):
             if breaking is not None:
                 numbers[number, index] = breaking.branch
                 numbers[breaking.branch, breaking.index] = number

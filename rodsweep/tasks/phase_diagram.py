@@ -126,7 +126,7 @@ class PhaseDiagramTask(CertifiedTask):
             warm_up=warm_up_branches,
             solve=solve,
             record=lambda index, result: (
-                of_rows.record(index, result.row) | cycles_record(result, request.name)
+                of_rows.record(index, result.straight_rod_row) | cycles_record(result, request.name)
             ),
         )
 
@@ -157,6 +157,6 @@ def row_values(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
     line: parameter that varies along the row. most: length of the list of crossings.
     """
     classes = {"class": result.rod_class, "unstable_count": result.unstable_count}
-    changes = crossing_values(result.changes, most, line, "crossing_at")
-    certified = result.changes.transitions.proved_to_the_end
+    changes = crossing_values(result.thresholds, most, line, "crossing_at")
+    certified = result.thresholds.transitions.proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

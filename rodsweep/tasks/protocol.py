@@ -10,6 +10,7 @@ import numpy as np
 from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
+from ..sweep.chunk_queue import ItemChooser
 from ..sweep.cost_estimate import Estimate
 from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
@@ -26,16 +27,9 @@ CheckRow = tuple[str, bool, str]
 """Row of the table printed by `check`: (effect or result, whether it is modelled, reason)."""
 
 
-class WorkItems(Protocol):
-    """Work items, numbered from 0, for variables that depend on all points. The object is sent to all
-    ranks.
-    """
-
-    def items_to_solve(self, results: Mapping[int, NamedArrays]) -> list[int]:
-        """Numbers of the items still to be solved, most urgent first; empty if no item is left.
-
-        results: results of the finished items, by number.
-        """
+class WorkItems(ItemChooser, Protocol):
+    """Work items, numbered from 0, for variables that depend on all points: an `ItemChooser` that also
+    describes its items. The object is sent to all ranks."""
 
     def item_label(self, item: int) -> str:
         """Text describing an item, for the progress display and the log."""
@@ -44,7 +38,7 @@ class WorkItems(Protocol):
 class JointVariables(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
-    def items(self, view: View) -> Any:
+    def work_items(self, view: View) -> WorkItems | None:
         """The work items to be divided among the ranks; None if there are no work items. view: the file with
         all points.
         """

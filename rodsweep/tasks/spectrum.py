@@ -180,7 +180,7 @@ class SpectrumTask(CertifiedTask):
         varied = self.points.varying_parameters[stretches.axis]
         path = Path(self.points.rod(int(indices[0])), varied)
         found = follow_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
-        return StretchResult(spectrum_values(found.spectra), found.solved)
+        return StretchResult(spectrum_values(found.spectra), found.is_solved)
 
 
 def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:

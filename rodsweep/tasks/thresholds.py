@@ -90,8 +90,8 @@ def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at
         "open_from": found.open_range[0],
         "open_to": found.open_range[1],
         "certified": found.proved,
-        "boxes": found.boxes,
-        "solves": found.solves,
+        "boxes": found.box_count,
+        "solves": found.solve_count,
         "seconds": result.seconds,
         "status": int(result.status),
     }

@@ -10,7 +10,7 @@ from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import exclusive_solve
-from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with
+from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
@@ -147,7 +147,7 @@ def span_of(values: list[float | None]) -> Span | None:
 
 def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> FlutterForces:
     """All thresholds of the straight arm with the given drag, at forces from 0 to `end`."""
-    thresholds = solve_thresholds(rod_with(arm, drag), replace(SEARCH_REQUEST, F_max=end))
+    thresholds = solve_thresholds(rod_with_drag(arm, drag), replace(SEARCH_REQUEST, F_max=end))
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 

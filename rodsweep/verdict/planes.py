@@ -57,7 +57,7 @@ def planes_of(arm: SlenderArm) -> Planes:
     """Planes of motion of an arm, with solved thresholds: two for a rectangular section, one for other
     sections.
     """
-    if arm.isotropic:
+    if arm.is_equally_stiff:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
     other = with_exchanged_sides(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")

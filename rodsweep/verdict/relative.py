@@ -14,7 +14,7 @@ import numpy as np
 
 from ..determinant.certificate.covering import cover_with_boxes
 from ..determinant.certificate.first_boxes import first_boxes
-from ..determinant.parameter_path import Path, coefficients_at, determinant_along
+from ..determinant.parameter_path import Path, coefficients_at, determinant_along_path
 from ..determinant.roots.newton import LocatedZero
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
@@ -62,21 +62,21 @@ def plane_rods(
     build: constitutive law and profile. taper: ratio of tip to base radius. If given, `build` and `taper`
     replace the values of the arm.
     """
-    planes = [(_in_its_plane(arm, build, taper), 1.0)]
-    if not arm.isotropic:
+    planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
+    if not arm.is_equally_stiff:
         other = with_exchanged_sides(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
-        planes.append((_in_its_plane(other, build, taper), scale))
+        planes.append((_rod_in_its_plane(other, build, taper), scale))
     return planes
 
 
-def _in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
+def _rod_in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
     """The arm as a rod that bends in the plane of the section's height. build, taper: as in `plane_rods`."""
-    rod = rod_with(arm, arm.drags[0], build)
+    rod = rod_with_drag(arm, arm.drags[0], build)
     return rod if taper is None else replace(rod, taper=taper)
 
 
-def rod_with(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
+def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
     """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
     section's height. build: constitutive law and profile; None for the build of the arm.
     """
@@ -162,7 +162,7 @@ def _grows(path: Path, zero: LocatedZero) -> bool:
     """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
     d Re w/dp > 0.
     """
-    there = determinant_along(
+    there = determinant_along_path(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )
     return bool((-there.D_p / there.D_w).real > 0)

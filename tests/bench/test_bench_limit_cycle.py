@@ -64,9 +64,9 @@ def test_returns_lie_on_the_section():
         1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     )
     found = tip_returns(at.beam, steps)
-    angle = at.beam.tip(found.states)[2]
+    angle = at.beam.tip_coordinates(found.states)[2]
     assert len(found.times) >= 6
-    assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip(steps.states)[2]).max()
+    assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip_coordinates(steps.states)[2]).max()
 
 
 def test_interpolation_in_the_logarithms():

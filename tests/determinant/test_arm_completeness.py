@@ -7,14 +7,14 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.arm.completeness import (
-    COMPLETENESS,
+    COMPLETENESS_SETTINGS,
     points_right_of_hull,
     prove_complete,
     remainder_of_sum,
 )
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
-from rodsweep.determinant.arm.hull.region import Hull
+from rodsweep.determinant.arm.hull.region import EigenvalueHull
 from rodsweep.determinant.arm.newton import refine_eigenvalue
 from rodsweep.model.rod import Rod
 
@@ -55,8 +55,16 @@ def test_a_number_that_is_no_eigenvalue_proves_nothing():
         assert not prove_complete(line, more, np.append(error, 0.0), determinant, hull)[0]
 
 
-@pytest.mark.parametrize("k", COMPLETENESS.point_counts)
-@pytest.mark.parametrize("hull", [Hull(0.0, 0.0), Hull(7.0, 0.0), Hull(7.0, 0.1), Hull(300.0, 0.05)])
+@pytest.mark.parametrize("k", COMPLETENESS_SETTINGS.point_counts)
+@pytest.mark.parametrize(
+    "hull",
+    [
+        EigenvalueHull(0.0, 0.0),
+        EigenvalueHull(7.0, 0.0),
+        EigenvalueHull(7.0, 0.1),
+        EigenvalueHull(300.0, 0.05),
+    ],
+)
 def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_line(k, hull):
     line = -1000.0
     points = points_right_of_hull(line, hull.a, hull.c, k)
@@ -66,7 +74,7 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     phi = 1 / np.prod(points[:, None, None] - v, axis=0)
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
-    none, level = np.empty(0, complex), ArmDeterminant(rod).level(points[-1])
+    none, level = np.empty(0, complex), ArmDeterminant(rod).propagators_for(points[-1])
     least = remainder_of_sum(line, none, np.empty(0), hull, points, level).least_contribution
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real

@@ -10,7 +10,7 @@ from rodsweep.determinant.arm.count.count import count_right_of
 from rodsweep.determinant.arm.count.modes_near_axis import modes_near_axis
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
-from rodsweep.determinant.arm.hull.region import Hull, distance_and_normal
+from rodsweep.determinant.arm.hull.region import EigenvalueHull, distance_and_normal
 from rodsweep.determinant.arm.newton import refine_eigenvalue, root_error
 from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
@@ -77,7 +77,7 @@ def test_hull_of_a_uniform_rod_has_the_box_of_the_closed_form(rod):
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.8])
 def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
     rng = np.random.default_rng(1)
-    hull = Hull(7.0, share)
+    hull = EigenvalueHull(7.0, share)
     n = np.linspace(0, 200, 40_001)
     for _ in range(40):
         w = complex(rng.uniform(-300, 100), rng.uniform(0, 300))
@@ -143,7 +143,7 @@ def test_a_count_ends_whichever_elements_exist(W):
     rod = Rod(F=0.4, k1=1e5, k2=1.0, gamma3=1e-3, taper=0.1)
     alone = count_right_of(-1.3, ArmDeterminant(rod), hull_of(rod))
     determinant = ArmDeterminant(rod)
-    determinant.level(W)
+    determinant.propagators_for(W)
     assert count_right_of(-1.3, determinant, hull_of(rod)).number == alone.number
 
 

@@ -136,7 +136,7 @@ ARMS = [
 def test_left_out_powers_of_w_do_not_matter(arm, z):
     """The propagators and their derivatives from the powers that count, against all in long doubles."""
     for size in (20.0, 2e3, 2e5):
-        W, polynomials = ArmDeterminant(ARMS[arm]).level(size, 1.0)
+        W, polynomials = ArmDeterminant(ARMS[arm]).propagators_for(size, 1.0)
         terms = polynomials.shape[1]
         powers = powers_and_derivatives(complex(z), terms)
         assert len(powers) < terms or abs(z) > 1e-4

@@ -7,10 +7,10 @@ from reference.random_arms import random_arm
 from rodsweep.determinant.arm.along_path import ArmAlongPath
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.family import (
-    determinant_in_family,
-    eigenvalue_in_family,
+    determinant_of_family_arm,
+    eigenvalue_of_family_arm,
     interpolated_family,
-    propagators_at,
+    write_propagators,
 )
 from rodsweep.determinant.arm.value import path_value_by_chain
 from rodsweep.determinant.parameter_path import Path
@@ -24,8 +24,8 @@ PLACES = (-3.0 + 0j, 60j, -300 + 70j, -2000 + 0j, 3000 + 100j)
 def along(family, w, p):
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)
-    propagators_at(family, p, polynomials, changes)
-    return path_value_by_chain(w, family.W, polynomials, changes)
+    write_propagators(family, p, polynomials, changes)
+    return path_value_by_chain(w, family.largest_w, polynomials, changes)
 
 
 @pytest.mark.parametrize("name", ["F", "k1", "k2", "gamma3", "taper"])
@@ -47,7 +47,7 @@ def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, see
             blur = 1e-13 + 20 * own.noise / abs(own.D)
             assert abs(here.D * scale / own.D - 1) < blur
             assert abs(here.D_w * scale / own.D_w - 1) < 20 * blur
-            assert determinant_in_family(family, w, p).D == here.D
+            assert determinant_of_family_arm(family, w, p).D == here.D
             if 0 < share < 1:
                 slope = between.derivative_by_p(w, p, own.S)
                 assert abs(here.D_p * scale - slope) < 1e-5 * (abs(slope) + abs(own.D / p))
@@ -73,7 +73,7 @@ def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
 def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
     family = interpolated_family(path, 10.0, 20.0, 4.0**5)
-    w, slope, error = eigenvalue_in_family(family, -1.0 + 175j, 15.4627583986)
+    w, slope, error = eigenvalue_of_family_arm(family, -1.0 + 175j, 15.4627583986)
     assert abs(w - 175.530930682j) < 1e-8
     own = ArmAlongPath(path).eigenvalue(w, 15.4627583986)
     assert abs(w - own[0]) <= 4 * (error + own[2])

@@ -9,7 +9,7 @@ import pytest
 
 from rodsweep.determinant.certificate.box import (
     squared_amplification,
-    squared_amplification_over,
+    squared_amplification_on_path,
     zero_free_radius,
 )
 from rodsweep.determinant.certificate.covering import cover_with_boxes, distance_from_zero_bound, examine_box
@@ -19,7 +19,7 @@ from rodsweep.determinant.parameter_path import (
     Path,
     coefficient_derivatives,
     coefficients_at,
-    determinant_along,
+    determinant_along_path,
 )
 from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import scaled_determinant
@@ -47,7 +47,7 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
     p = path.coordinate(getattr(path.rod, path.name))
     w = complex(-3.0, 41.0)
     assert coefficients_at(p, path.origin, path.direction) == pytest.approx(path.rod.coefficients, rel=1e-12)
-    D, D_w, D_p, S, _ = determinant_along(w, path.rod.coefficients, path.direction)
+    D, D_w, D_p, S, _ = determinant_along_path(w, path.rod.coefficients, path.direction)
     assert (D, D_w, S) == scaled_determinant(w, path.rod.coefficients)[:3]
 
     def value(x):
@@ -78,7 +78,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     sharpest = inf
     for eta in (2.0, 190.0, 2500.0):
         w = complex(0.0, eta)
-        D, D_w, D_p, S, _ = determinant_along(w, c, direction)
+        D, D_w, D_p, S, _ = determinant_along_path(w, c, direction)
         centre = bidisc_centre(w, c, coefficient_derivatives(c, direction), S)
         for share in (0.3, 0.05):
             for rates in ((0j, 0j), (D_w / D, D_p / D)):
@@ -155,7 +155,7 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
     value = getattr(path.rod, path.name)
     shares = (1.01, 2.5) if path.name == "k1" else (0.4, 0.99)
     ends = sorted(path.coordinate(share * value) for share in shares)
-    largest = squared_amplification_over(path, *ends)
+    largest = squared_amplification_on_path(path, *ends)
     radius = zero_free_radius(path, *ends, 1e3)
     assert radius > 0
     for p in np.linspace(*ends, 9):

@@ -7,8 +7,8 @@ from hard.exact import derivatives
 from reference import determinant as reference
 from rods import rod_of
 
-from rodsweep.determinant.parameter_path import determinant_along
-from rodsweep.determinant.value import DETERMINANT_SETTINGS, newton_correction, scaled_determinant
+from rodsweep.determinant.parameter_path import determinant_along_path
+from rodsweep.determinant.value import DETERMINANT_SETTINGS, newton_correction_and_scales, scaled_determinant
 from rodsweep.model.rod import Rod
 
 
@@ -105,7 +105,7 @@ def test_nothing_is_lost_where_exponents_vanish(rod, place):
     w, known = complex(at(place, *rod)[0]), rod_of(*rod)
     exact = derivatives(w, rod, ("w", "F", "c1", "c2", "gamma3"))
     for name, along in zip(("F", "k1", "k2", "gamma3"), exact[1:], strict=True):
-        found = determinant_along(w, known.coefficients, known.direction(name))
+        found = determinant_along_path(w, known.coefficients, known.direction(name))
         size = mp.exp(-mp.mpf(found[3]))
         assert abs(mp.mpc(found[0]) - reference.D(w, *rod, digits=40) * size) < min(found[4], 1e-12)
         assert abs(mp.mpc(found[1]) - exact[0] * size) < 1e-12 * abs(found[1])
@@ -115,7 +115,8 @@ def test_nothing_is_lost_where_exponents_vanish(rod, place):
 def test_the_length_of_newtons_correction_does_not_shrink_where_exponents_vanish():
     for rod in PULLS_AND_PUSHES:
         beside, there = (
-            newton_correction(complex(at(d, *rod)[0]), rod_of(*rod).coefficients)[1] for d in (0.3, 1e-14)
+            newton_correction_and_scales(complex(at(d, *rod)[0]), rod_of(*rod).coefficients)[1]
+            for d in (0.3, 1e-14)
         )
         assert there > beside / 10
 
@@ -138,12 +139,12 @@ def test_filament_roots_are_those_of_the_cantilever():
     for n in range(1, 5):
         b = mp.findroot(lambda b: mp.cosh(b) * mp.cos(b) + 1, (n - 0.5) * mp.pi)
         w = float(-(b**4))
-        assert newton_correction(complex(w), rod.coefficients)[0] < 1e-13 * abs(w)
+        assert newton_correction_and_scales(complex(w), rod.coefficients)[0] < 1e-13 * abs(w)
 
 
 def test_newton_correction_is_the_distance_to_the_root():
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     root = complex(reference.refine(mp.mpc(-54.3, 145.7), 30, 1e4, 1e4, 1e-4))
     for distance in (1e-3, 1e-6j, 1e-9 - 1e-9j):
-        found = newton_correction(root + distance, rod.coefficients)[0]
+        found = newton_correction_and_scales(root + distance, rod.coefficients)[0]
         assert found == pytest.approx(abs(distance), rel=1e-2)

@@ -77,14 +77,14 @@ def test_values_at_points_are_those_of_the_polynomials():
     pencil = ArmPencil(ArmMesh((0.0, 0.3, 1.0), 6))
     points = np.linspace(0, 1, 17)
     nodal = pencil.positions**5
-    np.testing.assert_allclose(pencil.evaluation(points) @ nodal, points**5, atol=1e-14)
+    np.testing.assert_allclose(pencil.evaluation_matrix(points) @ nodal, points**5, atol=1e-14)
 
 
 def test_coefficients_are_sampled_at_the_nodes_and_on_their_own_side_of_a_jump():
     """1e-9 of an element beside its ends moved the largest y of cycles next to Hopf points by 1e-8."""
     mesh = Elements((0.0, 0.3, 0.3 + 1e-6, 1.0), 12)
     edges = np.array(mesh.edges)
-    points = mesh.points_inside
+    points = mesh.points_inside_elements
     assert (np.diff(points) > 0).all()
     assert (points[:, 0] > edges[:-1]).all()
     assert (points[:, -1] < edges[1:]).all()

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.basis import differentiation, interpolation
-from rodsweep.discretization.elements.mesh import mesh, shape_from_strains
-from rodsweep.discretization.elements.quadrature import gauss, gauss_lobatto
+from rodsweep.discretization.elements.basis import differentiation_matrix, lagrange_interpolation_matrix
+from rodsweep.discretization.elements.mesh import shape_from_strains, uniform_mesh
+from rodsweep.discretization.elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 from rodsweep.discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
     finer_resolution,
@@ -13,12 +13,13 @@ from rodsweep.discretization.elements.resolution import (
     resolution_for,
 )
 from rodsweep.discretization.straight.pencil import assemble_pencil
-from rodsweep.discretization.stress.tip_motion import tip_matrices, tip_motion
+from rodsweep.discretization.stress.tip_motion import tip_matrices, write_tip_motion
 from rodsweep.model.rod import Rod
 
 
 @pytest.mark.parametrize(
-    ("rule", "n", "degree"), [(gauss, 9, 17), (gauss_lobatto, 9, 17), (gauss_lobatto, 40, 79)]
+    ("rule", "n", "degree"),
+    [(gauss_legendre_rule, 9, 17), (gauss_lobatto_rule, 9, 17), (gauss_lobatto_rule, 40, 79)],
 )
 def test_quadrature_is_exact_to_its_degree_and_no_further(rule, n, degree):
     x, w = rule(n)
@@ -31,11 +32,11 @@ def test_quadrature_is_exact_to_its_degree_and_no_further(rule, n, degree):
 
 @pytest.mark.parametrize("p", [1, 2, 7, 33, 64])
 def test_basis_reproduces_polynomials_and_their_slopes(p):
-    x, _ = gauss_lobatto(p)
+    x, _ = gauss_lobatto_rule(p)
     points = np.linspace(-1, 1, 23)
     chebyshev = np.polynomial.chebyshev.Chebyshev.basis(p)
-    assert np.abs(interpolation(x, points) @ chebyshev(x) - chebyshev(points)).max() < 1e-12
-    slope = differentiation(x) @ chebyshev(x) - chebyshev.deriv()(x)
+    assert np.abs(lagrange_interpolation_matrix(x, points) @ chebyshev(x) - chebyshev(points)).max() < 1e-12
+    slope = differentiation_matrix(x) @ chebyshev(x) - chebyshev.deriv()(x)
     assert np.abs(slope).max() < 1e-12 * max(p, 2) ** 4
 
 
@@ -43,8 +44,8 @@ def dense(rod, elements, order):
     """All finite eigenvalues of the pencil by LAPACK, largest real part first."""
     pencil = assemble_pencil(elements, order)
     A = np.zeros((pencil.unknowns,) * 2)
-    A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
-    T = np.linalg.solve(A, np.diag(pencil.inertia(rod)))[: 2 * pencil.nodes, : 2 * pencil.nodes]
+    A[pencil.rows, pencil.columns] = pencil.stiffness_entries(rod)
+    T = np.linalg.solve(A, np.diag(pencil.mass_diagonal(rod)))[: 2 * pencil.nodes, : 2 * pencil.nodes]
     inverse = np.linalg.eigvals(T)
     w = 1 / inverse[np.abs(inverse) > 1e-13 * np.abs(inverse).max()]
     return w[np.argsort(-w.real)]
@@ -64,7 +65,7 @@ def test_pencil_at_rest_is_symmetric_and_negative():
     pencil = assemble_pencil(2, 7)
     rod = Rod(F=0.0, k1=50.0, k2=30.0, gamma3=0.5)
     A = np.zeros((pencil.unknowns,) * 2)
-    A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
+    A[pencil.rows, pencil.columns] = pencil.stiffness_entries(rod)
     n = pencil.nodes
     sign = np.where(np.arange(3 * n) < 2 * n, 1.0, -1.0)[:, None]  # the third row is a constraint
     assert np.abs(sign * A - (sign * A).T).max() < 1e-12 * np.abs(A).max()
@@ -74,10 +75,10 @@ def test_pencil_at_rest_is_symmetric_and_negative():
 
 def test_evaluation_at_points_is_the_polynomial():
     pencil = assemble_pencil(3, 6)
-    x, _ = gauss_lobatto(6)
+    x, _ = gauss_lobatto_rule(6)
     nodes = np.unique(np.round(np.concatenate([(x + 1) / 6 + e / 3 for e in range(3)]), 14))
     points = np.array([0.0, 0.1, 1 / 3, 0.5, 0.999, 1.0])
-    assert np.abs(pencil.evaluation(points) @ nodes**5 - points**5).max() < 1e-13
+    assert np.abs(pencil.evaluation_matrix(points) @ nodes**5 - points**5).max() < 1e-13
 
 
 def test_resolution_grows_with_waves_and_digits():
@@ -93,10 +94,10 @@ def test_resolution_grows_with_waves_and_digits():
 
 @pytest.mark.parametrize(("elements", "order"), [(1, 15), (3, 6)])
 def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, order):
-    grid, rng = mesh(elements, order), np.random.default_rng(5)
+    grid, rng = uniform_mesh(elements, order), np.random.default_rng(5)
     strains, rates = rng.standard_normal((2, 3, 4, grid.element_nodes.size))
     tip, velocity = np.empty((2, 4, 3))
-    tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
+    write_tip_motion(strains, rates, tip_matrices(grid), tip, velocity)
     tiny = 1e-30
     exact = shape_from_strains(grid, strains + 1j * tiny * rates, np.zeros(3))[..., -1].T
     assert np.abs(tip - exact.real).max() < 1e-13 * np.abs(exact.real).max()

@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh_on
+from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
@@ -23,7 +23,9 @@ FIELDS = {"n1": Polynomial([9, -20, 11]), "n2": Polynomial([-8, 3, 5]), "m3": Po
 
 
 def arm(order, names=LINEAR_ARM, **values):
-    return StressForm(Rod(**VALUES | values, build=Build(*names, STEP)), mesh_on((0.0, JUMP, 1.0), order))
+    return StressForm(
+        Rod(**VALUES | values, build=Build(*names, STEP)), mesh_with_edges((0.0, JUMP, 1.0), order)
+    )
 
 
 def smooth_state(form):
@@ -49,7 +51,7 @@ def exact_tip():
 
 def test_the_tip_of_an_arm_with_a_jump_is_exact_on_a_coarse_mesh():
     form = arm(8)
-    x, y, _ = form.tip(smooth_state(form))
+    x, y, _ = form.tip_coordinates(smooth_state(form))
     assert (x, y) == pytest.approx(exact_tip(), abs=1e-12)
 
 
@@ -62,7 +64,7 @@ def test_both_sides_of_a_jump_have_one_stress_and_its_strain_on_average(names):
     stresses = []
     for strain, nu, factors in zip(sides.T, rest, ((1, 1, 1), FACTORS[:3]), strict=True):
         c1, c2, c3 = 1 / (np.array([VALUES["k1"], VALUES["k2"], 1.0]) * factors)
-        law = form.nodal.law
+        law = form.nodal_rod.law
         beyond_rest = stress_beyond_rest(law, LocalSection(nu, c1, c3), (strain[0] - nu) / c1, strain[2] / c3)
         stresses.append([beyond_rest.N, strain[1] / c2, beyond_rest.M])
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)

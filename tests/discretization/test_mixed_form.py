@@ -9,9 +9,9 @@ from mixed_motion import mixed_form
 from rods import rod_of
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.basis import differentiation
-from rodsweep.discretization.elements.mesh import mesh
-from rodsweep.discretization.elements.quadrature import gauss_lobatto
+from rodsweep.discretization.elements.basis import differentiation_matrix
+from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 
@@ -39,13 +39,13 @@ GAMMA1 = 0.7
 def some_state(form, seed=1, imaginary=False):
     """Stresses that bend the rod by about a radian, velocities of the size that such stresses cause."""
     X = np.random.default_rng(seed).standard_normal((2, form.unknowns))
-    X[:, form.stresses :] *= 100
+    X[:, form.stress_count :] *= 100
     return X[0] + 1j * X[1] if imaginary else X[0]
 
 
 def consistent(form, X):
     """X with the velocities that its stresses give it, of a rod with rotational drag."""
-    S, _ = form.fields(X)
+    S, _ = form.stresses_and_velocities(X)
     Sigma = S + form.rod.material.tip_stress[:, None]
     return form.state(S, form.rod.material.velocity(Sigma, Sigma @ form.mesh.matrices.D.T))
 
@@ -100,7 +100,7 @@ def test_longitudinal_modes_are_in_the_spectrum():
 def test_A_is_affine_in_F_with_the_slope_A_F(rod):
     here = mixed_form(rod.changed(gamma1=GAMMA1), 2, 6)
     there = mixed_form((replace(rod, F=rod.F - 7.5)).changed(gamma1=GAMMA1), 2, 6)
-    A_F = here.times_A_F(np.eye(here.unknowns)).T
+    A_F = here.times_force_derivative_of_A(np.eye(here.unknowns)).T
     assert np.abs(here.A - 7.5 * A_F - there.A).max() <= 1e-14 * np.abs(here.A).max()
     assert np.abs(A_F).max() > 0
 
@@ -110,7 +110,7 @@ def test_A_is_affine_in_F_with_the_slope_A_F(rod):
 def test_straight_rod_is_at_rest_and_its_mirror_images_move_as_such(rod, elements, order):
     form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
     assert np.abs(mixed.rate(form, np.zeros(form.unknowns))).max() == 0
-    X, R = some_state(form), form.parity
+    X, R = some_state(form), form.reflection_signs
     assert mixed.rate(form, R * X) == pytest.approx(R * mixed.rate(form, X), rel=1e-13, abs=1e-10)
 
 
@@ -149,10 +149,10 @@ def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
         SOFT.changed(gamma1=GAMMA1).material,
     )
     X = some_state(form)
-    S, V = form.fields(X)
+    S, V = form.stresses_and_velocities(X)
     Sigma = S + material.tip_stress[:, None]
-    nodes, weights = gauss_lobatto(order)
-    E, D, W = material.strain(Sigma), 2 * elements * differentiation(nodes), weights / (2 * elements)
+    nodes, weights = gauss_lobatto_rule(order)
+    E, D, W = material.strain(Sigma), 2 * elements * differentiation_matrix(nodes), weights / (2 * elements)
     in_strain, in_force = np.zeros_like(S), np.zeros_like(S)
     for first in range(0, elements * order, order):
         here = slice(first, first + order + 1)
@@ -170,7 +170,10 @@ def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
 
 @MESHES
 def test_derivative_is_summed_by_parts(elements, order):
-    WD, ends = -mesh(elements, order).matrices.weak.T, np.zeros((elements * order + 1,) * 2)
+    WD, ends = (
+        -uniform_mesh(elements, order).matrices.weak_derivative.T,
+        np.zeros((elements * order + 1,) * 2),
+    )
     ends[0, 0], ends[-1, -1] = -1, 1
     assert np.abs(WD + WD.T - ends).max() <= 1e-13
     form = mixed_form(FILAMENT.changed(gamma1=GAMMA1), elements, order)
@@ -184,11 +187,11 @@ def test_derivative_is_summed_by_parts(elements, order):
 def test_energy_law_holds_on_the_mesh_to_rounding(rod, elements, order):
     form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
     X = consistent(form, some_state(form))
-    equation, stresses = mixed.rate(form, X), slice(form.stresses)
+    equation, stresses = mixed.rate(form, X), slice(form.stress_count)
     change = np.zeros(form.unknowns)
     change[stresses] = equation[stresses] / form.M[stresses]
     power = mixed.energy(form, X + 1e-30j * change).imag / 1e-30
-    terms = np.abs(form.fields(X)[0][:, :-1].ravel() * equation[stresses]).sum()
+    terms = np.abs(form.stresses_and_velocities(X)[0][:, :-1].ravel() * equation[stresses]).sum()
     injected, lost = rod.F * mixed.reaction(form, X)[0], mixed.dissipation(form, X)
     assert power == pytest.approx(injected - lost, abs=1e-13 * (terms + abs(injected) + lost))
 
@@ -198,10 +201,10 @@ def test_consistent_velocities_satisfy_their_equation(elements, order):
     form = mixed_form(SOFT.changed(gamma1=GAMMA1), elements, order)
     X = some_state(form)
     moving = consistent(form, X)
-    left = mixed.rate(form, moving)[form.stresses :]
-    size = np.abs(form.A[form.stresses :]) @ np.abs(moving)
+    left = mixed.rate(form, moving)[form.stress_count :]
+    size = np.abs(form.A[form.stress_count :]) @ np.abs(moving)
     assert np.abs(left).max() <= 1e-13 * size.max()
-    assert np.all(moving[: form.stresses] == X[: form.stresses])
+    assert np.all(moving[: form.stress_count] == X[: form.stress_count])
 
 
 @pytest.mark.parametrize("rod", [STIFF, SOFT, Rod(F=-20.0, k1=30.0, k2=20.0, gamma3=0.5)])
@@ -210,9 +213,9 @@ def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, 
     form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
     root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
     X = consistent(form, some_state(form))
-    z = root * X[: form.stresses]
-    expected = Beam(rod.changed(gamma1=GAMMA1), mesh(elements, order)).state_derivative(z)
-    rate = root * mixed.rate(form, X)[: form.stresses] / form.M[: form.stresses]
+    z = root * X[: form.stress_count]
+    expected = Beam(rod.changed(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(z)
+    rate = root * mixed.rate(form, X)[: form.stress_count] / form.M[: form.stress_count]
     assert rate == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
 
 
@@ -221,12 +224,12 @@ def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, 
 def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, order):
     form, beam = (
         mixed_form(rod.changed(gamma1=GAMMA1), elements, order),
-        Beam(rod.changed(gamma1=GAMMA1), mesh(elements, order)),
+        Beam(rod.changed(gamma1=GAMMA1), uniform_mesh(elements, order)),
     )
     u, root = form.mesh.positions[:-1], np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
     exact = beam.tip_velocity(np.zeros(beam.layout.unknowns), root * S)[1]
-    assert form.tip_y @ np.append(S, np.zeros(form.unknowns - len(S))) == pytest.approx(exact, rel=1e-12)
+    assert form.tip_y_row @ np.append(S, np.zeros(form.unknowns - len(S))) == pytest.approx(exact, rel=1e-12)
 
 
 @RODS
@@ -236,8 +239,8 @@ def test_tip_of_a_small_motion_moves_with_the_reaction(rod):
     X = 1j * 1e-30 * some_state(form)
     u = form.mesh.positions[:-1]
     test = np.concatenate([0 * u, 1 + 0 * u, rod.nu * (1 - u)])  # tip_y = test W C
-    assert form.tip_y[: form.stresses] == pytest.approx(test * form.M[: form.stresses], rel=1e-14)
-    rate = test @ mixed.rate(form, X).imag[: form.stresses]
+    assert form.tip_y_row[: form.stress_count] == pytest.approx(test * form.M[: form.stress_count], rel=1e-14)
+    rate = test @ mixed.rate(form, X).imag[: form.stress_count]
     assert rate == pytest.approx(-mixed.reaction(form, X).imag[1], rel=1e-11, abs=1e-41)
 
 
@@ -246,6 +249,6 @@ def test_clamp_and_tip_are_met_in_the_limit():
     form = mixed_form(SOFT.changed(gamma1=GAMMA1), 1, 26)
     values, vectors = np.linalg.eig(np.linalg.solve(form.A, np.diag(form.M)))
     X = vectors[:, np.argmax(values.real)]  # of 1/w: the one that grows
-    _, V = form.fields(X)
+    _, V = form.stresses_and_velocities(X)
     assert np.abs(V[:, 0]).max() <= 1e-8 * np.abs(V).max()
     assert mixed.reaction(form, X) == pytest.approx(-V[:, -1], abs=1e-8 * np.abs(V).max())

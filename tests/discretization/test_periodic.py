@@ -6,12 +6,12 @@ import pytest
 from rodsweep.discretization.elements.periodic import (
     fourier_coefficients,
     hermite_coefficients,
-    hermite_columns,
+    hermite_coefficients_of_columns,
     interpolate_samples,
-    maxima,
-    minima,
-    series_at,
+    series_maxima,
+    series_minima,
     series_samples,
+    series_values_at,
     time_derivative,
     time_of_rise_through_mean,
 )
@@ -28,7 +28,7 @@ def wave(t):
 def test_a_smooth_period_is_interpolated_and_differentiated(n):
     t = np.arange(n) / n
     samples = wave(t)[:, None]
-    assert maxima(fourier_coefficients(samples), samples)[0] == pytest.approx(np.e, rel=1e-12)
+    assert series_maxima(fourier_coefficients(samples), samples)[0] == pytest.approx(np.e, rel=1e-12)
     at = np.array([0.01, 0.373, 0.9, 1.9])
     assert interpolate_samples(wave(t), at) == pytest.approx(wave(at), rel=1e-12)
     slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * wave(t)
@@ -70,7 +70,7 @@ def test_values_and_slopes_tell_twice_as_many_harmonics_as_values(m):
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
     for count in (7, 8, 4 * m, 4 * m + 1):
         t = np.arange(count) / count
-        assert series_samples(found, count) == pytest.approx(series_at(exact, t), abs=1e-11)
+        assert series_samples(found, count) == pytest.approx(series_values_at(exact, t), abs=1e-11)
 
 
 @pytest.mark.parametrize("nodes", [5, 8])
@@ -79,8 +79,8 @@ def test_half_a_period_tells_what_the_whole_does_where_the_other_half_repeats_or
     half = rng.standard_normal((2, nodes, 3))
     whole = np.concatenate([half, signs * half], axis=1)
     exact = hermite_coefficients(whole[0], whole[1])
-    assert np.abs(hermite_columns(half[0], half[1], signs) - exact).max() < 1e-14
-    assert np.all(hermite_columns(half[0], half[1], signs)[::2, 1:] == 0)
+    assert np.abs(hermite_coefficients_of_columns(half[0], half[1], signs) - exact).max() < 1e-14
+    assert np.all(hermite_coefficients_of_columns(half[0], half[1], signs)[::2, 1:] == 0)
 
 
 def test_extrema_are_those_of_dense_samples():
@@ -89,9 +89,12 @@ def test_extrema_are_those_of_dense_samples():
     decay = 0.6 ** np.arange(12)[:, None]
     c = decay * (rng.standard_normal((12, 5)) + 1j * rng.standard_normal((12, 5)))
     dense, samples = series_samples(c, 40000), series_samples(c, 48)
-    for beyond in (maxima(c, samples) - dense.max(axis=0), dense.min(axis=0) - minima(c, samples)):
+    for beyond in (
+        series_maxima(c, samples) - dense.max(axis=0),
+        dense.min(axis=0) - series_minima(c, samples),
+    ):
         assert np.all(beyond >= -1e-13) and np.all(beyond < 1e-6)
 
 
 def test_a_constant_is_its_own_maximum():
-    assert maxima(np.array([[2.0 + 0j]]), np.full((4, 1), 2.0)) == pytest.approx([2.0], rel=1e-15)
+    assert series_maxima(np.array([[2.0 + 0j]]), np.full((4, 1), 2.0)) == pytest.approx([2.0], rel=1e-15)

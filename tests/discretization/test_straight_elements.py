@@ -24,7 +24,7 @@ PARTS = pytest.mark.parametrize("components, parity", [(LONGITUDINAL, 1), (TRANS
 def vectors(form, parity, seed=0):
     """Two complex random vectors of the components of a parity."""
     real, imag = np.random.default_rng(seed).normal(size=(2, 2, form.unknowns))
-    return np.where(form.parity == parity, real + 1j * imag, 0)
+    return np.where(form.reflection_signs == parity, real + 1j * imag, 0)
 
 
 @RODS
@@ -38,7 +38,7 @@ def test_products_are_those_of_the_whole_rod(rod, elements, order, components, p
     for found, exact in ((by_elements.apply_A(q), A @ q), (by_elements.times_M(q), M * q)):
         assert np.abs(found - exact).max() <= 1e-14 * np.abs(exact).max()
     size = np.abs(p) @ (np.abs(A) @ np.abs(q))
-    assert size <= by_elements.size_of_product(p, q) * (1 + 1e-12) <= 2 * size
+    assert size <= by_elements.product_magnitude(p, q) * (1 + 1e-12) <= 2 * size
 
 
 @pytest.mark.kernel
@@ -48,17 +48,17 @@ def test_products_are_those_of_the_whole_rod(rod, elements, order, components, p
 @pytest.mark.parametrize("shift", [0.0, 190j, 3 + 2500j])
 def test_solutions_are_those_of_the_whole_rod(rod, elements, order, components, parity, shift):
     form = mixed_form(rod.changed(gamma1=0.7), elements, order)
-    factors = StraightElements(form, components).factors(shift)
+    factors = StraightElements(form, components).lu_factors(shift)
     b, _ = vectors(form, parity)
     K = form.A - shift * np.diag(form.M)
     for matrix, x in ((K, factors.solve(b)), (K.conj().T, factors.solve(b, adjoint=True))):
-        residual = np.abs(matrix @ x - b)[form.parity == parity]
+        residual = np.abs(matrix @ x - b)[form.reflection_signs == parity]
         assert residual.max() <= 1e-13 * (np.abs(matrix) @ np.abs(x)).max()
-        assert np.all(x[form.parity != parity] == 0)
+        assert np.all(x[form.reflection_signs != parity] == 0)
 
 
 def test_several_elements_of_even_order_are_refused():
     with pytest.raises(ValueError, match="odd order, not 8"):
-        StraightElements(mixed_form(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), 2, 8), LONGITUDINAL).factors(
+        StraightElements(mixed_form(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), 2, 8), LONGITUDINAL).lu_factors(
             0.0
         )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -17,7 +17,7 @@ from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import Neighbour, cycle_from_neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
-from rodsweep.solve.orbit.newton import at_orbit, multipliers_of, newton
+from rodsweep.solve.orbit.newton import multipliers_of, newton, with_orbit_matrix
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.point import Unsolvable
 
@@ -66,7 +66,7 @@ def cycle_of(case) -> RefinedCycle | None:
     if hopf is None or hopf * case.beyond >= case.k1:
         return None
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    start = orbit_from_hopf(StressForm(rod, mesh(1, 16)), hopf_point_below(rod), NewtonWorkspace())
+    start = orbit_from_hopf(StressForm(rod, uniform_mesh(1, 16)), hopf_point_below(rod), NewtonWorkspace())
     return refined_cycle(start, case.accuracy, NewtonWorkspace())
 
 
@@ -74,11 +74,11 @@ def chain_of(case, parameter, ratio, points):
     """The cycles of a chain in steps of a parameter, from the one of the case on, as far as it goes."""
     hopf = first_hopf(case.k1, case.k2, case.gamma3)
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    form = StressForm(rod, mesh(1, 16))
+    form = StressForm(rod, uniform_mesh(1, 16))
     memory = NewtonWorkspace()
     start = orbit_from_hopf(form, hopf_point_below(rod), memory)
     found = refined_cycle(start, case.accuracy, memory, parameter)
-    neighbour = Neighbour.of(found, None, parameter, case.accuracy)
+    neighbour = Neighbour.from_cycle(found, None, parameter, case.accuracy)
     for _ in range(points):
         rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
         try:
@@ -86,15 +86,17 @@ def chain_of(case, parameter, ratio, points):
         except Unsolvable:
             return
         yield found
-        neighbour = Neighbour.of(found, neighbour, parameter, case.accuracy)
+        neighbour = Neighbour.from_cycle(found, neighbour, parameter, case.accuracy)
 
 
 def finer(orbit):
     """The same cycle on a mesh that is far finer, converged to rounding, with its matrix."""
     here = mesh_of(orbit)
-    grid = mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
+    grid = uniform_mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
-    return at_orbit(newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0)
+    return with_orbit_matrix(
+        newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0
+    )
 
 
 def broken_promises(found, accuracy):
@@ -114,5 +116,5 @@ def broken_promises(found, accuracy):
     beyond = {k: (true, said) for k, (true, said) in promised.items() if true > said + ROUNDING}
     broken = [f"{k}: {true:.1e} > {said:.1e}" for k, (true, said) in beyond.items()]
     if max(errors.period_error, errors.amplitude_error) > accuracy:
-        broken.append(f"estimate {errors.largest:.1e} > {accuracy:.0e}")
+        broken.append(f"estimate {errors.largest_error:.1e} > {accuracy:.0e}")
     return broken

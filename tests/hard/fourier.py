@@ -9,8 +9,8 @@ import numpy as np
 
 from rodsweep.discretization.element_strains import write_element_strains
 from rodsweep.discretization.elements.mesh import shape_from_strains
-from rodsweep.discretization.elements.periodic import fourier_coefficients, maxima
-from rodsweep.discretization.plane import balance
+from rodsweep.discretization.elements.periodic import fourier_coefficients, series_maxima
+from rodsweep.discretization.plane import write_balance
 from rodsweep.discretization.straight.mixed_form import MixedForm
 
 MOST_STEPS, SOLVED = 12, 1e-11
@@ -30,7 +30,7 @@ def guess_at(orbit, m):
     form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.nodes + 1))
     states, reaction = orbit.states_at(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
-        balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
+        write_balance(x, velocities, reaction, form.nodal_rod, form.mesh.matrices)
     mixed = MixedForm(form.rod, form.mesh)
     return mixed.state(form.stresses(states), V.swapaxes(0, 1))
 
@@ -39,7 +39,7 @@ def solved_cycle(form, X, frequency):
     """(X, frequency) of the cycle near a guess; the tip is at rest in the first phase, to first order."""
     m, unknowns = X.shape
     even, odd = half_period_derivatives(m)
-    kept, each, r = form.parity > 0, np.arange(m), np.arange(unknowns)
+    kept, each, r = form.reflection_signs > 0, np.arange(m), np.arange(unknowns)
     D = np.where(kept[:, None, None], even, odd)
     for _ in range(MOST_STEPS):
         dX = np.einsum("rij,jr->ir", D, X)
@@ -48,12 +48,12 @@ def solved_cycle(form, X, frequency):
         blocks[:, r, :, r] = frequency * form.M[:, None, None] * D
         blocks[each, :, each, :] -= np.array([mixed.jacobian(form, x) for x in X])
         J[:-1, -1] = (form.M * dX).ravel()
-        J[-1, :-1] = (odd[0][:, None] * form.tip_y).ravel()
-        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y)
+        J[-1, :-1] = (odd[0][:, None] * form.tip_y_row).ravel()
+        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_row)
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(m, unknowns), frequency + step[-1]
-        moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.stresses]).max()
-        if moved <= SOLVED * np.abs(X[:, : form.stresses]).max():
+        moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.stress_count]).max()
+        if moved <= SOLVED * np.abs(X[:, : form.stress_count]).max():
             return X, frequency
     raise AssertionError("no cycle")
 
@@ -62,9 +62,9 @@ def period_and_largest_y(orbit, phases):
     """Of the cycle near a symmetric orbit, on the orbit's mesh in space."""
     form = MixedForm(orbit.form.rod, orbit.form.mesh)
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
-    S, _ = form.fields(X)
+    S, _ = form.stresses_and_velocities(X)
     E = np.empty((*S.shape[:-1], form.mesh.element_nodes.size))
-    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal, form.mesh.order, E)
+    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal_rod, form.mesh.order, E)
     y = shape_from_strains(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
-    return 2 * np.pi / frequency, float(maxima(fourier_coefficients(whole), whole)[0])
+    return 2 * np.pi / frequency, float(series_maxima(fourier_coefficients(whole), whole)[0])

@@ -105,10 +105,10 @@ def broken_promises(case: Case) -> list[str]:
     """What of the cycles of a case is further off than it says, or than the accuracy."""
     wrong = []
     for point in islice(cycles_of(case), 0, None, EACH):
-        stored, mesh = BranchPoint.of(point, case.accuracy), mesh_of(point.orbit)
+        stored, mesh = BranchPoint.from_cycle(point, case.accuracy), mesh_of(point.orbit)
         longer = ceil(1.7 * mesh.intervals) + 1
         fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
-        exact = newton_step(newton(fine.interpolate(point.orbit), 1e-11, NewtonWorkspace()))
+        exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
         extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.sensitivity
         y, multipliers = extrema["tip_y_max"], multipliers_of(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
@@ -121,7 +121,7 @@ def broken_promises(case: Case) -> list[str]:
         }
         rounding = ROUNDING * max(1.0, slope)
         wrong += [f"{name} at {stored.at!r}: {a} > {b}" for name, (a, b) in off.items() if a > b + rounding]
-        if stored.at_error > case.accuracy or (slope <= STEEP and errors.largest > case.accuracy):
+        if stored.at_error > case.accuracy or (slope <= STEEP and errors.largest_error > case.accuracy):
             wrong.append(f"errors at {stored.at!r}: {stored.at_error}, {errors}, slope {slope}")
     return wrong
 

@@ -14,7 +14,7 @@ from rods import rod_of
 from surveyed import only
 
 import rodsweep as rs
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -101,7 +101,7 @@ def test_the_angle_of_a_cycle_that_a_motion_led_to_is_within_its_error():
 @pytest.mark.parametrize("point, accuracy", AT_FORCES.values(), ids=AT_FORCES.keys())
 def test_meshes_that_agree_by_luck_are_not_believed(point, accuracy, parameter):
     *rod, gamma1 = point
-    form = StressForm(rod_of(*rod, gamma1=gamma1), mesh(1, 16))
+    form = StressForm(rod_of(*rod, gamma1=gamma1), uniform_mesh(1, 16))
     memory = NewtonWorkspace()
     start = orbit_from_hopf(form, hopf_point_below(form.rod), memory)
     found = refined_cycle(start, accuracy, memory, parameter)

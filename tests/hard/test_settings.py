@@ -34,7 +34,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.compiled.digest import digest, kernel_of
 from rodsweep.model.compiled.settings import CompiledSettings
@@ -43,7 +43,7 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
-from rodsweep.solve.branch.special.curves import SpecialCurveProblem
+from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
@@ -52,7 +52,7 @@ from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.hopf.bautin_curves import BautinSpace, bautin_curve, on_curve
+from rodsweep.solve.hopf.bautin_curves import BautinSpace, as_curve_point, bautin_curve
 from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
@@ -96,7 +96,7 @@ def branch_answer(rod: Rod, start: float, stop: float, accuracy: float) -> Answe
         return None
     answer: dict[str, tuple[float, float]] = {}
     for number, curve in enumerate(found.curves):
-        for place, point in enumerate(curve.special):
+        for place, point in enumerate(curve.special_points):
             name = f"branch {number}, special point {place}, {point.kind.name}: "
             answer[name + "at"] = point.at, point.error
             answer[name + "period"] = point.period, point.period_error * point.period
@@ -121,7 +121,7 @@ def branch_of_legs(accuracy: float) -> Answer:
 def fold() -> Any:
     """The fold of a branch, from which a curve of folds is followed."""
     request = BranchRequest("F", 60.0, 110.0, 1e-7, False, 500, 50)
-    points = [point for curve in solve_branches(WITH_FOLD, request).curves for point in curve.special]
+    points = [point for curve in solve_branches(WITH_FOLD, request).curves for point in curve.special_points]
     return next(point for point in points if point.kind is SpecialKind.fold)
 
 
@@ -176,7 +176,7 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
     (point,) = curve_criticality(plane, curve, 1e-10).points
     asked = np.array([8e3, 1.2e4, 1e4])
     space = BautinSpace(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
-    found = bautin_curve(space, on_curve(point, 1e4))
+    found = bautin_curve(space, as_curve_point(point, 1e4))
     answer = {}
     for value in asked[:2]:
         at = [each for each in found.points if abs(each.values[2] / value - 1) < 1e-12]
@@ -309,7 +309,7 @@ def curves_of_changes(accuracy: float) -> Answer:
         row = solve_row(rod.changed(k1=k1), request)
         if row.status.value:
             return None
-        found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings)
+        found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings)
         seeds += [seed for seed in found if seed is not None]
     curves = curves_through(plane, seeds)
     if curves.untraced:
@@ -355,11 +355,11 @@ def modes_of_a_cone(accuracy: float) -> Answer:
 
 def on_mesh(accuracy: float) -> Answer:
     """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
-    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
-    numbers = [*beam.tip(z), *beam.tip_velocity(z, 0.1 * z), beam.energy(z)]
+    numbers = [*beam.tip_coordinates(z), *beam.tip_velocity(z, 0.1 * z), beam.elastic_energy(z)]
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
 
 
@@ -371,12 +371,12 @@ def longitudinal(accuracy: float) -> Answer:
 
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
-    beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     z = equilibrium_at_tip(beam, 0.5, 0.4)
-    x, y, _ = beam.tip(z)
+    x, y, _ = beam.tip_coordinates(z)
     if np.hypot(x - 0.5, y - 0.4) > 1e-6:
         return None
-    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (beam.energy(z), 1e-6)}
+    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (beam.elastic_energy(z), 1e-6)}
 
 
 def small_drag(accuracy: float) -> Answer:
@@ -386,7 +386,7 @@ def small_drag(accuracy: float) -> Answer:
 
 def motion(accuracy: float) -> Answer:
     """State after a free motion. Its error is that of the scheme's tolerance, some steps' worth."""
-    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(1, 16))
+    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
@@ -496,7 +496,7 @@ SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
 CASES = {
     "BRANCH_MESH_SETTINGS": BRANCH,
     "BRANCH_ERROR_SETTINGS": BRANCH,
-    "BRANCH_END": LOPSIDED,
+    "BRANCH_END_SETTINGS": LOPSIDED,
     "ASYMMETRIC_START_SETTINGS": LOPSIDED,
     "BRANCH_START_SETTINGS": BRANCH,
     "BRANCH_SETTINGS": BRANCH,
@@ -510,11 +510,11 @@ CASES = {
     "WORKSPACE_SETTINGS": BRANCH,
     "FLOQUET_MULTIPLIER_SETTINGS": BRANCH,
     "CURVE_START_SETTINGS": CURVE,
-    "CURVE_IDENTITY": CURVE,
+    "CURVE_IDENTITY_SETTINGS": CURVE,
     "CURVE_SECANT_SETTINGS": CURVE,
     "AUGMENTED_SETTINGS": CURVE,
     "END_SETTINGS": CURVE,
-    "CURVE_STEPS": CURVE,
+    "CURVE_STEP_CONTROL": CURVE,
     "NORMAL_FORM_SETTINGS": HOPF,
     "HOPF_COEFFICIENT_SETTINGS": HOPF,
     "GENERALISED_HOPF_SETTINGS": BAUTIN_POINT,
@@ -541,28 +541,28 @@ CASES = {
     "MOTION_MESH_SETTINGS": SINGLE,
     "RETURN_SETTINGS": SINGLE,
     "SHAPE_TRACE_SETTINGS": SINGLE,
-    "TRANSIENT": SINGLE,
-    "CALIBRATION": CHAIN,
+    "TRANSIENT_SETTINGS": SINGLE,
+    "CALIBRATION_SETTINGS": CHAIN,
     "FINER_MESH_SETTINGS": CHAIN,
     "NEXT_MESH_SETTINGS": CHAIN,
     "CYCLE_PREDICTION_SETTINGS": CHAIN,
     "PARAMETER_STEPS": CHAIN,
-    "HOPF_START": BESIDE_HOPF,
+    "HOPF_START_SETTINGS": BESIDE_HOPF,
     "SMALL_MOTION_SETTINGS": BESIDE_HOPF,
     "STRAIGHT_ROD_SETTINGS": BESIDE_HOPF,
     "AMPLITUDE_EQUATION_SETTINGS": BESIDE_HOPF,
     "TIME_SCHEME_SETTINGS": BESIDE_HOPF,
-    "MARCHING": INTEGRATED,
+    "MARCHING_SETTINGS": INTEGRATED,
     "TORUS_TEST_SETTINGS": TORUS,
     "KRYLOV_SETTINGS": SPECTRA,
     "CANDIDATE_SETTINGS": SPECTRA,
-    "SEARCH": SPECTRA,
+    "SEARCH_SETTINGS": SPECTRA,
     "TWO_MESH_SETTINGS": SPECTRA,
     "RESOLUTION_SETTINGS": SPECTRA,
     "PENCIL_NORM_SETTINGS": SPECTRA,
     "ELEMENT_SETTINGS": SPECTRA,
     "ARM_RESOLUTION_SETTINGS": SPECTRA,
-    "ARM_ELEMENTS": SPECTRA,
+    "ARM_ELEMENT_SETTINGS": SPECTRA,
     "HULL_SETTINGS": SPECTRA,
     "SWEEP_STRETCH_SETTINGS": FOLLOWED,
     "WINDING_SETTINGS": THRESHOLDS,
@@ -607,11 +607,11 @@ CASES = {
     "FOLLOWING_SETTINGS": FOLLOWED,
     "EIGENVALUE_PREDICTION_SETTINGS": FOLLOWED,
     "AVERAGED_WEIGHT_SETTINGS": SEGMENTS,
-    "COMPLETENESS": SEGMENTS,
-    "ARM_COUNT": SEGMENTS,
+    "COMPLETENESS_SETTINGS": SEGMENTS,
+    "CONTOUR_SETTINGS": SEGMENTS,
     "ARM_VALUE_SETTINGS": SEGMENTS,
     "ARM_ROOT_SETTINGS": SEGMENTS,
-    "STAGE_NEWTON": MOTION,
+    "STAGE_NEWTON_SETTINGS": MOTION,
     "STAGE_PREDICTOR_SETTINGS": MOTION,
     "STEP_RECORD_SETTINGS": MOTION,
     "TIP_EXTREMUM_SETTINGS": SINGLE,
@@ -624,7 +624,7 @@ CASES = {
     "TIP_VELOCITY_SETTINGS": MESH,
     "STRESS_FORM_SETTINGS": SMALL_DRAG,
 }
-READ_BY_MOST = ("EVEN_FUNCTION_SETTINGS", "STAGE_NEWTON")
+READ_BY_MOST = ("EVEN_FUNCTION_SETTINGS", "STAGE_NEWTON_SETTINGS")
 """Settings whose change compiles so many functions again that a field takes 8 to 30 seconds."""
 MOST_WITHOUT_ANSWER = 1
 """Of the two runs of a field: half or twice a limit of work may not be enough, but one of the two is."""

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh
-from rodsweep.discretization.elements.quadrature import gauss
+from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.elements.quadrature import gauss_legendre_rule
 from rodsweep.model.balance import (
     PLANE_COMPONENTS,
     ad,
@@ -120,7 +120,7 @@ def test_a_rod_turned_about_its_axis_moves_turned():
 
 @pytest.mark.parametrize("material, size", [(PLANE, 3), (SPACE, 6)], ids=["plane", "space"])
 def test_energy_law(material, size):
-    x, weights = gauss(40)
+    x, weights = gauss_legendre_rule(40)
     u, weights = (x + 1) / 2, weights / 2
     Sigma, *more = stresses(u, size)
     V, rate = rates(material, Sigma, *more)
@@ -161,14 +161,14 @@ def rough(beam):
 
 
 def test_compiled_rate_is_the_balance_at_the_nodes():
-    beam = Beam(ROD.changed(gamma1=GAMMA1), mesh(1, 16))
+    beam = Beam(ROD.changed(gamma1=GAMMA1), uniform_mesh(1, 16))
     z = rough(beam)
     rate = collocated(beam, z)
     assert beam.state_derivative(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
 
 
 def test_compiled_jacobian_is_the_derivative_of_the_balance():
-    beam, step = Beam(ROD.changed(gamma1=GAMMA1), mesh(1, 12)), 1e-30
+    beam, step = Beam(ROD.changed(gamma1=GAMMA1), uniform_mesh(1, 12)), 1e-30
     z = rough(beam)
     J = beam.jacobian(z)
     for k, direction in enumerate(1j * step * np.eye(len(z))):
@@ -179,7 +179,7 @@ def test_compiled_jacobian_is_the_derivative_of_the_balance():
 @pytest.mark.parametrize("elements, order", [(1, 26), (3, 14)])
 def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     """But at the clamp: V(0) of an arbitrary field is not 0, and the natural condition answers with 1/w."""
-    beam = Beam(ROD.changed(gamma1=GAMMA1), mesh(elements, order))
+    beam = Beam(ROD.changed(gamma1=GAMMA1), uniform_mesh(elements, order))
     u = beam.mesh.positions
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_rod
-from rodsweep.discretization.stress.balance import balance, velocity_balance, write_strain_rates
-from rodsweep.discretization.stress.jacobian import jacobian
+from rodsweep.discretization.stress.balance import write_balance, write_strain_rates, write_velocity_residuals
+from rodsweep.discretization.stress.jacobian import write_jacobian
 from rodsweep.model.algebra import ALGEBRAS, SE3
 from rodsweep.model.balance import PLANE_COMPONENTS, ad
 from rodsweep.model.rod import Rod
@@ -19,7 +19,9 @@ PLANE = ROD.changed(gamma1=GAMMA1).material
 SPACE = ROD.changed(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {"plane": PLANE, "space": SPACE}
 ALL = pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
-MESHES = pytest.mark.parametrize("grid", [mesh(1, 9), mesh(3, 4)], ids=["1 element", "3 elements"])
+MESHES = pytest.mark.parametrize(
+    "grid", [uniform_mesh(1, 9), uniform_mesh(3, 4)], ids=["1 element", "3 elements"]
+)
 
 
 def tapered(material, grid):
@@ -41,7 +43,7 @@ def state(rod, grid):
 def balanced(x, rod, grid):
     """V and G at all nodes, (d, nodes + 1)."""
     V, G = np.empty((2, *rod.drag.shape))
-    balance.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
+    write_balance.compiled_for(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
     return V, G
 
 
@@ -49,7 +51,7 @@ def equations(x, rod, grid):
     """G at all nodes, (d, nodes + 1), and the balance of what is unknown of V, flat."""
     _, G = balanced(x, rod, grid)
     out = np.empty(len(x))
-    velocity_balance.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
+    write_velocity_residuals.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
     return np.append(G.ravel(), out[len(G) * grid.nodes :])
 
 
@@ -57,14 +59,14 @@ def equations(x, rod, grid):
 @pytest.mark.parametrize("kept", [(), (2,)], ids=["eliminated", "kept"])
 def test_compiled_functions_do_what_their_loops_do(material, kept):
     """The loops themselves run in Python, with the algebra as an argument."""
-    grid = mesh(2, 3)
+    grid = uniform_mesh(2, 3)
     rod, d = nodal_rod(material, grid, kept), len(material.drag)
     g, n = ALGEBRAS[d], d * grid.nodes + len(kept) * (grid.nodes + 1)
     x = np.random.default_rng(d).standard_normal(n)
     found = []
     for run, slope in (
-        (balance.compiled_for(g), jacobian.compiled_for(g)),
-        (partial(balance, g), partial(jacobian, g)),
+        (write_balance.compiled_for(g), write_jacobian.compiled_for(g)),
+        (partial(write_balance, g), partial(write_jacobian, g)),
     ):
         V, G = np.empty((2, d, grid.nodes + 1))
         J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
@@ -86,7 +88,7 @@ def test_plane_states_of_space_are_those_of_the_plane(grid):
     for rod, here in ((plane, x), (space, there)):
         V, G = balanced(here, rod, grid)
         J, tip = np.empty((len(here),) * 2), np.empty((len(V), len(here)))
-        jacobian.compiled_for(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
+        write_jacobian.compiled_for(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
         jacobians.append((V, G, J, tip))
     (V, G, J, tip), (V_space, G_space, J_space, tip_space) = jacobians
     for ours, theirs in ((V_space, V), (G_space, G)):
@@ -120,7 +122,7 @@ def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, ke
     x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
-    jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
+    write_jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
     whole = np.concatenate([J[: d * n].reshape(d, n, -1), tip[:, None]], axis=1).reshape(d * (n + 1), -1)
     whole = np.concatenate([whole, J[d * n :]])
     for k, step in enumerate(1e-2 * np.eye(len(x))):  # the equations are cubic: this difference is exact
@@ -143,7 +145,7 @@ def test_a_rod_turned_about_its_axis_moves_turned(grid):
 
 def test_a_rigid_motion_strains_no_rod():
     """Of a rod bent to a helix, whose points see one twist of all space in their own frames."""
-    grid = mesh(1, 24)
+    grid = uniform_mesh(1, 24)
     E = np.array([0.9, 0.2, -0.1, 1.5, 2.0, 0.7])
     bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])

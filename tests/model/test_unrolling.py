@@ -8,15 +8,15 @@ import importlib.util
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
-from rodsweep.discretization.stress.balance import balance, balance_change
+from rodsweep.discretization.stress.balance import write_balance, write_balance_derivative
 from rodsweep.model.algebra import SE2, SE3
 from rodsweep.model.compiled.digest import digest, kernel_of
 from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
 from rodsweep.model.rod import Rod
 
-ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), mesh(2, 3)
+ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), uniform_mesh(2, 3)
 PLANE = ROD.changed(gamma1=0.7).material
 HEAD = "from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra\n\n@UnrolledOverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
@@ -26,10 +26,10 @@ def test_derivative_along_a_parameter_is_that_of_loops_in_python():
     rod, change = nodal_rod(PLANE, GRID), nodal_change(ROD.material_change("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.nodes)
     V, G = np.empty((2, 3, GRID.nodes + 1))
-    balance(SE2, x, V, G, rod, GRID.matrices)
+    write_balance(SE2, x, V, G, rod, GRID.matrices)
     out = np.empty((2, 3, 3, GRID.nodes + 1))
-    balance_change.compiled_for(SE2)(x, V, out[0], change, rod, GRID.matrices)
-    balance_change(SE2, x, V, out[1], change, rod, GRID.matrices)
+    write_balance_derivative.compiled_for(SE2)(x, V, out[0], change, rod, GRID.matrices)
+    write_balance_derivative(SE2, x, V, out[1], change, rod, GRID.matrices)
     assert np.abs(out[0] - out[1]).max() <= 1e-13 * np.abs(out[1]).max()
 
 
@@ -67,8 +67,8 @@ def test_a_loop_that_is_left_early_is_not_written_out():
 
 
 def test_algebras_have_kernels_of_their_own():
-    assert balance.compiled_for(SE2) is balance.compiled_for(SE2)
-    assert balance.compiled_for(SE2) is not balance.compiled_for(SE3)
+    assert write_balance.compiled_for(SE2) is write_balance.compiled_for(SE2)
+    assert write_balance.compiled_for(SE2) is not write_balance.compiled_for(SE3)
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,9 @@ from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
-from rodsweep.solve.branch.special.boundaries import RowSpecialPoint, SpecialBoundaries
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
-from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
+from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
@@ -168,7 +168,9 @@ LINE, ROWS = PlaneAxis("F", 0.0, 1.0), PlaneAxis("k1", 1.0, 5.0)
 def boundaries():
     """Two curves of folds through the rows 1 to 5, at F = 0.2 and at F = 0.6."""
     special = [
-        RowSpecialPoint(number=row, row=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1)
+        RowSpecialPoint(
+            row_index=row, row_value=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1
+        )
         for row in range(1, 6)
         for at in (0.2, 0.6)
     ]
@@ -181,12 +183,14 @@ def half(items, item):
     one = items.special[place]
     last = 1.0 if behind else 5.0
     points = tuple(
-        CurvePoint(at=one.at, row=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
-        for row in (one.row, last)
+        CurvePoint(
+            at=one.at, row_value=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1
+        )
+        for row in (one.row_value, last)
     )
     near = {i: 0.0 for i, other in enumerate(items.special) if other.at == one.at}
-    low, high = sorted((one.row, last))
-    near = {i: d for i, d in near.items() if low <= items.special[i].row <= high}
+    low, high = sorted((one.row_value, last))
+    near = {i: d for i, d in near.items() if low <= items.special[i].row_value <= high}
     return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 

@@ -21,8 +21,8 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve
 from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
 from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -89,8 +89,8 @@ def search(index=0, **more):
             crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
             open_range=(np.nan, np.nan),
             proved=True,
-            boxes=100,
-            solves=7,
+            box_count=100,
+            solve_count=7,
             unstable_at_end=0,
         ),
         seconds=0.25,
@@ -327,8 +327,10 @@ def test_check_says_what_every_task_would_compute(command, task, words):
 
 
 def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
-    point = CurvePoint(at=60.0, row=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
-    curve = CycleCurve(SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None))
+    point = CurvePoint(at=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
+    curve = SpecialPointCurve(
+        SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
+    )
     filled = cycle_curve_record(Boundaries((curve,), agreement=0.0, untraced=0), ("F", "k1"))
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, "F", "k1")
@@ -368,7 +370,7 @@ def solve_thresholds(rod, request):
         os._exit(9)
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
     found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
-    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, boxes=3, solves=4)
+    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, box_count=3, solve_count=4)
     return real.Thresholds(
         status=status, transitions=found, end=request.F_max, seconds=0.01, message="a message"
     )

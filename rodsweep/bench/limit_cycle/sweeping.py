@@ -21,7 +21,6 @@ from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.measures import CyclePath
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
-from ...solve.orbit.orbit_mesh import mesh_of
 from ..study import (
     CaseWithErrorMeasure,
     Contender,
@@ -193,12 +192,12 @@ def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
-    extra = errors | {"estimate": cycle.errors.largest, "order": float(cycle.elements * cycle.order)}
+    extra = errors | {"order": float(cycle.elements * cycle.order)}
+    extra["estimate"] = cycle.errors.largest_error
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
-        mesh = mesh_of(orbit)
         extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
-        extra |= {"intervals": mesh.intervals, "stages": mesh.stages}
+        extra |= {"intervals": orbit.intervals, "stages": orbit.stages}
     return {"error": max(errors.values()), "extra": extra}
 
 

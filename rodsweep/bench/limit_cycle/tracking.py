@@ -19,7 +19,7 @@ from scipy.interpolate import PPoly, make_interp_spline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.elements.mesh import mesh
+from ...discretization.elements.mesh import uniform_mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
 from ...solve.cycle.transient.returns import tip_angle_row
@@ -42,7 +42,9 @@ REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
 reference cycle."""
 REFERENCE_NEWTON_TOLERANCE = 1e-13
 """Relative tolerance of Newton's method for the reference cycle."""
-PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
+PERIOD_MAP = TimeScheme(
+    "arkimex", "5", tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True, prefix="bench_map_"
+)
 """Scheme of the small steps by which returns and extrema are located. The error of its Newton iteration is
 negligible."""
 FOLLOWED_PERIODS = 6.3
@@ -107,10 +109,12 @@ def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
     near = orbit_of(solve_cycle_at_force(CYCLE_FORCE)).on_mesh(
-        mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES
+        uniform_mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES
     )
     orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
-    return ReferenceCycle(*state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
+    return ReferenceCycle(
+        *state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip_coordinates(orbit.start)[1]))
+    )
 
 
 def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
@@ -155,7 +159,7 @@ class TipReturns:
 def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     """All returns of a run."""
     row = tip_angle_row(beam)
-    y = beam.tip(run.states)[1]
+    y = beam.tip_coordinates(run.states)[1]
     angle = run.states @ row
     rising = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
     times = []
@@ -179,7 +183,7 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
 def largest_y_near(beam: Beam, run: Trajectory, k: int) -> float:
     """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
     again = _integrate_in_small_steps(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
-    height = _spline(again.times, beam.tip(again.states)[1])
+    height = _spline(again.times, beam.tip_coordinates(again.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())
 
 

@@ -169,7 +169,7 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
     at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
     if not rod.standard:
         return FirstThreshold(at)
-    return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
+    return FirstThreshold(at, result.transitions.solve_count, determinants=result.transitions.box_count)
 
 
 def measure_rods(

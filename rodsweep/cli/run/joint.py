@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ...results.file.view import read_view
 from ...results.layouts.variables import FilledVariable
@@ -16,7 +15,7 @@ from ...sweep.loop import Indices, RankWork, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
-from ...tasks.protocol import JointVariables, NamedArrays
+from ...tasks.protocol import JointVariables, NamedArrays, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
 from ...watch import SolveStopped, reporting_to
 
@@ -26,12 +25,12 @@ HALF_CURVE_NOUN = "halves of curves"
 
 @dataclass(frozen=True, slots=True)
 class PendingJointWork:
-    """Variables that depend on all points. due: whether the file lacks these variables. items: the half
+    """Variables that depend on all points. due: whether the file lacks these variables. work_items: the half
     curves to be followed; None if nothing is divided among the ranks.
     """
 
     due: bool
-    items: Any = None
+    work_items: WorkItems | None = None
 
 
 class JointWork:
@@ -60,7 +59,7 @@ class JointWork:
         self.results: dict[int, NamedArrays] = {}
         """Results of all finished half curves, by number, on the first rank only."""
 
-    def solve(self, items: Any, prepare: Callable[[], object], title: str | None) -> RankWork:
+    def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankWork:
         """Follows all half curves that are still missing, on all ranks; returns the work of this rank. items:
         half curves, as in `PendingJointWork`. prepare: function called before the first solve. title: text of
         the progress display; None for no display.
@@ -98,7 +97,7 @@ class JointWork:
         finally:
             shown.close()
 
-    def _exchange_starts(self, items: Any) -> None:
+    def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again. items: half curves, as in `PendingJointWork`.
         """
@@ -106,7 +105,7 @@ class JointWork:
         for starts in self.team.exchange(self.joint_variables.initial_data(items, chosen)):
             self.joint_variables.add_initial_data(starts)
 
-    def _solve_item(self, items: Any, item: int) -> Iterable[tuple[int, NamedArrays]]:
+    def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
             yield item, self.joint_variables.solve(items, item)
         except RUN_ENDING_EXCEPTIONS:
@@ -116,7 +115,7 @@ class JointWork:
             self.note(items.item_label(item), error)
             yield item, self.joint_variables.empty_result()
 
-    def variables(self, items: Any) -> Sequence[FilledVariable] | None:
+    def variables(self, items: WorkItems | None) -> Sequence[FilledVariable] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
         before these variables were complete. items: half curves, as in `PendingJointWork`.
         """

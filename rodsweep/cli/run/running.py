@@ -109,9 +109,9 @@ class _RankRun:
             contributions = self.team.gather(self.work.solve(items, missing, count, self.prepare)) or []
         joint = self.team.on_first(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
-        if self.joint and joint.items is not None:
+        if self.joint and joint.work_items is not None:
             title = None if self.options.quiet else self.job.name
-            shares = self.team.gather(self.joint.solve(joint.items, self.prepare, title)) or []
+            shares = self.team.gather(self.joint.solve(joint.work_items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
@@ -138,7 +138,7 @@ class _RankRun:
             return PendingJointWork(True)
         if not count:
             self._record_blas_kernels()
-        return PendingJointWork(True, self.joint.joint_variables.items(read_view(self.output)))
+        return PendingJointWork(True, self.joint.joint_variables.work_items(read_view(self.output)))
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
@@ -177,7 +177,7 @@ class _RankRun:
         """Writes the variables of all points into the file; returns whether these are still missing."""
         if not joint.due:
             return False
-        variables = self.joint.variables(joint.items) if self.joint else ()
+        variables = self.joint.variables(joint.work_items) if self.joint else ()
         if variables is None:
             self.store.add_journals({"stopped": self.stop.name})
             return True

@@ -21,7 +21,7 @@ def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callabl
 
         @wraps(function)
         def call(*values: P.args, **named: P.kwargs) -> R:
-            require_matching_arguments(asked, example, values, named)
+            require_arguments_of_signature(asked, example, values, named)
             return function(*values, **named)
 
         return call
@@ -29,7 +29,7 @@ def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callabl
     return decorated
 
 
-def require_matching_arguments(
+def require_arguments_of_signature(
     asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.

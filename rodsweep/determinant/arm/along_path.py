@@ -17,7 +17,7 @@ from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_in_family, eigenvalue_in_family
+from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_of_family_arm, eigenvalue_of_family_arm
 from .newton import refine_eigenvalue_and_error
 
 CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
@@ -65,8 +65,8 @@ class ArmAlongPath:
         """Returns (w, dw/dp, error of w) of the eigenvalue w near `guess`, for the arm at p."""
         family = self.family(p)
         # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
-        if family is not None and abs(guess) < family.W / 2:
-            w, slope, error = eigenvalue_in_family(family, guess, p)
+        if family is not None and abs(guess) < family.largest_w / 2:
+            w, slope, error = eigenvalue_of_family_arm(family, guess, p)
             # Near a double eigenvalue the interpolation errors of the family are magnified.
             if error <= ROOT_SETTINGS.double_root_correction * abs(w):
                 return w, slope, error
@@ -77,7 +77,7 @@ class ArmAlongPath:
 
     def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
         """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: scale of the result."""
-        stencil, h = self._stencil(p, math.inf)
+        stencil, h = self._difference_stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
             neighbour = self.determinant(p + offset * h).value(w)
@@ -94,16 +94,16 @@ class ArmAlongPath:
         first = p
         last = math.inf
         for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
-            value = self._value(x, p)
+            value = self._determinant_value(x, p)
             D = value.D.real
             D_w = value.D_w.real
             S = value.S
             noise = value.noise
             h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
-            D_ww = (self._real(x + h, p, S)[1] - self._real(x - h, p, S)[1]) / (2 * h)
-            stencil, k = self._stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
-            neighbours = [(weight, self._real(x, p + offset * k, S)) for offset, weight in stencil]
-            D_p, D_wp = (sum(weight * value[i] for weight, value in neighbours) / k for i in range(2))
+            D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
+            stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
+            samples = [(weight, self._real_determinant(x, p + offset * k, S)) for offset, weight in stencil]
+            D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
             cross = D_w * D_wp - D_p * D_ww
             if cross == 0 or not math.isfinite(cross):
                 return FAILED_ZERO
@@ -139,7 +139,7 @@ class ArmAlongPath:
         """
         arm = self.determinant(p)
         values = [
-            self._value(x, p),
+            self._determinant_value(x, p),
             *(
                 arm.value_at_level(x, factor)
                 for factor in ARM_DOUBLE_EIGENVALUE_SETTINGS.compared_level_factors
@@ -148,20 +148,20 @@ class ArmAlongPath:
         D = [value.D.real * math.exp(value.S - S) for value in values]
         return ARM_DOUBLE_EIGENVALUE_SETTINGS.spread_factor * (max(D) - min(D))
 
-    def _value(self, x: float, p: float) -> DeterminantValue:
+    def _determinant_value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
         family = self.family(p)
-        if family is not None and abs(x) < family.W:
-            return determinant_in_family(family, complex(x, 0.0), p)
+        if family is not None and abs(x) < family.largest_w:
+            return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 
-    def _real(self, x: float, p: float, S: float) -> tuple[float, float]:
+    def _real_determinant(self, x: float, p: float, S: float) -> tuple[float, float]:
         """D exp(-S) and D_w exp(-S), real, at real w = x, for the arm at p."""
-        value = self._value(x, p)
+        value = self._determinant_value(x, p)
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 
-    def _stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
+    def _difference_stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
         """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
         step: at most `largest`.
 
@@ -172,12 +172,12 @@ class ArmAlongPath:
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE, step
         for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_shortenings):
-            if self._exists(p + step) and self._exists(p - step):
+            if self._is_valid_at(p + step) and self._is_valid_at(p - step):
                 break
             step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor
         return CENTRAL_DIFFERENCE, step
 
-    def _exists(self, p: float) -> bool:
+    def _is_valid_at(self, p: float) -> bool:
         """Whether the arm at p is valid."""
         try:
             self.path.rod_at(p)

@@ -26,7 +26,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENT_SETTINGS
 from .determinant import ArmDeterminant
-from .hull.region import Hull
+from .hull.region import EigenvalueHull
 from .value import determinant_along_chain
 
 
@@ -66,7 +66,7 @@ class CompletenessSettings(CompiledSettings):
         return list(zip(self.point_counts, self.max_last_point, strict=True))
 
 
-COMPLETENESS = CompletenessSettings()
+COMPLETENESS_SETTINGS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
@@ -82,7 +82,7 @@ class Remainder(NamedTuple):
 
 
 def prove_complete(
-    line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: Hull
+    line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: EigenvalueHull
 ) -> tuple[bool, int]:
     """Returns (whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
@@ -95,11 +95,11 @@ def prove_complete(
     pairs = has_conjugate(known)
     largest = float(np.abs(known).max())
     examined = 0
-    for k, farthest in COMPLETENESS.proof_trials():
+    for k, farthest in COMPLETENESS_SETTINGS.proof_trials():
         points = points_right_of_hull(line, hull.a, hull.c, k)
         if _last_proof_point(points) <= farthest * largest:
             found = remainder_of_sum(
-                line, known[pairs], error[pairs], hull, points, determinant.level(points[-1])
+                line, known[pairs], error[pairs], hull, points, determinant.propagators_for(points[-1])
             )
             examined += k
             if proves_completeness(found):
@@ -113,17 +113,17 @@ def has_conjugate(known: Complex) -> Array:
     return np.array([w in conjugates for w in known.tolist()], dtype=bool)
 
 
-def largest_w_of_proof(line: float, hull: Hull, known: Complex) -> float:
+def largest_w_of_proof(line: float, hull: EigenvalueHull, known: Complex) -> float:
     """Largest |w| at which the first possible trial of `prove_complete` evaluates D; inf if no trial is
     possible. line: Re w of the vertical line. known: known eigenvalues, (n,).
     """
     largest = float(np.abs(known).max())
-    trials = COMPLETENESS.proof_trials()
+    trials = COMPLETENESS_SETTINGS.proof_trials()
     tried = ((_last_proof_point(points_right_of_hull(line, hull.a, hull.c, k)), most) for k, most in trials)
     return next((last for last, most in tried if last <= most * largest), math.inf)
 
 
-def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple[int, float]:
+def cheapest_proof(line: float, hull: EigenvalueHull, known: Complex, modes: int) -> tuple[int, float]:
     """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof).
 
     line: Re w of the vertical line. known: approximate eigenvalues, (n,), leading first. The cheapest proof
@@ -132,7 +132,7 @@ def cheapest_proof(line: float, hull: Hull, known: Complex, modes: int) -> tuple
     best = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
     whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
-    for k, farthest in COMPLETENESS.proof_trials():
+    for k, farthest in COMPLETENESS_SETTINGS.proof_trials():
         last = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
         for number in range(modes, len(sizes) + 1):
             largest = sizes[number - 1]
@@ -152,7 +152,7 @@ def proves_completeness(found: Remainder) -> bool:
 
     False also if R is far below 0: some known eigenvalue is then not a root of D.
     """
-    allowed = COMPLETENESS.max_remainder * found.least_contribution
+    allowed = COMPLETENESS_SETTINGS.max_remainder * found.least_contribution
     return found.R + found.rounding < allowed and -allowed < found.R
 
 
@@ -164,14 +164,13 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     line: Re w of the vertical line. k: number of points. a, c: constants of the hull.
     """
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(COMPLETENESS.min_first_point * abs(line), a * a, COMPLETENESS.min_first_distance)
-    points = np.empty(k)
-    for j in range(k):
-        points[j] = x * (1 + COMPLETENESS.point_spread * j / max(k - 1, 1))
+    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point * abs(line))
+    x = max(x, COMPLETENESS_SETTINGS.min_first_distance)
+    points = x * (1 + COMPLETENESS_SETTINGS.point_spread * np.arange(k) / max(k - 1, 1))
     while not _largest_angle_sum(points, a, c) < math.pi / 2:
         if not points[0] < 1 / EXPONENT_SETTINGS.least_divisor:
             return points[:0]
-        points *= COMPLETENESS.widening_factor
+        points *= COMPLETENESS_SETTINGS.widening_factor
     return points
 
 
@@ -193,7 +192,7 @@ def _largest_angle_sum(points: Array, a: float, c: float) -> float:
 
 @compiled
 def remainder_of_sum(
-    line: float, known: Complex, error: Array, hull: Hull, points: Array, level: tuple[float, Array]
+    line: float, known: Complex, error: Array, hull: EigenvalueHull, points: Array, level: tuple[float, Array]
 ) -> Remainder:
     """The sum R over the unknown eigenvalues, with its rounding error and the least contribution of an
     unknown eigenvalue right of the line.
@@ -213,7 +212,7 @@ def remainder_of_sum(
         slope = (value.D_w / value.D).real
         R += weight * slope
         # The c_j alternate in sign: R may be far smaller than the terms that are rounded.
-        blur += abs(weight * slope) * COMPLETENESS.rounding_of_slope * value.noise / abs(value.D)
+        blur += abs(weight * slope) * COMPLETENESS_SETTINGS.rounding_of_slope * value.noise / abs(value.D)
     for n in range(len(known)):
         w = known[n]
         phi = 1 + 0j
@@ -234,9 +233,9 @@ def _least_term_right_of(line: float, points: Array, a: float, c: float) -> floa
     least = 1.0
     for x in points:
         least /= x - line
-    for i in range(COMPLETENESS.strip_count):
-        start = line + (right - line) * i / COMPLETENESS.strip_count
-        stop = line + (right - line) * (i + 1) / COMPLETENESS.strip_count
+    for i in range(COMPLETENESS_SETTINGS.strip_count):
+        start = line + (right - line) * i / COMPLETENESS_SETTINGS.strip_count
+        stop = line + (right - line) * (i + 1) / COMPLETENESS_SETTINGS.strip_count
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n

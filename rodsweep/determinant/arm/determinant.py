@@ -2,9 +2,8 @@
 
 The propagators of an element are polynomials in w/W that are valid for |w| <= W. Every bound W has its own
 elements, made at first use. Elements are so short that the fastest local exponential grows at most by
-exp(`ARM_ELEMENTS.max_exponent`) over an element, and that the Gauss points resolve the coefficients. Elements
-end at every break of the profile.
-"""
+exp(`ARM_ELEMENT_SETTINGS.max_exponent`) over an element, and that the Gauss points resolve the coefficients.
+Elements end at every break of the profile."""
 
 from functools import cached_property, lru_cache
 from operator import itemgetter
@@ -19,11 +18,11 @@ from ...model.rod import Rod
 from ..value import DeterminantValue
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
-from .elements.settings import ARM_ELEMENTS
+from .elements.settings import ARM_ELEMENT_SETTINGS
 from .local_waves import ArmSamples, arm_samples, wave_number_and_length_at, wave_numbers_and_lengths_at
 from .value import determinant_along_chain
 
-BoundedPropagators = tuple[float, Array]
+PropagatorsUpToW = tuple[float, Array]
 """(W, propagators that are valid for |w| <= W, (elements, terms, PADDED))."""
 
 
@@ -34,9 +33,9 @@ class ArmDeterminant:
     elements do not resolve the arm.
     """
 
-    def __init__(self, rod: Rod, known: BoundedPropagators | None = None):
+    def __init__(self, rod: Rod, known: PropagatorsUpToW | None = None):
         self.rod = rod
-        self._known_propagators: list[BoundedPropagators] = [] if known is None else [known]
+        self._known_propagators: list[PropagatorsUpToW] = [] if known is None else [known]
         points, weights, local = sampled_arm(rod)
         self.samples = arm_samples(float(rod.F), local, weights)
         each = LocalCoefficients(*(x[None] for x in local))
@@ -44,7 +43,7 @@ class ArmDeterminant:
 
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
-        W, polynomials = self.level(abs(w))
+        W, polynomials = self.propagators_for(abs(w))
         return determinant_along_chain(complex(w), W, polynomials)
 
     def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
@@ -52,50 +51,50 @@ class ArmDeterminant:
 
         The differences between values for several factors show the rounding error of D.
         """
-        W, polynomials = self.level(factor * abs(w), ARM_ELEMENTS.max_compared_reuse_ratio)
+        W, polynomials = self.propagators_for(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
         return determinant_along_chain(complex(w), W, polynomials)
 
-    def elements(self, size: float) -> int:
+    def element_count(self, size: float) -> int:
         """Number of elements for D at |w| = size."""
-        return len(self.level(size)[1])
+        return len(self.propagators_for(size)[1])
 
     def wave_number(self, w: complex) -> float:
         """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
-        return self.scales(w)[0]
+        return self.wave_number_and_length(w)[0]
 
-    def length(self, w: complex) -> float:
+    def phase_change_length(self, w: complex) -> float:
         """Change of w over which an exponent of D, integrated along the arm, changes by about one, in
         1/tau2."""
-        return self.scales(w)[1]
+        return self.wave_number_and_length(w)[1]
 
-    def scales(self, w: complex) -> tuple[float, float]:
-        """(`wave_number`, `length`) at w."""
+    def wave_number_and_length(self, w: complex) -> tuple[float, float]:
+        """(`wave_number`, `phase_change_length`) at w."""
         return wave_number_and_length_at(w, self.samples)
 
-    def scales_of_all(self, w: Complex) -> Array:
-        """Array (2, n) of `wave_number` and `length` at every w, (n,)."""
+    def wave_numbers_and_lengths(self, w: Complex) -> Array:
+        """Array (2, n) of `wave_number` and `phase_change_length` at every w, (n,)."""
         return wave_numbers_and_lengths_at(w, self.samples)
 
     @cached_property
     def gauss_samples(self) -> ArmSamples:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
-        points, _, weights = gauss_method(ARM_ELEMENTS.stages)
+        points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
         lengths = np.diff(self.rod.build.breaks)[:, None]
         local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
-    def level(self, size: float, highest: float | None = None) -> BoundedPropagators:
+    def propagators_for(self, size: float, highest: float | None = None) -> PropagatorsUpToW:
         """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= size.
 
         Existing propagators with the smallest such W are reused if W <= highest * size; otherwise new
-        propagators are made. highest: by default `ARM_ELEMENTS.max_reuse_ratio`.
+        propagators are made. highest: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`.
         """
-        highest = ARM_ELEMENTS.max_reuse_ratio if highest is None else highest
-        size = max(size, ARM_ELEMENTS.min_largest_w)
+        highest = ARM_ELEMENT_SETTINGS.max_reuse_ratio if highest is None else highest
+        size = max(size, ARM_ELEMENT_SETTINGS.min_largest_w)
         for level in self._known_propagators:
             if size <= level[0] <= highest * size:
                 return level
-        W = ARM_ELEMENTS.largest_w_factor * size
+        W = ARM_ELEMENT_SETTINGS.largest_w_factor * size
         made = W, self._propagators(W)
         self._known_propagators = sorted([*self._known_propagators, made], key=itemgetter(0))
         return made
@@ -141,9 +140,9 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
     """
     tapers = np.array([rod.taper for rod in rods])
     edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].build.breaks)
-    points, _, _ = gauss_method(ARM_ELEMENTS.stages)
-    for _ in range(ARM_ELEMENTS.max_halvings):
-        if not len(edges) <= ARM_ELEMENTS.max_elements:
+    points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stages)
+    for _ in range(ARM_ELEMENT_SETTINGS.max_halvings):
+        if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
             break
         lengths = edges[1:] - edges[:-1]
         local = np.array(Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points))
@@ -151,11 +150,11 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         if finer is edges:
             return PropagatorElements(lengths, local)
         edges = finer
-    most = ARM_ELEMENTS.max_elements
+    most = ARM_ELEMENT_SETTINGS.max_elements
     raise FloatingPointError(f"{most} elements are too few to resolve this arm at |w| = {W:g}")
 
 
-@lru_cache(maxsize=ARM_ELEMENTS.max_cached_arms)
+@lru_cache(maxsize=ARM_ELEMENT_SETTINGS.max_cached_arms)
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """The determinant D of an arm, cached: propagators made for one w serve later calls."""
     return ArmDeterminant(rod)

@@ -23,7 +23,7 @@ from ..value import DeterminantValue
 from .determinant import CoefficientSamples, coefficient_samples, elements_for
 from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
-from .elements.settings import ARM_ELEMENTS
+from .elements.settings import ARM_ELEMENT_SETTINGS
 from .value import ARM_VALUE_SETTINGS, determinant_along_chain, path_value_by_chain
 
 LINEAR_SCALE = math.inf
@@ -61,24 +61,23 @@ ARM_FAMILY_SETTINGS = ArmFamilySettings()
 
 
 class ArmFamily(NamedTuple):
-    """Propagators of all arms with p from `low` to `high`, for |w| <= W, as Chebyshev series in p.
+    """Propagators of all arms with p from `p_low` to `p_high`, for |w| <= W, as Chebyshev series in p.
 
     scale: the series are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`. coefficients:
     Chebyshev coefficients, (nodes, elements, terms, PADDED).
     """
 
-    low: float
-    high: float
+    p_low: float
+    p_high: float
     scale: float
-    W: float
+    largest_w: float
     coefficients: Array
 
 
 def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
-    """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are not
-    smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm, and
-    FloatingPointError if no elements resolve an arm.
-    """
+    """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are
+    not smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm,
+    and FloatingPointError if no elements resolve an arm."""
     for number, share in ARM_FAMILY_SETTINGS.trials():
         scale = share * (high - low)
         arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, number).tolist()]
@@ -87,7 +86,8 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
         if not _series_converges(samples):
             continue
         found = elements_for(arms, samples, W)
-        if len(found.lengths) * ARM_ELEMENTS.max_terms * PADDED > ARM_FAMILY_SETTINGS.max_propagator_entries:
+        entries = len(found.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
+        if entries > ARM_FAMILY_SETTINGS.max_propagator_entries:
             return None
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail):
@@ -98,8 +98,7 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
 
 def has_smooth_coefficients(path: Path, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
-    Raises ValueError at a p without a valid arm.
-    """
+    Raises ValueError at a p without a valid arm."""
     for number, share in reversed(ARM_FAMILY_SETTINGS.trials()):
         p = _interpolation_points(low, high, share * (high - low), number)
         if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):
@@ -145,16 +144,16 @@ def _chebyshev_coefficient_matrix(number: int) -> Array:
 
 
 @compiled
-def propagators_at(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
+def write_propagators(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
     """Writes the propagators of the arm at p into polynomials, and their derivatives by p into changes, both
     (elements, terms, PADDED).
     """
-    half = (family.high - family.low) / 2
-    t = (p - (family.low + family.high) / 2) / half
+    half = (family.p_high - family.p_low) / 2
+    t = (p - (family.p_low + family.p_high) / 2) / half
     if family.scale < LINEAR_SCALE:
         whole = math.log1p(2 * half / family.scale)
-        t = 2 * math.log1p((p - family.low) / family.scale) / whole - 1
-        half = (p - family.low + family.scale) * whole / 2
+        t = 2 * math.log1p((p - family.p_low) / family.scale) / whole - 1
+        half = (p - family.p_low + family.scale) * whole / 2
     nodes = len(family.coefficients)
     T = np.empty(nodes)
     rates = np.empty(nodes)
@@ -203,25 +202,25 @@ def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Ar
 
 
 @compiled
-def propagators_in_family(family: ArmFamily, p: float) -> tuple[float, Array]:
+def propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
     """(W, propagators for |w| <= W, (elements, terms, PADDED)) of the arm at p of a family."""
     polynomials = np.empty(family.coefficients.shape[1:])
-    propagators_at(family, p, polynomials, np.empty_like(polynomials))
-    return family.W, polynomials
+    write_propagators(family, p, polynomials, np.empty_like(polynomials))
+    return family.largest_w, polynomials
 
 
 @compiled
-def determinant_in_family(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
+def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
     """D and dD/dw times exp(-S) of the arm at p of a family; |w| <= W."""
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
-    propagators_at(family, p, polynomials, changes)
-    return determinant_along_chain(w, family.W, polynomials)
+    write_propagators(family, p, polynomials, changes)
+    return determinant_along_chain(w, family.largest_w, polynomials)
 
 
 @compiled
-def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
+def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
     """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family. Newton's
     method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for nearly
     double eigenvalues.
@@ -229,19 +228,19 @@ def eigenvalue_in_family(family: ArmFamily, guess: complex, p: float) -> tuple[c
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
-    propagators_at(family, p, polynomials, changes)
+    write_propagators(family, p, polynomials, changes)
     w = guess
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
-        value = determinant_along_chain(w, family.W, polynomials)
+        value = determinant_along_chain(w, family.largest_w, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
             step = complex(step.real, 0.0)
-        if not abs(step) < last / 2 or abs(w) > family.W:
+        if not abs(step) < last / 2 or abs(w) > family.largest_w:
             break
         last = abs(step)
         w -= step
-    D, D_w, D_p, _, noise = path_value_by_chain(w, family.W, polynomials, changes)
+    D, D_w, D_p, _, noise = path_value_by_chain(w, family.largest_w, polynomials, changes)
     size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:

@@ -14,7 +14,7 @@ from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
-from .determinant import ArmDeterminant, BoundedPropagators
+from .determinant import ArmDeterminant, PropagatorsUpToW
 from .value import ARM_VALUE_SETTINGS, determinant_along_chain
 
 
@@ -35,7 +35,7 @@ ARM_ROOT_SETTINGS = ArmRootSettings()
 
 
 @compiled
-def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> complex:
+def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
     h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
     after = determinant_along_chain(w + h, level[0], level[1])
@@ -45,7 +45,7 @@ def _second_derivative(w: complex, S: float, level: BoundedPropagators) -> compl
 
 
 @compiled
-def _root_error_from_value(w: complex, value: DeterminantValue, level: BoundedPropagators) -> float:
+def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
     e = ARM_VALUE_SETTINGS.root_residual * abs(value.D) + ARM_VALUE_SETTINGS.root_noise * value.noise
     size = abs(value.D_w)
@@ -60,15 +60,13 @@ def _root_error_from_value(w: complex, value: DeterminantValue, level: BoundedPr
 
 
 @compiled
-def _root_error_by_propagators(w: complex, level: BoundedPropagators) -> float:
+def _root_error_by_propagators(w: complex, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the propagators of `level`."""
     return _root_error_from_value(w, determinant_along_chain(w, level[0], level[1]), level)
 
 
 @compiled
-def _newton_from_guess(
-    guess: complex, level: BoundedPropagators, last: float
-) -> tuple[complex, float, float]:
+def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> tuple[complex, float, float]:
     """Returns (w, error of w, length of the last step) after Newton's method from `guess`, with the
     propagators of `level`.
 
@@ -93,7 +91,7 @@ def _newton_from_guess(
 
 
 @compiled
-def _two_roots_by_propagators(middle: complex, level: BoundedPropagators) -> tuple[complex, complex]:
+def _two_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> tuple[complex, complex]:
     """`two_roots` about `middle`, with the propagators of `level`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     if middle.imag == 0:
@@ -102,9 +100,9 @@ def _two_roots_by_propagators(middle: complex, level: BoundedPropagators) -> tup
     return roots_of_parabola(middle, D, D_w, _second_derivative(middle, S, level))
 
 
-def _propagators_at(w: complex, determinant: ArmDeterminant) -> BoundedPropagators:
+def _propagators_at(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
     """(W, propagators) that are valid for D and D'' at w."""
-    return determinant.level((1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w))
+    return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:

@@ -18,14 +18,14 @@ from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import Roots
 from ..roots.settings import ROOT_SETTINGS
 from .determinant import ArmDeterminant
-from .hull.region import Hull
+from .hull.region import EigenvalueHull
 from .newton import ARM_ROOT_SETTINGS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
 
 T = TypeVar("T")
 
 
 def refine_mesh_eigenvalues(
-    raw: Complex, determinant: ArmDeterminant, hull: Hull, most_waves: float, largest: float = 0.0
+    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, most_waves: float, largest: float = 0.0
 ) -> Roots:
     """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
@@ -38,7 +38,7 @@ def refine_mesh_eigenvalues(
         for w in raw.tolist()
     ]
     inside = [i for i, w in enumerate(first) if _is_in_eigenvalue_box(w, hull)]
-    waves, lengths = determinant.scales_of_all(np.array([first[i] for i in inside], complex))
+    waves, lengths = determinant.wave_numbers_and_lengths(np.array([first[i] for i in inside], complex))
     scale = dict(zip(inside, lengths.tolist(), strict=True))
     resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= most_waves]
     start = [first[i] for i in resolved]
@@ -57,7 +57,7 @@ def refine_mesh_eigenvalues(
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))
     kept = np.array([chosen[stands[root.guess_index]] for root in found], np.int64)
     w: Complex = np.array([root.w for root in found], complex)
-    wave = determinant.scales_of_all(w)[0]
+    wave = determinant.wave_numbers_and_lengths(w)[0]
     error = _errors_of_located_roots(found, determinant)
     length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
@@ -84,11 +84,11 @@ def _prepare_elements(determinant: ArmDeterminant, size: float, largest: float) 
     all |w| up to `size`."""
     if size < largest <= ARM_ROOT_SETTINGS.max_w_ratio * size:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
-            determinant.level(largest)
-    determinant.level(size)
+            determinant.propagators_for(largest)
+    determinant.propagators_for(size)
 
 
-def _is_in_eigenvalue_box(w: complex, hull: Hull) -> bool:
+def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
     """Whether w is finite and lies in the box that contains all eigenvalues with real parts >= Re w."""
     if not cmath.isfinite(w):
         return False

@@ -15,19 +15,19 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import NOISE_UNIT
-from ..parameter_path import ValueAlong
+from ..parameter_path import PathDeterminantValue
 from ..value import DeterminantValue
 from .elements.evaluation import (
+    apply_propagator,
+    apply_propagator_with_change,
+    apply_real_propagator,
+    apply_real_propagator_with_change,
     fill_propagator,
+    fill_propagator_value,
     fill_real_propagator,
-    fill_real_value,
-    fill_value,
+    fill_real_propagator_value,
     modulus_sum_of_products,
     modulus_sum_of_real_products,
-    multiply,
-    multiply_real,
-    multiply_real_with_change,
-    multiply_with_change,
     powers_and_derivatives,
 )
 from .elements.minor_rates import PADDED, SM
@@ -96,11 +96,11 @@ def _multiply_along_chain(
     S = 0.0
     for e in range(elements):
         fill_propagator(polynomials[e], powers, C)
-        multiply(C, here[0], ahead[0])
-        multiply_with_change(C, here[1], C[2:], here[0], ahead[1])
+        apply_propagator(C, here[0], ahead[0])
+        apply_propagator_with_change(C, here[1], C[2:], here[0], ahead[1])
         if along:
-            fill_value(changes[e], powers, change)
-            multiply_with_change(C, here[2], change, here[0], ahead[2])
+            fill_propagator_value(changes[e], powers, change)
+            apply_propagator_with_change(C, here[2], change, here[0], ahead[2])
         size = _norm(ahead[0])
         if e == elements - 1:
             size = max(size, modulus_sum_of_products(C, here[0]))
@@ -129,11 +129,11 @@ def _multiply_along_real_chain(
     S = 0.0
     for e in range(elements):
         fill_real_propagator(polynomials[e], powers, C)
-        multiply_real(C[0], here[0], ahead[0])
-        multiply_real_with_change(C[0], here[1], C[1], here[0], ahead[1])
+        apply_real_propagator(C[0], here[0], ahead[0])
+        apply_real_propagator_with_change(C[0], here[1], C[1], here[0], ahead[1])
         if along:
-            fill_real_value(changes[e], powers, change)
-            multiply_real_with_change(C[0], here[2], change, here[0], ahead[2])
+            fill_real_propagator_value(changes[e], powers, change)
+            apply_real_propagator_with_change(C[0], here[2], change, here[0], ahead[2])
         size = _real_norm(ahead[0])
         if e == elements - 1:
             size = max(size, modulus_sum_of_real_products(C[0], here[0]))
@@ -155,8 +155,8 @@ def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, floa
     here[0, SM] = 1.0
     S = 0.0
     for e in range(len(polynomials)):
-        fill_value(polynomials[e], powers, C)
-        multiply(C, here, ahead)
+        fill_propagator_value(polynomials[e], powers, C)
+        apply_propagator(C, here, ahead)
         size = _norm(ahead)
         if _needs_rescaling(size):
             ahead /= size
@@ -173,7 +173,7 @@ def log_modulus_by_chain(w: complex, W: float, polynomials: Array) -> float:
 
 
 @compiled
-def path_value_by_chain(w: complex, W: float, polynomials: Array, changes: Array) -> ValueAlong:
+def path_value_by_chain(w: complex, W: float, polynomials: Array, changes: Array) -> PathDeterminantValue:
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
     polynomials, changes: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
@@ -183,7 +183,7 @@ def path_value_by_chain(w: complex, W: float, polynomials: Array, changes: Array
         D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, changes)
     else:
         D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, changes)
-    return ValueAlong(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
+    return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
 
 
 @compiled

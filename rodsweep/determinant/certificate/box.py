@@ -90,16 +90,16 @@ def squared_amplification(rod: Rod) -> float:
     return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
 
 
-def squared_amplification_over(path: Path, start: float, stop: float) -> float:
+def squared_amplification_on_path(path: Path, start: float, stop: float) -> float:
     """An upper bound of `squared_amplification` over all rods of a path with p from start to stop; inf if no
     bound is known.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
-    return squared_amplification_between(ends[0], ends[1])
+    return squared_amplification_between_rods(ends[0], ends[1])
 
 
 @compiled
-def squared_amplification_between(first: Coefficients, last: Coefficients) -> float:
+def squared_amplification_between_rods(first: Coefficients, last: Coefficients) -> float:
     """An upper bound of `squared_amplification` over all rods between two rods of a path; inf if no
     bound is known.
 

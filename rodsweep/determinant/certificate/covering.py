@@ -28,7 +28,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
-from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along
+from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along_path
 from ..roots.newton import FAILED_ZERO, LocatedZero, crossing_newton
 from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
@@ -63,9 +63,9 @@ class BoxProofSettings(CompiledSettings):
 
 BOX_PROOF_SETTINGS = BoxProofSettings()
 
-EMPTY = 0
-REGULAR = 1
-UNDECIDED = 2
+EMPTY_BOX = 0
+REGULAR_BOX = 1
+UNDECIDED_BOX = 2
 """Outcomes of `examine_box`. EMPTY: D has no zero in the box. REGULAR: at most one zero in the doubled box.
 UNDECIDED: neither is proved."""
 
@@ -143,7 +143,7 @@ def examine_box(
     the box in this variable; the variable with the higher cost is divided. 0 for other boxes. coefficients,
     direction: coefficients at the centre and their derivative by p.
     """
-    D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
+    D, D_w, D_p, S, noise = determinant_along_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
     mean = mean_growth_rates(centre)
     rounding = DISC_BOUND_SETTINGS.rounding_over_noise * noise
@@ -154,7 +154,7 @@ def examine_box(
             b = (D_p - rates[1] * D) * half[1]
             room = DISC_BOUND_SETTINGS.max_relative_change * distance_from_zero_bound(D, a, b) - rounding
             if room > 0 and is_remainder_below(centre, rates, half, room, 1):
-                return EMPTY, 0.0, 0.0
+                return EMPTY_BOX, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
     a = 2j * (D_w - mean[0] * D) * half[0]
     b = 2 * (D_p - mean[1] * D) * half[1]
@@ -165,9 +165,9 @@ def examine_box(
         room = (DISC_BOUND_SETTINGS.max_relative_change * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
         if room > 0 and is_remainder_below(centre, mean, double, room, 2):
-            return REGULAR, 0.0, 0.0
+            return REGULAR_BOX, 0.0, 0.0
     in_eta, in_p = exponent_changes(centre, half)
-    return UNDECIDED, in_eta, in_p
+    return UNDECIDED_BOX, in_eta, in_p
 
 
 @compiled
@@ -210,9 +210,9 @@ def cover_with_boxes(
         examined += 1
         coefficients = coefficients_at(p, origin, direction)
         kind, cost_w, cost_p = examine_box(complex(0.0, eta), coefficients, direction, half)
-        if kind == EMPTY:
+        if kind == EMPTY_BOX:
             continue
-        if kind == REGULAR:
+        if kind == REGULAR_BOX:
             zero = crossing_newton(eta, p, origin, direction, half)
             away = _box_distance(zero, eta, p, half)
             if away <= 2:  # false if Newton's method failed, which returns nan

@@ -33,7 +33,7 @@ class WindingSettings(CompiledSettings):
     width_factor: float = 4.0
     """Factor on the width of the box. A wider box is cheaper, because one exponential dominates D far from
     the eigenvalues."""
-    width_added: float = 50.0
+    additional_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
     min_height: float = 0.5
     """Smallest height of the box divided by the distance of the line from the imaginary axis."""
@@ -56,9 +56,9 @@ class WindingSettings(CompiledSettings):
 
 WINDING_SETTINGS = WindingSettings()
 
-PHASE_LOST = "an eigenvalue lies too close to the contour, or the contour is too long"
+PHASE_LOST_MESSAGE = "an eigenvalue lies too close to the contour, or the contour is too long"
 """Reason of a failed count: the change of arg D along the contour could not be proved."""
-NO_INTEGER = "the winding number of D is not an integer within rounding errors"
+NO_INTEGER_MESSAGE = "the winding number of D is not an integer within rounding errors"
 """Reason of a failed count: rounding errors are too large."""
 
 
@@ -192,14 +192,14 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
             )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real = WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.width_added
+    real = WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width
     imag = max(imag, WINDING_SETTINGS.min_height * abs(line))
     change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
     if nodes < 0:
-        return EigenvalueCount(None, -nodes, PHASE_LOST)
+        return EigenvalueCount(None, -nodes, PHASE_LOST_MESSAGE)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
-        return EigenvalueCount(None, nodes, NO_INTEGER)
+        return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
     return EigenvalueCount(number, nodes)

@@ -15,7 +15,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
-from ..parameter_path import coefficients_at, determinant_along
+from ..parameter_path import coefficients_at, determinant_along_path
 from ..value import scaled_determinant
 
 
@@ -73,7 +73,7 @@ def crossing_newton(
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)
-        D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
+        D, D_w, D_p, _, noise = determinant_along_path(complex(0.0, eta), coefficients, direction)
         # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
         a = 1j * D_w
         # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
@@ -154,7 +154,7 @@ def _real_determinant(
     """D, D_w, D_p, S and the rounding error of D at real w = x and p, where D and its derivatives are
     real."""
     coefficients = coefficients_at(p, origin, direction)
-    D, D_w, D_p, S, noise = determinant_along(complex(x, 0.0), coefficients, direction)
+    D, D_w, D_p, S, noise = determinant_along_path(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, noise
 
 
@@ -193,5 +193,5 @@ def eigenvalue_newton(
     d(F, nu, c2, gamma3)/dp.
     """
     w = refine_eigenvalue(w, coefficients)
-    value = determinant_along(w, coefficients, direction)
+    value = determinant_along_path(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

@@ -21,7 +21,7 @@ from ..certificate.box import box_from_amplification
 from ..value import (
     DETERMINANT_SETTINGS,
     distance_to_next_root,
-    newton_correction,
+    newton_correction_and_scales,
     scaled_determinant,
     second_derivative,
 )
@@ -35,7 +35,7 @@ class Roots(NamedTuple):
 
     mesh_indices: index of each root in the list of eigenvalues of the mesh. error: absolute error estimates.
     displacement: |eigenvalue of the mesh - root| / max(|w|, length over which D changes). wave_number:
-    largest |q|, in 1/L. on_the_axis: whether the root is imaginary within its error. unmatched_ahead: number
+    largest |q|, in 1/L. is_on_axis: whether the root is imaginary within its error. unmatched_count: number
     of eigenvalues of the mesh that lie in the a-priori box right of all roots and do not approximate a root.
     """
 
@@ -44,20 +44,20 @@ class Roots(NamedTuple):
     error: Array
     displacement: Array
     wave_number: Array
-    on_the_axis: NDArray[np.bool_]
-    unmatched_ahead: int
+    is_on_axis: NDArray[np.bool_]
+    unmatched_count: int
 
 
 @compiled
-def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
     """Returns (estimated distance from w to the nearest root of D, length, wave number), as
-    `newton_correction`, but also near double roots.
+    `newton_correction_and_scales`, but also near double roots.
 
     With e = max(|D|, rounding error of D), the Newton correction e/|D'| is valid if |D'|^2 is large against
     e |D''|. Otherwise w lies at the distance |D'/D''| from the middle of two roots, and these lie within
     sqrt(2 e/|D''|) of the middle.
     """
-    error, length, wave = newton_correction(w, coefficients)
+    error, length, wave = newton_correction_and_scales(w, coefficients)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
         e = max(abs(D), DETERMINANT_SETTINGS.typical_noise * noise)
@@ -168,7 +168,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, amplification: float
             continue
         if abs(raw[i].imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(raw[i]):
             first[i] = complex(raw[i].real, 0.0)
-        error[i], length[i], wave[i] = root_error(first[i], coefficients)
+        error[i], length[i], wave[i] = root_error_and_scales(first[i], coefficients)
         # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.
         real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
@@ -223,7 +223,7 @@ def _refine_candidates(
         else:
             # Close to a double root D and D' are rounding errors, whose quotient may lead anywhere.
             w[i] = refine_eigenvalue(w[i], coefficients, reach[i])
-            error[i], _, wave[i] = root_error(w[i], coefficients)
+            error[i], _, wave[i] = root_error_and_scales(w[i], coefficients)
     return w, stands
 
 

@@ -17,7 +17,7 @@ def barycentric_weights(nodes: Array) -> Array:
     return np.sign(difference).prod(axis=1) * np.exp(logarithm - logarithm.max())
 
 
-def interpolation(nodes: Array, points: Array) -> Array:
+def lagrange_interpolation_matrix(nodes: Array, points: Array) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to values of the interpolating polynomial at `points`,
     (m,).
     """
@@ -32,7 +32,7 @@ def interpolation(nodes: Array, points: Array) -> Array:
     return matrix
 
 
-def differentiation(nodes: Array) -> Array:
+def differentiation_matrix(nodes: Array) -> Array:
     """Matrix (n, n) from values at `nodes`, (n,), to derivatives of the interpolating polynomial at `nodes`.
     Every row sums to 0.
     """

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ...arrays import Array
-from .basis import differentiation, interpolation
+from .basis import differentiation_matrix, lagrange_interpolation_matrix
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,15 +37,15 @@ class Collocation(NamedTuple):
 
     nodes: Array
     weights: Array
-    differentiation: Array
+    differentiation_matrix: Array
 
     @property
     def stages(self) -> int:
         return len(self.nodes)
 
-    def evaluation(self, at: Array) -> Array:
+    def evaluation_matrix(self, at: Array) -> Array:
         """Matrix (m, s + 1) from values at 0 and the nodes to values at the times `at`, (m,), in [0, 1]."""
-        return interpolation(np.append(0.0, self.nodes), at)
+        return lagrange_interpolation_matrix(np.append(0.0, self.nodes), at)
 
 
 @cache
@@ -63,6 +63,6 @@ def radau_method(stages: int) -> Collocation:
     moments[0] = 1.0
     # The weights integrate Legendre polynomials exactly; only the integral of P_0 is nonzero.
     weights = np.linalg.solve(legendre.legvander(x, stages - 1).T, moments)
-    D = 2 * differentiation(np.append(-1.0, x))
+    D = 2 * differentiation_matrix(np.append(-1.0, x))
     # The equations hold at the stages, not at the start, so the first row of D is not used.
     return Collocation((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from .basis import interpolation
-from .quadrature import gauss_lobatto
+from .basis import lagrange_interpolation_matrix
+from .quadrature import gauss_lobatto_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,14 +17,14 @@ class ElementSettings:
     """Settings of elements: points close to the ends of elements, and maximum sizes of caches."""
 
     end_distance: float = 1e-15
-    """Distance of the first and last `Elements.points_inside` from the ends of an element, in L: a few
-    rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
+    """Distance of the first and last `Elements.points_inside_elements` from the ends of an element, in L: a
+    few rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
     1e-8 on every mesh."""
-    max_meshes: int = 64
+    max_cached_meshes: int = 64
     """Maximum number of cached meshes, and of cached matrices of each kind; a sweep needs about ten."""
-    max_pencils: int = 16
+    max_cached_pencils: int = 16
     """Maximum number of cached pencils; a pencil for 300 growing modes takes 10 MB."""
-    max_mesh_pairs: int = 256
+    max_cached_mesh_pairs: int = 256
     """Maximum number of cached interpolation matrices between two meshes, and of cached lists of edges."""
 
 
@@ -58,7 +58,7 @@ class Elements:
     @cached_property
     def positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
-        inner = (gauss_lobatto(self.order)[0][1:] + 1) / 2
+        inner = (gauss_lobatto_rule(self.order)[0][1:] + 1) / 2
         starts: Array = np.array(self.edges[:-1])
         positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
         # Nodes at edges must equal the edges exactly, because jumps of the material are compared with these
@@ -72,40 +72,40 @@ class Elements:
         return np.arange(self.elements)[:, None] * self.order + np.arange(self.order + 1)
 
     @cached_property
-    def points_inside(self) -> Array:
+    def points_inside_elements(self) -> Array:
         """Coordinates u of the nodes of every element, (elements, order + 1), with the end nodes moved just
         inside the element.
 
         At a jump between two elements, each element therefore evaluates a coefficient on its own side.
         """
         edges: Array = np.array(self.edges)[:, None]
-        points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto(self.order)[0] + 1) / 2
+        points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto_rule(self.order)[0] + 1) / 2
         return np.clip(
             points, edges[:-1] + ELEMENT_SETTINGS.end_distance, edges[1:] - ELEMENT_SETTINGS.end_distance
         )
 
-    def evaluation(self, points: Array) -> Array:
+    def evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
-        nodes = gauss_lobatto(self.order)[0]
+        nodes = gauss_lobatto_rule(self.order)[0]
         matrix = np.zeros((len(points), self.nodes + 1))
-        for first, inside, local in self.by_element(points):
-            matrix[inside, first : first + self.order + 1] = interpolation(nodes, local)
+        for first, inside, local in self.points_by_element(points):
+            matrix[inside, first : first + self.order + 1] = lagrange_interpolation_matrix(nodes, local)
         return matrix
 
-    def evaluation_by_element(self, points: Array) -> Array:
+    def element_evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, elements (order + 1)) from values at the nodes of every element to values at `points`,
         (n,), in [0, 1].
 
         A node between two elements has one value for each of the two elements.
         """
-        nodes = gauss_lobatto(self.order)[0]
+        nodes = gauss_lobatto_rule(self.order)[0]
         matrix = np.zeros((len(points), self.element_nodes.size))
-        for first, inside, local in self.by_element(points):
+        for first, inside, local in self.points_by_element(points):
             start = first + first // self.order
-            matrix[inside, start : start + self.order + 1] = interpolation(nodes, local)
+            matrix[inside, start : start + self.order + 1] = lagrange_interpolation_matrix(nodes, local)
         return matrix
 
-    def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
+    def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
         """Yields (first node, indices, coordinates) for each element that contains some of the `points`,
         (n,).
 
@@ -118,7 +118,7 @@ class Elements:
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def equal_edges(elements: int) -> tuple[float, ...]:
     """Edges of `elements` elements of equal length on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from .basis import differentiation, interpolation
+from .basis import differentiation_matrix, lagrange_interpolation_matrix
 from .elements import ELEMENT_SETTINGS, Elements, equal_edges
-from .quadrature import gauss, gauss_lobatto
+from .quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,15 +29,15 @@ RECONSTRUCTION_SETTINGS = ReconstructionSettings()
 
 
 class NodeMatrices(NamedTuple):
-    """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak`), (nodes + 1, nodes + 1), and the weights
-    W, (nodes + 1,).
+    """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak_derivative`), (nodes + 1, nodes + 1), and
+    the weights W, (nodes + 1,).
 
     D: differentiation. W: lumped mass. All arrays are contiguous, for inner loops over the nodes.
     """
 
     D: Array
     D_transposed: Array
-    weak: Array
+    weak_derivative: Array
     weights: Array
 
 
@@ -52,7 +52,7 @@ class Mesh(Elements):
 
     def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int]]:
         """Pickles only edges and order; messages to other ranks are pickled too."""
-        return mesh_on, (self.edges, self.order)
+        return mesh_with_edges, (self.edges, self.order)
 
     @property
     def quadrature(self) -> Array:
@@ -60,16 +60,16 @@ class Mesh(Elements):
         return self.matrices.weights
 
 
-def mesh(elements: int, order: int) -> Mesh:
+def uniform_mesh(elements: int, order: int) -> Mesh:
     """The mesh of `elements` elements of equal length and of order `order`."""
-    return mesh_on(equal_edges(elements), order)
+    return mesh_with_edges(equal_edges(elements), order)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def mesh_with_edges(edges: tuple[float, ...], order: int) -> Mesh:
     """The mesh whose elements lie between neighbouring `edges` and have the order `order`; cached."""
-    x, w = gauss_lobatto(order)
-    slopes = differentiation(x)
+    x, w = gauss_lobatto_rule(order)
+    slopes = differentiation_matrix(x)
     lengths = np.diff(edges)
     nodes = len(lengths) * order
     weighted = np.zeros((nodes + 1, nodes + 1))
@@ -86,13 +86,13 @@ def mesh_on(edges: tuple[float, ...], order: int) -> Mesh:
     return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
     """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`.
 
     Shape (target.nodes + 1, source.nodes + 1).
     """
-    return source.evaluation(target.positions)
+    return source.evaluation_matrix(target.positions)
 
 
 def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
@@ -101,7 +101,7 @@ def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
     strains: (h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta)
     at u = 0, (3,).
     """
-    values, angles, integrals, ends = reconstruction(grid.order)
+    values, angles, integrals, ends = shape_integration_matrices(grid.order)
     p = grid.order
     state = np.empty((*strains.shape[:-1], grid.nodes + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
@@ -121,28 +121,27 @@ def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
     return state
 
 
-class Reconstruction(NamedTuple):
+class ShapeIntegrationMatrices(NamedTuple):
     """Matrices that integrate strains to a shape on one element [0, 1] with p + 1 nodes and m Gauss points.
 
-    All matrices are multiplied from the right. values: interpolation from nodes to Gauss points, (p + 1, m).
-    angles: integrals of nodal polynomials from 0 to the Gauss points, (p + 1, m). integrals: integrals from 0
-    to the nodes, of functions given at the Gauss points, (m, p + 1). ends: integrals of nodal polynomials
-    from 0 to the nodes, (p + 1, p + 1).
-    """
+    All matrices are multiplied from the right. values_at_gauss_points: interpolation from nodes to Gauss
+    points, (p + 1, m). angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (p
+    + 1, m). integrals_to_nodes: integrals from 0 to the nodes, of functions given at the Gauss points, (m, p
+    + 1). angles_at_nodes: integrals of nodal polynomials from 0 to the nodes, (p + 1, p + 1)."""
 
-    values: Array
-    angles: Array
-    integrals: Array
-    ends: Array
+    values_at_gauss_points: Array
+    angles_at_gauss_points: Array
+    integrals_to_nodes: Array
+    angles_at_nodes: Array
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def reconstruction(order: int) -> Reconstruction:
-    """The `Reconstruction` matrices of elements of order `order`, cached."""
-    x = gauss_lobatto(order)[0]
-    g = gauss(order + RECONSTRUCTION_SETTINGS.extra_points)[0]
-    return Reconstruction(
-        interpolation(x, g).T,
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def shape_integration_matrices(order: int) -> ShapeIntegrationMatrices:
+    """The `ShapeIntegrationMatrices` matrices of elements of order `order`, cached."""
+    x = gauss_lobatto_rule(order)[0]
+    g = gauss_legendre_rule(order + RECONSTRUCTION_SETTINGS.extra_points)[0]
+    return ShapeIntegrationMatrices(
+        lagrange_interpolation_matrix(x, g).T,
         integration_matrix(x, g).T,
         integration_matrix(g, x).T,
         integration_matrix(x, x).T,
@@ -155,7 +154,10 @@ def integration_matrix(nodes: Array, ends: Array) -> Array:
 
     All nodes and ends lie in [-1, 1].
     """
-    points, weights = gauss(len(nodes))
+    points, weights = gauss_legendre_rule(len(nodes))
     return np.array(
-        [(end + 1) / 4 * weights @ interpolation(nodes, -1 + (end + 1) * (points + 1) / 2) for end in ends]
+        [
+            (end + 1) / 4 * weights @ lagrange_interpolation_matrix(nodes, -1 + (end + 1) * (points + 1) / 2)
+            for end in ends
+        ]
     )

@@ -47,12 +47,12 @@ def hermite_coefficients(values: Array, slopes: Array) -> Complex:
     """
     flat = np.ascontiguousarray(values).reshape(len(values), -1)
     rates = np.ascontiguousarray(slopes).reshape(len(slopes), -1)
-    c: Complex = hermite_columns(flat, rates, np.zeros(flat.shape[1]))
+    c: Complex = hermite_coefficients_of_columns(flat, rates, np.zeros(flat.shape[1]))
     return c.reshape(len(c), *values.shape[1:])
 
 
 @compiled_for_vectors
-def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
+def hermite_coefficients_of_columns(values: Array, slopes: Array, signs: Array) -> Complex:
     """`hermite_coefficients`, (m + 1, columns), of columns given over half a period or a whole period.
 
     values, slopes: (nodes, columns). signs: factor of each column after half a period, (columns,), or 0 for
@@ -159,10 +159,10 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
 
 def interpolate_samples(samples: Array, at: NDArray[np.floating]) -> Array:
     """Trigonometric interpolant of samples, (N, ...), at the times `at`, (m,), in periods; shape (m, ...)."""
-    return series_at(fourier_coefficients(samples), at)
+    return series_values_at(fourier_coefficients(samples), at)
 
 
-def series_at(c: Complex, at: NDArray[np.floating]) -> Array:
+def series_values_at(c: Complex, at: NDArray[np.floating]) -> Array:
     """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at times `at`, (m,), in periods; shape (m, ...)."""
     waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))
     return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
@@ -178,7 +178,7 @@ def time_derivative(samples: Array) -> Array:
 
 
 @compiled_for_vectors
-def maxima(c: Complex, samples: Array) -> Array:
+def series_maxima(c: Complex, samples: Array) -> Array:
     """Maxima, (m,), of m series Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples.
 
     c: (harmonics, m). samples: equidistant over a period, (n, m).
@@ -188,7 +188,7 @@ def maxima(c: Complex, samples: Array) -> Array:
     for column in range(m):
         t = float(np.argmax(samples[:, column])) / n
         for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_steps):
-            _, slope, curvature = _expansion(c[:, column], t)
+            _, slope, curvature = _series_value_slope_curvature(c[:, column], t)
             # Newton's method would converge to a minimum.
             if curvature >= 0:
                 break
@@ -197,18 +197,18 @@ def maxima(c: Complex, samples: Array) -> Array:
             t -= step
             if abs(step) < TRIGONOMETRIC_MAXIMUM_SETTINGS.converged_step:
                 break
-        highest[column] = _expansion(c[:, column], t)[0]
+        highest[column] = _series_value_slope_curvature(c[:, column], t)[0]
     return highest
 
 
 @compiled_for_vectors
-def minima(c: Complex, samples: Array) -> Array:
-    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), like `maxima`; c: (harmonics, m), samples: (n, m)."""
-    return -maxima(-c, -samples)
+def series_minima(c: Complex, samples: Array) -> Array:
+    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), like `series_maxima`; c: (N, m), samples: (n, m)."""
+    return -series_maxima(-c, -samples)
 
 
 @compiled_for_vectors
-def _expansion(c: Complex, t: float) -> tuple[float, float, float]:
+def _series_value_slope_curvature(c: Complex, t: float) -> tuple[float, float, float]:
     """Returns (value, slope, curvature) of Re sum_k c_k exp(2 pi i k t) at the time t; c: (harmonics,)."""
     turn = 2 * np.pi * t
     step = complex(np.cos(turn), np.sin(turn))
@@ -243,7 +243,7 @@ def _bisect_rising_zero(c: Complex, low: float, high: float) -> float:
     """The zero of Re sum_k c_k exp(2 pi i k t) between low and high by bisection; c: (harmonics,)."""
     for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_bisections):
         middle = (low + high) / 2
-        if _expansion(c, middle)[0] < 0:
+        if _series_value_slope_curvature(c, middle)[0] < 0:
             low = middle
         else:
             high = middle

@@ -23,7 +23,7 @@ LOBATTO_SETTINGS = LobattoSettings()
 
 
 @cache
-def gauss(n: int) -> tuple[Array, Array]:
+def gauss_legendre_rule(n: int) -> tuple[Array, Array]:
     """Returns (nodes, weights), (n,) each, of the n-point Gauss-Legendre rule on [-1, 1], which is exact to
     degree 2n - 1.
     """
@@ -32,7 +32,7 @@ def gauss(n: int) -> tuple[Array, Array]:
 
 
 @cache
-def gauss_lobatto(p: int) -> tuple[Array, Array]:
+def gauss_lobatto_rule(p: int) -> tuple[Array, Array]:
     """Returns (nodes, weights), (p + 1,) each, of the (p + 1)-point Lobatto rule on [-1, 1], exact to degree
     2p - 1.
 
@@ -55,7 +55,7 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
 
 def lobatto_points(nodes: int) -> Array:
     """Gauss-Lobatto points on [0, 1], (nodes,). nodes: number of points."""
-    return (gauss_lobatto(nodes - 1)[0] + 1) / 2
+    return (gauss_lobatto_rule(nodes - 1)[0] + 1) / 2
 
 
 def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:

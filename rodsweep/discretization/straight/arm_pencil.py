@@ -15,31 +15,31 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
-from ..elements.basis import differentiation, interpolation
-from ..elements.quadrature import gauss, gauss_lobatto
+from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
+from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 from .arm_resolution import ArmMesh
 from .pencil import PENCIL_NORM_SETTINGS, PencilMatrices
 
 
-class _Pieces(NamedTuple):
+class _MeshMatrices(NamedTuple):
     """Matrices and weights of a mesh of elements of order p, from which `_pencil_of_coefficients` computes
     the pencil of an arm.
 
-    value, slope: matrices from nodes to Gauss points, (p, p + 1). both: slope^T weights value,
-    (p + 1, p + 1). constant: entries of the first two blocks, which are the same for every arm, (n,).
-    bending, weight: Gauss weights divided by, and multiplied by, half the length of each element,
-    (elements, p). lumped: mass of the nodes, (elements, p + 1). where: index in the pattern of each entry of
-    all blocks, (m,). rows, columns: row and column of each entry of the pattern, (nnz,).
-    """
+    value_matrix, slope_matrix: matrices from nodes to Gauss points, (p, p + 1). slope_value_matrix: slope^T
+    weights value, (p + 1, p + 1). constant_entries: entries of the first two blocks, which are the same for
+    every arm, (n,). weights_over_length, weights_times_length: Gauss weights divided by, and multiplied by,
+    half the length of each element, (elements, p). node_masses: mass of the nodes, (elements, p + 1).
+    entry_positions: index in the pattern of each entry of all blocks, (m,). rows, columns: row and column of
+    each entry of the pattern, (nnz,)."""
 
-    value: Array
-    slope: Array
-    both: Array
-    constant: Array
-    bending: Array
-    weight: Array
-    lumped: Array
-    where: NDArray[np.int64]
+    value_matrix: Array
+    slope_matrix: Array
+    slope_value_matrix: Array
+    constant_entries: Array
+    weights_over_length: Array
+    weights_times_length: Array
+    node_masses: Array
+    entry_positions: NDArray[np.int64]
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
 
@@ -59,27 +59,27 @@ class ArmPencil:
         self.unknowns = mesh.unknowns
         edges = np.array(mesh.edges)
         h = mesh.lengths
-        x, w = gauss_lobatto(mesh.order)
-        xg, wg = gauss(mesh.order)
-        value = interpolation(x, xg)
-        slope = value @ differentiation(x)
+        x, w = gauss_lobatto_rule(mesh.order)
+        xg, wg = gauss_legendre_rule(mesh.order)
+        value = lagrange_interpolation_matrix(x, xg)
+        slope = value @ differentiation_matrix(x)
         gauss_points: Array = edges[:-1, None] + h[:, None] * (xg + 1) / 2
         # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
-        self._points = np.concatenate([gauss_points, mesh.points_inside], axis=1)
+        self._sample_points = np.concatenate([gauss_points, mesh.points_inside_elements], axis=1)
         slopes = slope.T * wg
         self._y: NDArray[np.int64] = (
             np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
-        self.rows, self.columns, where = self._pattern()
-        self._pieces = _Pieces(
-            value=value,
-            slope=slope,
-            both=slopes @ value,
-            constant=np.concatenate([np.tile(x.ravel(), mesh.elements) for x in (-slopes, slopes.T)]),
-            bending=wg * (2 / h[:, None]),
-            weight=wg * h[:, None] / 2,
-            lumped=w * h[:, None] / 2,
-            where=where,
+        self.rows, self.columns, where = self._sparsity_pattern()
+        self._mesh_matrices = _MeshMatrices(
+            value_matrix=value,
+            slope_matrix=slope,
+            slope_value_matrix=slopes @ value,
+            constant_entries=np.concatenate([np.tile(x.ravel(), mesh.elements) for x in (-slopes, slopes.T)]),
+            weights_over_length=wg * (2 / h[:, None]),
+            weights_times_length=wg * h[:, None] / 2,
+            node_masses=w * h[:, None] / 2,
+            entry_positions=where,
             rows=self.rows,
             columns=self.columns,
         )
@@ -92,14 +92,16 @@ class ArmPencil:
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of the arm `rod`."""
         return PencilMatrices(
-            *_pencil_of_coefficients(float(rod.F), np.array(rod.local(self._points)), self._pieces)
+            *_pencil_of_coefficients(
+                float(rod.F), np.array(rod.local(self._sample_points)), self._mesh_matrices
+            )
         )
 
-    def evaluation(self, points: Array) -> Array:
+    def evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
-        return self.mesh.evaluation(points)
+        return self.mesh.evaluation_matrix(points)
 
-    def _pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+    def _sparsity_pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
         """Returns (rows, columns, where). rows, columns: row and column of each entry of the pattern, (nnz,)
         each. where: index in the pattern of each entry of all element blocks, (m,).
 
@@ -111,7 +113,7 @@ class ArmPencil:
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.elements, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
-        keys = [_keys(rows, columns, size) for rows, columns in pairs]
+        keys = [_flat_entry_positions(rows, columns, size) for rows, columns in pairs]
         keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]
         every = np.concatenate(keys)
         diagonal = np.arange(size) * (size + 1)
@@ -121,7 +123,9 @@ class ArmPencil:
         return rows.astype(np.int32), columns.astype(np.int32), where
 
 
-def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDArray[np.int64]:
+def _flat_entry_positions(
+    rows: NDArray[np.int64], columns: NDArray[np.int64], size: int
+) -> NDArray[np.int64]:
     """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp.
 
     rows: (elements, n). columns: (elements, m). size: number of unknowns.
@@ -132,17 +136,17 @@ def _keys(rows: NDArray[np.int64], columns: NDArray[np.int64], size: int) -> NDA
 
 
 @compiled
-def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Array, Array, Array]:
+def _pencil_of_coefficients(F: float, local: Array, pieces: _MeshMatrices) -> tuple[Array, Array, Array]:
     """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. local:
     coefficients of the arm, (6, elements, 2 order + 1)."""
-    elements, order = pieces.weight.shape
+    elements, order = pieces.weights_times_length.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)
     turn = np.zeros(nodes + 1)
     least = np.zeros(nodes + 1)
     for e in range(elements):
         for i in range(order + 1):
-            mass = pieces.lumped[e, i]
+            mass = pieces.node_masses[e, i]
             push[e * order + i] += mass * local[3, e, order + i]
             turn[e * order + i] += mass * local[4, e, order + i]
             least[e * order + i] += mass * PENCIL_NORM_SETTINGS.min_angle_weight**2
@@ -153,7 +157,7 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Ar
         angle = max(turn[k + 1], least[k + 1])
         scale[k] = 1 / math.sqrt(push[k + 1])
         scale[nodes + k] = 1 / math.sqrt(angle)
-        weight = pieces.weight[k // order, k % order]
+        weight = pieces.weights_times_length[k // order, k % order]
         scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM_SETTINGS.shear_weight**2)
         B[k] = 1.0
         B[nodes + k] = turn[k + 1] / angle
@@ -166,32 +170,37 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _Pieces) -> tuple[Ar
 
 
 @compiled
-def _add_entries(F: float, local: Array, pieces: _Pieces, A: Array) -> None:
-    """Adds the entries of all element blocks, in the order of `where`, to A.
+def _add_entries(F: float, local: Array, pieces: _MeshMatrices, A: Array) -> None:
+    """Adds the entries of all element blocks, in the order of `entry_positions`, to A.
 
     F: follower force. local: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern,
     then one for the clamp, (nnz + 1,).
     """
-    elements, order = pieces.weight.shape
-    value = pieces.value
-    where = pieces.where
-    at = _added(pieces.constant, 0, where, A)
+    elements, order = pieces.weights_times_length.shape
+    value = pieces.value_matrix
+    where = pieces.entry_positions
+    at = _add_block(pieces.constant_entries, 0, where, A)
     for e in range(elements):
-        at = _added(_bending(pieces.slope, pieces.bending[e] / local[2, e, :order]), at, where, A)
+        at = _add_block(
+            _bending_block(pieces.slope_matrix, pieces.weights_over_length[e] / local[2, e, :order]),
+            at,
+            where,
+            A,
+        )
     for _ in range(elements):
-        at = _added(F * pieces.both, at, where, A)
+        at = _add_block(F * pieces.slope_value_matrix, at, where, A)
     for e in range(elements):
-        at = _added(value.T * (pieces.weight[e] * local[5, e, :order]), at, where, A)
+        at = _add_block(value.T * (pieces.weights_times_length[e] * local[5, e, :order]), at, where, A)
     for e in range(elements):
-        turned = pieces.weight[e] * local[0, e, :order]
-        at = _added(-turned.reshape(-1, 1) * value, at, where, A)
+        turned = pieces.weights_times_length[e] * local[0, e, :order]
+        at = _add_block(-turned.reshape(-1, 1) * value, at, where, A)
     for e in range(elements):
-        at = _added(-pieces.weight[e] * local[1, e, :order], at, where, A)
+        at = _add_block(-pieces.weights_times_length[e] * local[1, e, :order], at, where, A)
     A[where[at]] -= F  # the follower force at the tip, -F a(1) theta(1)
 
 
 @compiled
-def _bending(slope: Array, factors: Array) -> Array:
+def _bending_block(slope: Array, factors: Array) -> Array:
     """The block -slope^T diag(factors) slope, (p + 1, p + 1). slope: (p, p + 1). factors: at the Gauss
     points, (p,).
     """
@@ -205,11 +214,11 @@ def _bending(slope: Array, factors: Array) -> Array:
 
 
 @compiled
-def _added(block: Array, at: int, where: NDArray[np.int64], A: Array) -> int:
-    """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `where` of the entry after
-    the block.
+def _add_block(block: Array, at: int, where: NDArray[np.int64], A: Array) -> int:
+    """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `entry_positions` of the
+    entry after the block.
 
-    at: index in `where` of the first entry of the block.
+    at: index in `entry_positions` of the first entry of the block.
     """
     for entry in block.flat:
         A[where[at]] += entry

@@ -79,10 +79,10 @@ def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: i
     edges = [0.0]
     largest = 0.0
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
-        ratio = abs(log(_radius(rod, stop) / _radius(rod, start)))
-        needed = _elements_for(float(share), accuracy, largest_order)
+        ratio = abs(log(_radius_at(rod, stop) / _radius_at(rod, start)))
+        needed = _element_count_for(float(share), accuracy, largest_order)
         count = max(1, ceil(ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), needed)
-        edges += _edges(rod, start, stop, count)
+        edges += _graded_edges(rod, start, stop, count)
         largest = max(largest, float(share) / count)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
     return Elements(
@@ -99,11 +99,11 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
         return ArmMesh(mesh.edges, order)
     edges = [0.0]
     for start, stop in zip(mesh.edges[:-1], mesh.edges[1:], strict=True):
-        edges += _edges(rod, start, stop, 2)
+        edges += _graded_edges(rod, start, stop, 2)
     return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * mesh.order))
 
 
-def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
+def _element_count_for(share: float, accuracy: float, largest_order: int) -> int:
     """Number of elements of the order `largest_order` that resolve an interval in which the phase of the wave
     grows by `share`, to the relative accuracy `accuracy`."""
     count = 1
@@ -112,11 +112,11 @@ def _elements_for(share: float, accuracy: float, largest_order: int) -> int:
     return count
 
 
-def _radius(rod: Rod, u: float) -> float:
+def _radius_at(rod: Rod, u: float) -> float:
     return 1 - (1 - rod.taper) * u
 
 
-def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
+def _graded_edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
     """Edges of `count` elements from start to stop, without start. All elements have equal ratios of the
     radii at both ends."""
     if count == 1:
@@ -124,6 +124,6 @@ def _edges(rod: Rod, start: float, stop: float, count: int) -> list[float]:
     if rod.taper == 1:
         inner: Array = np.linspace(start, stop, count + 1)[1:]
     else:
-        radii = np.geomspace(_radius(rod, start), _radius(rod, stop), count + 1)[1:]
+        radii = np.geomspace(_radius_at(rod, start), _radius_at(rod, stop), count + 1)[1:]
         inner = (1 - radii) / (1 - rod.taper)
     return [*inner[:-1].tolist(), float(stop)]

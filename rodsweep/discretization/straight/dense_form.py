@@ -22,21 +22,20 @@ AnyPencil = Pencil | ArmPencil
 class DenseForm:
     """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B.
 
-    A: (unknowns, unknowns). B: diagonal, (unknowns,). scale: factors that convert the unknowns to y and theta
-    at the nodes, clamp excluded, (2, nodes).
-    """
+    A: (unknowns, unknowns). B: diagonal, (unknowns,). displacement_factors: factors that convert the unknowns
+    to y and theta at the nodes, clamp excluded, (2, nodes)."""
 
     rod: Rod
     mesh: Elements
     A: Array
     B: Array
-    scale: Array
+    displacement_factors: Array
 
     def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
         (nodes + 1, k) each.
         """
-        return fields_of_vectors(vectors, self.scale)
+        return fields_of_vectors(vectors, self.displacement_factors)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
         """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (points,):
@@ -45,7 +44,7 @@ class DenseForm:
         h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains are limits from
         the right.
         """
-        c2 = self.rod.local(_inside(self.mesh, points)).c2
+        c2 = self.rod.local(_points_inside_elements(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, field_derivatives_at(self.mesh, self.fields(vectors)[1], points).T])
 
@@ -55,7 +54,7 @@ class DenseForm:
         """
         A = self.A.copy()
         n = self.mesh.nodes
-        y, theta = self.scale[:, -1]
+        y, theta = self.displacement_factors[:, -1]
         A[n - 1, 2 * n - 1] += pair * y * theta
         A[2 * n - 1, n - 1] -= pair * y * theta
         A[n - 1, n - 1] -= tip * y * y
@@ -67,14 +66,16 @@ def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
     found = pencil.matrices(rod)
     A = np.zeros((pencil.unknowns, pencil.unknowns))
     A[pencil.rows, pencil.columns] = found.A
-    return DenseForm(rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.scale)
+    return DenseForm(
+        rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.displacement_factors
+    )
 
 
-def _inside(mesh: Elements, points: Array) -> Array:
-    """The points, (n,), each moved just inside the element to which `Elements.by_element` assigns the
+def _points_inside_elements(mesh: Elements, points: Array) -> Array:
+    """The points, (n,), each moved just inside the element to which `Elements.points_by_element` assigns the
     point."""
     moved = np.array(points, dtype=float)
-    for first, inside, local in mesh.by_element(points):
+    for first, inside, local in mesh.points_by_element(points):
         e = first // mesh.order
         position = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
         moved[inside] = np.clip(

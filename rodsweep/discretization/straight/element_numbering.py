@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.elements import ELEMENT_SETTINGS
-from ..state_layout import PLANE_COMPONENTS
+from ..state_layout import PLANE_COMPONENT_COUNT
 
 Indices = NDArray[np.int_]
 
@@ -18,30 +18,31 @@ class ElementNumbering:
     """Indices of the unknowns of every element, for static condensation.
 
     An element has `local` unknowns. state_indices: index of each unknown in a state, (elements, local);
-    stresses at the tip are not unknowns and have an index one beyond the state. interior, interface: local
-    indices of interior unknowns, and of unknowns at both ends, the left end first; for a single element
-    `interior` is empty and `interface` contains all unknowns. interface_indices: indices of an element's end
-    unknowns in the list of the end unknowns of all elements, (elements, ends). is_unknown: one entry for each
-    end unknown of all elements, False for stresses at the tip.
+    stresses at the tip are not unknowns and have an index one beyond the state. interior_positions,
+    interface_positions: local indices of interior unknowns, and of unknowns at both ends, the left end first;
+    for a single element `interior_positions` is empty and `interface_positions` contains all unknowns.
+    interface_indices: indices of an element's end unknowns in the list of the end unknowns of all elements,
+    (elements, ends). is_unknown: one entry for each end unknown of all elements, False for stresses at the
+    tip.
     """
 
     state_indices: Indices
-    interior: Indices
-    interface: Indices
+    interior_positions: Indices
+    interface_positions: Indices
     interface_indices: Indices
     is_unknown: NDArray[np.bool_]
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
     """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
     stresses and velocities that are unknowns.
     """
     last = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
-    unknown = PLANE_COMPONENTS * (2 * last + 1)
+    unknown = PLANE_COMPONENT_COUNT * (2 * last + 1)
     stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
-    velocities = [PLANE_COMPONENTS * last + c * (last + 1) + nodes for c in components]
+    velocities = [PLANE_COMPONENT_COUNT * last + c * (last + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
     inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)

@@ -22,10 +22,10 @@ from scipy.linalg.lapack import zgetrf, zgetrs
 
 from ...arrays import Array, Complex
 from ...model.balance import Values, ad, coad
-from ..elements.basis import differentiation
+from ..elements.basis import differentiation_matrix
 from ..elements.elements import ELEMENT_SETTINGS
-from ..elements.quadrature import gauss_lobatto
-from ..state_layout import PLANE_COMPONENTS
+from ..elements.quadrature import gauss_lobatto_rule
+from ..state_layout import PLANE_COMPONENT_COUNT
 from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
@@ -61,12 +61,12 @@ class StraightElements:
     @cached_property
     def A(self) -> Array:
         """Contribution of one element to the matrix A of the mixed form, (local, local)."""
-        each = np.eye(PLANE_COMPONENTS)
+        each = np.eye(PLANE_COMPONENT_COUNT)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
         E = material.rest[:, None]
         Sigma = material.tip_stress[:, None]
-        WD, W = self._reference
+        WD, W = self._element_matrices
         half = len(self.components)
         nodes = np.arange(len(W))
         at_nodes = np.zeros((2 * half, 2 * half))
@@ -83,14 +83,16 @@ class StraightElements:
     @cached_property
     def M(self) -> Array:
         """Contribution of one element to the diagonal of the matrix M of the mixed form, (local,)."""
-        stresses = np.outer(self.form.rod.material.compliance[list(self.components)], self._reference[1])
+        stresses = np.outer(
+            self.form.rod.material.compliance[list(self.components)], self._element_matrices[1]
+        )
         return np.concatenate([stresses, 0 * stresses]).ravel()
 
     @property
-    def _reference(self) -> tuple[Array, Array]:
+    def _element_matrices(self) -> tuple[Array, Array]:
         """Returns (W D, W) of one element. W: quadrature weights, scaled to the length of the element,
         (nodes,). W D: diag(W) times the differentiation matrix D of the element, (nodes, nodes)."""
-        WD, w = _weighted_derivative(self.form.mesh.order)
+        WD, w = _weighted_derivative_matrix(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.elements)
 
     def apply_A(self, x: Values) -> Values:
@@ -101,7 +103,7 @@ class StraightElements:
         """Product M x, (unknowns,)."""
         return self.assemble(self.gather(x) * self.M)
 
-    def size_of_product(self, p: Values, q: Values) -> float:
+    def product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,).
         """
@@ -117,15 +119,15 @@ class StraightElements:
         np.add.at(x, self.numbering.state_indices, parts)
         return x[:-1]
 
-    def factors(self, shift: complex) -> "ElementFactors":
+    def lu_factors(self, shift: complex) -> "ElementFactors":
         """LU factorisation of A - shift M by static condensation."""
         numbering = self.numbering
         K = self.A - np.diag(shift * self.M).astype(complex)
-        condensed = K[np.ix_(numbering.interface, numbering.interface)]
+        condensed = K[np.ix_(numbering.interface_positions, numbering.interface_positions)]
         inside = None
-        if numbering.interior.size:
-            inside = _InteriorElimination.of(K, numbering)
-            condensed -= inside.entering @ inside.right
+        if numbering.interior_positions.size:
+            inside = _InteriorElimination.from_matrix(K, numbering)
+            condensed -= inside.K_ei @ inside.solved_K_ie
         exists = numbering.is_unknown
         whole = np.zeros((len(exists), len(exists)), complex)
         for element in numbering.interface_indices:
@@ -143,31 +145,32 @@ class _InteriorElimination:
     """Elimination of the interior unknowns (index i) of an element with matrix K; unknowns at both ends have
     the index e.
 
-    factors: LU factorisation of K_ii. leaving: K_ie, (inside, ends). entering: K_ei, (ends, inside). right:
-    K_ii^-1 K_ie, (inside, ends). left: K_ii^-H K_ei^H, (inside, ends).
-    """
+    interior_factors: LU factorisation of K_ii. K_ie: K_ie, (inside, ends). K_ei: K_ei, (ends, inside).
+    solved_K_ie: K_ii^-1 K_ie, (inside, ends). adjoint_solved_K_ei: K_ii^-H K_ei^H, (inside, ends)."""
 
-    factors: LU
-    leaving: Complex
-    entering: Complex
-    right: Complex
-    left: Complex
+    interior_factors: LU
+    K_ie: Complex
+    K_ei: Complex
+    solved_K_ie: Complex
+    adjoint_solved_K_ei: Complex
 
     @classmethod
-    def of(cls, K: Complex, numbering: ElementNumbering) -> Self:
+    def from_matrix(cls, K: Complex, numbering: ElementNumbering) -> Self:
         """The elimination of the interior unknowns from an element matrix K, (local, local)."""
-        inside = numbering.interior
-        ends = numbering.interface
+        inside = numbering.interior_positions
+        ends = numbering.interface_positions
         factors = lu_factorisation(K[np.ix_(inside, inside)])
         leaving = K[np.ix_(inside, ends)]
         entering = K[np.ix_(ends, inside)]
         right = solve_factorised(factors, leaving)
         left = solve_factorised(factors, entering.conj().T, adjoint=True)
-        return cls(factors=factors, leaving=leaving, entering=entering, right=right, left=left)
+        return cls(
+            interior_factors=factors, K_ie=leaving, K_ei=entering, solved_K_ie=right, adjoint_solved_K_ei=left
+        )
 
-    def coupling(self, adjoint: bool) -> tuple[Complex, Complex]:
+    def coupling_matrices(self, adjoint: bool) -> tuple[Complex, Complex]:
         """Returns (K_ei, K_ii^-1 K_ie); if `adjoint`, the same two matrices of K^H."""
-        return (self.leaving.conj().T, self.left) if adjoint else (self.entering, self.right)
+        return (self.K_ie.conj().T, self.adjoint_solved_K_ei) if adjoint else (self.K_ei, self.solved_K_ie)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -192,25 +195,25 @@ class ElementFactors:
         refinement follows.
         """
         elements = self.elements
-        x = self._eliminated(b, adjoint)
+        x = self._eliminated_right_side(b, adjoint)
         if self.interior is None:
             return x
         rows = self.K.conj() if adjoint else self.K.T
-        return x + self._eliminated(b - elements.assemble(elements.gather(x) @ rows), adjoint)
+        return x + self._eliminated_right_side(b - elements.assemble(elements.gather(x) @ rows), adjoint)
 
-    def _eliminated(self, b: Values, adjoint: bool) -> Complex:
+    def _eliminated_right_side(self, b: Values, adjoint: bool) -> Complex:
         numbering = self.elements.numbering
         inside = self.interior
-        within = numbering.state_indices[:, numbering.interior]
-        ends = numbering.state_indices[:, numbering.interface]
+        within = numbering.state_indices[:, numbering.interior_positions]
+        ends = numbering.state_indices[:, numbering.interface_positions]
         right = np.zeros(len(numbering.is_unknown), complex)
         between = np.zeros(len(numbering.is_unknown), complex)
         b = np.append(b, 0)
         x = np.zeros(len(b), complex)
         right[numbering.interface_indices] = b[ends]
         if inside is not None:
-            to_ends, from_ends = inside.coupling(adjoint)
-            alone = solve_factorised(inside.factors, b[within].T, adjoint).T
+            to_ends, from_ends = inside.coupling_matrices(adjoint)
+            alone = solve_factorised(inside.interior_factors, b[within].T, adjoint).T
             np.subtract.at(right, numbering.interface_indices, alone @ to_ends.T)
         between[numbering.is_unknown] = solve_factorised(self.interface, right[numbering.is_unknown], adjoint)
         x[ends] = between[numbering.interface_indices]
@@ -233,10 +236,10 @@ def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Compl
     return x
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _weighted_derivative(order: int) -> tuple[Array, Array]:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _weighted_derivative_matrix(order: int) -> tuple[Array, Array]:
     """Returns (W D, W) on the element [-1, 1]. W: quadrature weights, (order + 1,). W D: diag(W) times the
     differentiation matrix, (order + 1, order + 1), which is the same for elements of every length.
     """
-    x, w = gauss_lobatto(order)
-    return w[:, None] * differentiation(x), w
+    x, w = gauss_lobatto_rule(order)
+    return w[:, None] * differentiation_matrix(x), w

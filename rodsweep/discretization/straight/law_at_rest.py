@@ -29,14 +29,13 @@ class ForceDerivatives:
 class LawAtRest:
     """Derivatives of the law s(S) at S = 0, at all nodes of a mesh.
 
-    nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1). change:
-    derivatives with respect to F. N11, N33, M13: second derivatives of N and M with respect to S1 and S3,
-    (nodes + 1,). N111, N133, M113, M333: third derivatives, (nodes + 1,).
-    """
+    is_nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1).
+    force_derivatives: derivatives with respect to F. N11, N33, M13: second derivatives of N and M with
+    respect to S1 and S3, (nodes + 1,). N111, N133, M113, M333: third derivatives, (nodes + 1,)."""
 
-    nonlinear: bool
+    is_nonlinear: bool
     tangent: Array
-    change: ForceDerivatives
+    force_derivatives: ForceDerivatives
     N11: Array
     N33: Array
     M13: Array
@@ -67,7 +66,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     these nodes.
     """
     law: Law = rod.build.constitutive_law
-    nu = nodal.rest[0]
+    nu = nodal.rest_strain[0]
     c1, _, c3 = nodal.compliance
     stiffness = law.stiffness(nu)
     slope = law.stiffness_slope(nu)
@@ -79,9 +78,9 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     ones = np.ones_like(nu)
     change = ForceDerivatives(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
     found = LawAtRest(
-        nonlinear=law is not LINEAR,
+        is_nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
-        change=change,
+        force_derivatives=change,
         N11=slope * c1,
         N33=bending_slope * c3,
         M13=bending_slope * c1,
@@ -90,32 +89,32 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
         M113=bending_curvature * c1**2,
         M333=0 * ones,
     )
-    if found.nonlinear and len(nodal.jumps):
-        _fill_jumps(found, law, nodal)
+    if found.is_nonlinear and len(nodal.jumps):
+        _write_derivatives_at_jumps(found, law, nodal)
     return found
 
 
-def _fill_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
+def _write_derivatives_at_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
     """Writes the derivatives of the law at the nodes where the material jumps into `found`. nodal: the rod at
     the nodes.
     """
     at = nodal.jumps
-    sides = nodal.sides
+    sides = nodal.jump_sides
     nu = sides[..., 0]
     c1 = sides[..., 1]
     means = sides[..., 5]
     shares = np.moveaxis(sides[..., 3:5], -1, 0)
     T = np.array([law.stiffness(nu), law.bending(nu)])
     slopes = np.array([law.stiffness_slope(nu), law.bending_slope(nu)])
-    first, second, third = stress_at_rest(law, sides)
+    first, second, third = mean_derivatives_at_jumps(law, sides)
     moved = -c1 / T[0]
     tangent = 1 / (shares / T).sum(axis=-1)
     for component, (own, change) in enumerate(
         zip(tangent, tangent**2 * (shares * slopes * moved / T**2).sum(axis=-1), strict=True)
     ):
         found.tangent[2 * component, at] = own
-        found.change.tangent[2 * component, at] = change
-    found.change.nu[at] = (means * moved).sum(axis=-1)
+        found.force_derivatives.tangent[2 * component, at] = change
+    found.force_derivatives.nu[at] = (means * moved).sum(axis=-1)
     found.N11[at] = second[:, 0, 0, 0]
     found.N33[at] = second[:, 0, 1, 1]
     found.M13[at] = second[:, 1, 0, 1]
@@ -130,7 +129,7 @@ LawDerivatives = tuple[Array, Array, Array]
 (..., 2, 2, 2, 2). The first of the listed indices is the function; all further indices are variables."""
 
 
-def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
+def mean_derivatives_at_jumps(law: Law, sides: Array) -> LawDerivatives:
     """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
     (k, 2, 7).
 
@@ -138,9 +137,11 @@ def stress_at_rest(law: Law, sides: Array) -> LawDerivatives:
     M(q1, q3) are the inverse of (N, M) -> (q1, q3).
     """
     shares = sides[..., 3:5]
-    unknowns = inverse_derivatives(_derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0)))
+    unknowns = inverse_function_derivatives(
+        _derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0))
+    )
     mean = [np.einsum("ksa,ksa...->ka...", shares, each) for each in unknowns]
-    return inverse_derivatives((mean[0], mean[1], mean[2]))
+    return inverse_function_derivatives((mean[0], mean[1], mean[2]))
 
 
 def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
@@ -162,7 +163,7 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDe
     return first, second, third
 
 
-def inverse_derivatives(of: LawDerivatives) -> LawDerivatives:
+def inverse_function_derivatives(of: LawDerivatives) -> LawDerivatives:
     """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. of: derivatives
     of f.
     """

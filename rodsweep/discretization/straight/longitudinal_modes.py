@@ -24,7 +24,7 @@ from numpy.polynomial import legendre
 from ...arrays import Array
 from ...model.rod import Rod
 from ..elements.elements import Elements
-from ..elements.quadrature import gauss
+from ..elements.quadrature import gauss_legendre_rule
 from .arm_resolution import arm_elements
 
 
@@ -61,12 +61,12 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
     mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.elements))
-    found = _rates(rod, mesh, order, modes)
+    found = _leading_eigenvalues(rod, mesh, order, modes)
     while True:
         order += LONGITUDINAL_MODE_SETTINGS.order_increase
         # No a-priori bound of the error holds for every profile, so the error is estimated from a second
         # order.
-        finer = _rates(rod, mesh, order, modes)
+        finer = _leading_eigenvalues(rod, mesh, order, modes)
         error = np.abs(finer / found - 1)
         if (
             error.max() <= LONGITUDINAL_MODE_SETTINGS.converged_difference
@@ -76,20 +76,20 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
         found = finer
 
 
-def _rates(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
+def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
     """The leading eigenvalues w, (modes,), from elements with `order` strains each."""
-    sizes = np.linalg.svd(_displacements(rod, np.asarray(mesh.edges), order), compute_uv=False)
+    sizes = np.linalg.svd(_displacement_matrix(rod, np.asarray(mesh.edges), order), compute_uv=False)
     rates: Array = -1 / sizes[:modes] ** 2
     return rates
 
 
-def _displacements(rod: Rod, edges: Array, order: int) -> Array:
+def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
     """The matrix A of the module docstring, (elements (order + extra_points), elements order).
 
     edges: edges of the elements, (elements + 1,). order: number of strains per element.
     """
-    strains, of_strains = gauss(order)
-    points, weights = gauss(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
+    strains, of_strains = gauss_legendre_rule(order)
+    points, weights = gauss_legendre_rule(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
     halves = np.diff(edges)[:, None] / 2
     middles = (edges[1:] + edges[:-1])[:, None] / 2
     here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))
@@ -102,23 +102,23 @@ def _displacements(rod: Rod, edges: Array, order: int) -> Array:
     own = np.arange(count)
     # Within the element of the point, the integral ends at the point, so Gauss weights of the full element do
     # not apply.
-    integral[own, :, own, :] = halves[:, :, None] * _integrals(order, points)
+    integral[own, :, own, :] = halves[:, :, None] * _lagrange_integrals(order, points)
     matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
     return matrix
 
 
 @cache
-def _weighted_legendre(order: int) -> Array:
+def _legendre_coefficients_at_gauss(order: int) -> Array:
     """Legendre coefficients of the Lagrange polynomials through the Gauss points, (order, order)."""
-    nodes, weights = gauss(order)
+    nodes, weights = gauss_legendre_rule(order)
     coefficients: Array = legendre.legvander(nodes, order - 1).T * weights * (np.arange(order)[:, None] + 0.5)
     return coefficients
 
 
-def _integrals(order: int, points: Array) -> Array:
+def _lagrange_integrals(order: int, points: Array) -> Array:
     """Integrals from -1 to each of `points`, (points,), of the Lagrange polynomials through the Gauss points,
     (points, order).
     """
-    series = legendre.legint(_weighted_legendre(order), lbnd=-1)
+    series = legendre.legint(_legendre_coefficients_at_gauss(order), lbnd=-1)
     integrals: Array = legendre.legval(points, series).T
     return integrals

@@ -27,10 +27,10 @@ import numpy as np
 from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
-from ..arm_on_mesh import jumps_on, material_on
-from ..elements.mesh import Mesh, reconstruction
+from ..arm_on_mesh import jumps_on_mesh, material_at_nodes
+from ..elements.mesh import Mesh, shape_integration_matrices
 from ..nodal_rod import NodalRod, nodal_rod
-from ..state_layout import PLANE_COMPONENTS, StateLayout, plane_layout
+from ..state_layout import PLANE_COMPONENT_COUNT, StateLayout, plane_layout
 from .law_at_rest import LawAtRest, law_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
@@ -52,10 +52,10 @@ class MixedForm:
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in X; all components of V are unknowns."""
-        return plane_layout(self.mesh.nodes, tuple(range(PLANE_COMPONENTS)))
+        return plane_layout(self.mesh.nodes, tuple(range(PLANE_COMPONENT_COUNT)))
 
     @property
-    def stresses(self) -> int:
+    def stress_count(self) -> int:
         """Number of unknown stresses."""
         return plane_layout(self.mesh.nodes).unknowns
 
@@ -64,19 +64,19 @@ class MixedForm:
         return self.layout.unknowns
 
     @cached_property
-    def nodal(self) -> NodalRod:
+    def nodal_rod(self) -> NodalRod:
         """The rod at all nodes of the mesh, with all components of V as unknowns."""
-        unknown_velocities = tuple(range(PLANE_COMPONENTS))
-        jumps = jumps_on(self.rod, self.mesh)
-        return nodal_rod(material_on(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
+        unknown_velocities = tuple(range(PLANE_COMPONENT_COUNT))
+        jumps = jumps_on_mesh(self.rod, self.mesh)
+        return nodal_rod(material_at_nodes(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
 
     @cached_property
     def law(self) -> LawAtRest:
         """Derivatives of the constitutive law at rest, at all nodes."""
-        return law_at_rest(self.rod, self.nodal)
+        return law_at_rest(self.rod, self.nodal_rod)
 
     @cached_property
-    def parity(self) -> Array:
+    def reflection_signs(self) -> Array:
         """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, then so does its
         mirror image R X.
         """
@@ -86,52 +86,54 @@ class MixedForm:
     @cached_property
     def M(self) -> Array:
         """Diagonal of the matrix M, (unknowns,): W C for stresses, 0 for velocities."""
-        weighted = self.nodal.compliance * self.mesh.quadrature
+        weighted = self.nodal_rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     @cached_property
     def A(self) -> Array:
         """The matrix A of the linear terms, (unknowns, unknowns)."""
         N = self.mesh.nodes
-        stresses = slice(self.stresses)
-        velocities = slice(self.stresses, None)
-        WD = -self.mesh.matrices.weak.T
-        each = np.eye(PLANE_COMPONENTS)
-        A = self._coupling()
+        stresses = slice(self.stress_count)
+        velocities = slice(self.stress_count, None)
+        WD = -self.mesh.matrices.weak_derivative.T
+        each = np.eye(PLANE_COMPONENT_COUNT)
+        A = self._coupling_matrix()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
         A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law.tangent[:, :N].ravel()
-        A[velocities, velocities] -= np.diag((self.nodal.drag * self.mesh.quadrature).ravel())
+        A[velocities, velocities] -= np.diag((self.nodal_rod.drag * self.mesh.quadrature).ravel())
         return A
 
-    def times_A_F(self, X: Values) -> Values:
+    def times_force_derivative_of_A(self, X: Values) -> Values:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A with respect to the
         force F.
         """
-        S, V = self.fields(X)
+        S, V = self.stresses_and_velocities(X)
         W = self.mesh.quadrature
-        change = self.law.change
+        change = self.law.force_derivatives
         E = axial_field(change.nu)
-        moved = self._along(change.tangent, S) * S
+        moved = self._broadcast_to_field(change.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
-        at_rest = self._along(self.nodal.rest, S)
+        at_rest = self._broadcast_to_field(self.nodal_rod.rest_strain, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
-        forces = coad(self._along(E, S), self._linearised_law(S)) + coad(at_rest, moved)
-        forces = forces + coad(self._strain(S), self._along(Sigma, S))
-        return self.state(W * ad(self._along(E, V), V), W * forces + self._weighted_derivative(moved))
+        forces = coad(self._broadcast_to_field(E, S), self._linearised_law(S)) + coad(at_rest, moved)
+        forces = forces + coad(self._compliance_times_stress(S), self._broadcast_to_field(Sigma, S))
+        return self.state(
+            W * ad(self._broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(moved)
+        )
 
     @cached_property
-    def tip_y(self) -> Array:
+    def tip_y_row(self) -> Array:
         """Vector, (unknowns,), whose product with X is the deflection y of the tip in L, to first order.
 
         y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
         """
         W = self.mesh.quadrature[:-1]
-        c = self.nodal.compliance[:, :-1]
-        return self.layout.vector(
-            {"n2": c[1] * W, "m3": c[2] * integral_to_tip(self.mesh, self.nodal.rest[0])[:-1] * W}
+        c = self.nodal_rod.compliance[:, :-1]
+        return self.layout.state_with_stresses(
+            {"n2": c[1] * W, "m3": c[2] * integral_to_tip(self.mesh, self.nodal_rod.rest_strain[0])[:-1] * W}
         )
 
-    def fields(self, X: Values) -> tuple[Values, Values]:
+    def stresses_and_velocities(self, X: Values) -> tuple[Values, Values]:
         """Returns (S, V), stresses and velocities of states X at all nodes, tip included, (3, ..., nodes + 1)
         each.
         """
@@ -147,16 +149,18 @@ class MixedForm:
         """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and the result:
         (..., unknowns).
         """
-        S, U = self.fields(X)
-        T, V = self.fields(Y)
-        CS = self._strain(S)
-        CT = self._strain(T)
+        S, U = self.stresses_and_velocities(X)
+        T, V = self.stresses_and_velocities(Y)
+        CS = self._compliance_times_stress(S)
+        CT = self._compliance_times_stress(T)
         W = self.mesh.quadrature
         forces: Values = W * (coad(CS, self._linearised_law(T)) + coad(CT, self._linearised_law(S)))
-        if self.law.nonlinear:
+        if self.law.is_nonlinear:
             second = self.law.second_derivative_form(S, T)
             forces = (
-                forces + W * coad(self._along(self.nodal.rest, S), second) + self._weighted_derivative(second)
+                forces
+                + W * coad(self._broadcast_to_field(self.nodal_rod.rest_strain, S), second)
+                + self._weighted_derivative(second)
             )
         return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
@@ -164,33 +168,37 @@ class MixedForm:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns), for states X, Y, Z; 0
         for a linear law.
         """
-        S, T, R = (self.fields(each)[0] for each in (X, Y, Z))
+        S, T, R = (self.stresses_and_velocities(each)[0] for each in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law
         third = law.third_derivative_form(S, T, R)
-        forces = W * coad(self._along(self.nodal.rest, S), third) + self._weighted_derivative(third)
+        forces = W * coad(
+            self._broadcast_to_field(self.nodal_rod.rest_strain, S), third
+        ) + self._weighted_derivative(third)
         for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
-            forces = forces + W * coad(self._strain(one), law.second_derivative_form(two, three))
+            forces = forces + W * coad(
+                self._compliance_times_stress(one), law.second_derivative_form(two, three)
+            )
         return self.state(np.zeros_like(forces), forces)
 
-    def _strain(self, S: Values) -> Values:
+    def _compliance_times_stress(self, S: Values) -> Values:
         """The strain C S, relative to the straight rod, at all nodes, (3, ..., nodes + 1)."""
-        return self._along(self.nodal.compliance, S) * S
+        return self._broadcast_to_field(self.nodal_rod.compliance, S) * S
 
     def _linearised_law(self, S: Values) -> Values:
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
-        return self._along(self.law.tangent, S) * S
+        return self._broadcast_to_field(self.law.tangent, S) * S
 
     def _weighted_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
-        return field @ -self.mesh.matrices.weak
+        return field @ -self.mesh.matrices.weak_derivative
 
     @staticmethod
-    def _along(constant: Values, field: Values) -> Values:
+    def _broadcast_to_field(constant: Values, field: Values) -> Values:
         """A constant (3, nodes + 1), reshaped to broadcast against a field (3, ..., nodes + 1)."""
         return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)
 
-    def _coupling(self) -> Array:
+    def _coupling_matrix(self) -> Array:
         """Matrix of the terms of A without D and without drag, (unknowns, unknowns).
 
         These terms are W ad_E V in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations
@@ -198,13 +206,13 @@ class MixedForm:
         """
         N = self.mesh.nodes
         W = self.mesh.quadrature[:-1]
-        each = np.eye(PLANE_COMPONENTS)[:, :, None]
-        E = self.nodal.rest[:, None, :N]
-        C = self.nodal.compliance[:, None, :N]
+        each = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
+        E = self.nodal_rod.rest_strain[:, None, :N]
+        C = self.nodal_rod.compliance[:, None, :N]
         T = self.law.tangent[:, None, :N]
-        Sigma = self.nodal.tip_stress[:, None, None]
-        s = np.arange(self.stresses).reshape(PLANE_COMPONENTS, N)
-        v = np.arange(self.stresses, self.unknowns).reshape(PLANE_COMPONENTS, N + 1)[:, :N]
+        Sigma = self.nodal_rod.tip_stress[:, None, None]
+        s = np.arange(self.stress_count).reshape(PLANE_COMPONENT_COUNT, N)
+        v = np.arange(self.stress_count, self.unknowns).reshape(PLANE_COMPONENT_COUNT, N + 1)[:, :N]
         matrix = np.zeros((self.unknowns, self.unknowns))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, each)
@@ -216,7 +224,7 @@ class MixedForm:
 
 def axial_field(values: Array) -> Array:
     """The field with components (values, 0, 0), (3, nodes + 1); values: (nodes + 1,)."""
-    field = np.zeros((PLANE_COMPONENTS, len(values)))
+    field = np.zeros((PLANE_COMPONENT_COUNT, len(values)))
     field[0] = values
     return field
 
@@ -225,7 +233,7 @@ def integral_to_tip(grid: Mesh, values: Array) -> Array:
     """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
     (nodes + 1,).
     """
-    ends = reconstruction(grid.order).ends
+    ends = shape_integration_matrices(grid.order).angles_at_nodes
     total = np.zeros(grid.nodes + 1)
     for e, length in enumerate(grid.lengths):
         element = slice(e * grid.order, (e + 1) * grid.order + 1)

@@ -28,9 +28,9 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Rod
-from ..elements.basis import differentiation, interpolation
+from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
 from ..elements.elements import ELEMENT_SETTINGS, Elements, equal_edges
-from ..elements.quadrature import gauss, gauss_lobatto
+from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,13 +53,13 @@ PENCIL_NORM_SETTINGS = PencilNormSettings()
 class PencilMatrices(NamedTuple):
     """The matrices of the pencil A x = w B x of one rod or arm.
 
-    A: entries of A in the order of the sparsity pattern, (nnz,). B: diagonal of B, (unknowns,). scale:
-    factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2, nodes).
-    """
+    A: entries of A in the order of the sparsity pattern, (nnz,). B: diagonal of B, (unknowns,).
+    displacement_factors: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2,
+    nodes)."""
 
     A: Array
     B: Array
-    scale: Array
+    displacement_factors: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,28 +68,27 @@ class Pencil(Elements):
 
     The matrix of one rod is A = sum_i coefficients(rod)[i] term_entries[i]. term_entries: entries of the
     constant matrices, (6, nnz). rows, columns: row and column of each entry, (nnz,), sorted by row, then
-    column, with the full diagonal. mass: lumped mass of the nodes, (nodes,). B is diagonal: 1 for y, gamma3
-    divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s, `nodes` of each,
-    without the clamp.
-    """
+    column, with the full diagonal. nodal_masses: lumped mass of the nodes, (nodes,). B is diagonal: 1 for y,
+    gamma3 divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s, `nodes` of
+    each, without the clamp."""
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
     term_entries: Array
-    mass: Array
+    nodal_masses: Array
 
     @property
     def unknowns(self) -> int:
         return 3 * self.nodes
 
-    def coefficients(self, rod: Rod) -> Array:
+    def term_coefficients(self, rod: Rod) -> Array:
         """Factors of the six constant matrices for the rod `rod`, (6,)."""
         t = angle_weight(rod.rotational_drag)
         return np.array([1.0, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2])
 
-    def stiffness(self, rod: Rod) -> Array:
+    def stiffness_entries(self, rod: Rod) -> Array:
         """Entries of the matrix A of the rod `rod`, (nnz,)."""
-        return self.coefficients(rod) @ self.term_entries
+        return self.term_coefficients(rod) @ self.term_entries
 
     def dense_terms(self) -> Array:
         """The six constant matrices as dense flat matrices in column-major order, as LAPACK expects, (6,
@@ -101,24 +100,26 @@ class Pencil(Elements):
 
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of the rod `rod`."""
-        return PencilMatrices(self.stiffness(rod), self.inertia(rod), self.scale(rod))
+        return PencilMatrices(
+            self.stiffness_entries(rod), self.mass_diagonal(rod), self.displacement_factors(rod)
+        )
 
-    def inertia(self, rod: Rod) -> Array:
+    def mass_diagonal(self, rod: Rod) -> Array:
         """Diagonal of the matrix B of the rod `rod`, (unknowns,)."""
         B = np.zeros(self.unknowns)
         B[: self.nodes] = 1.0
         B[self.nodes : 2 * self.nodes] = rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
         return B
 
-    def scale(self, rod: Rod) -> Array:
+    def displacement_factors(self, rod: Rod) -> Array:
         """Factors that convert the unknowns of a rod to y and theta at the nodes, clamp excluded,
         (2, nodes).
         """
-        push = 1 / np.sqrt(self.mass)
+        push = 1 / np.sqrt(self.nodal_masses)
         return np.stack([push, push / angle_weight(rod.rotational_drag)])
 
 
-def finite_eigenvalues(rod: Rod, nodes: int) -> int:
+def finite_eigenvalue_count(rod: Rod, nodes: int) -> int:
     """Number of finite eigenvalues of a rod on a mesh with `nodes` nodes, without the clamp.
 
     Every node contributes one eigenvalue for y, and one for theta if the rod has shear and rotational drag.
@@ -145,7 +146,7 @@ def angle_weight(gamma3: float) -> float:
     return max(sqrt(gamma3), PENCIL_NORM_SETTINGS.min_angle_weight)
 
 
-def tip_scale(y: Complex, theta: Complex) -> Complex:
+def factors_to_unit_tip(y: Complex, theta: Complex) -> Complex:
     """Factors, (k,), that normalise k modes to y(1) = 1; NaN for a mode whose y(1) is 0 to rounding.
 
     y, theta: the modes at all nodes, (nodes + 1, k).
@@ -158,12 +159,12 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """Shear force s of k eigenvectors, (unknowns, k), at points, (points,), interpolated from the Gauss
     nodes: (points, k).
     """
-    nodes, weights = gauss(mesh.order)
+    nodes, weights = gauss_legendre_rule(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
-    for first, inside, local in mesh.by_element(points):
-        result[inside] = interpolation(nodes, local) @ values[first : first + mesh.order]
+    for first, inside, local in mesh.points_by_element(points):
+        result[inside] = lagrange_interpolation_matrix(nodes, local) @ values[first : first + mesh.order]
     return result
 
 
@@ -171,24 +172,24 @@ def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Comp
     """Derivatives d/du at points, (points,), of k fields, shape (points, k). values: the fields at all nodes,
     (nodes + 1, k).
     """
-    nodes, _ = gauss_lobatto(mesh.order)
-    derivative = 2 * differentiation(nodes)
+    nodes, _ = gauss_lobatto_rule(mesh.order)
+    derivative = 2 * differentiation_matrix(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
-    for first, inside, local in mesh.by_element(points):
+    for first, inside, local in mesh.points_by_element(points):
         changes = derivative @ values[first : first + mesh.order + 1] / mesh.lengths[first // mesh.order]
-        result[inside] = interpolation(nodes, local) @ changes
+        result[inside] = lagrange_interpolation_matrix(nodes, local) @ changes
     return result
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
 def assemble_pencil(elements: int, order: int) -> Pencil:
     """The pencil on `elements` equal elements of order `order`."""
     n = elements * order
     h = 1 / elements
-    x, w = gauss_lobatto(order)
-    xg, wg = gauss(order)
-    value = interpolation(x, xg)
-    slope = value @ differentiation(x)
+    x, w = gauss_lobatto_rule(order)
+    xg, wg = gauss_legendre_rule(order)
+    value = lagrange_interpolation_matrix(x, xg)
+    slope = value @ differentiation_matrix(x)
     mass = np.zeros(n + 1)
     entries: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
     for e in range(elements):
@@ -215,10 +216,10 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
     masses = np.concatenate(
         [mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM_SETTINGS.shear_weight**2]
     )
-    return _gather(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
+    return _assemble_blocks(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
 
 
-def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
+def _assemble_blocks(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
     """The `Pencil` in which the blocks `entries` of all elements are summed into one sparsity pattern.
 
     elements, order: number and order of the elements. entries: (index of the constant matrix, rows, columns,

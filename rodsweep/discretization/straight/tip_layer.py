@@ -14,8 +14,8 @@ import numpy as np
 from ...arrays import Array
 from ...model.adjoint import tip_layer_factor
 from ...model.rod import Rod
-from ..elements.basis import differentiation, interpolation
-from ..elements.quadrature import gauss, gauss_lobatto
+from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
+from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +46,11 @@ def tip_layer_ratio(rod: Rod) -> float:
         return 0.0
     if rod.standard:
         return tip_layer_factor(rod)
-    edges = _edges(rod)
-    x, _ = gauss_lobatto(TIP_LAYER_ORDER)
-    points, weights = gauss(TIP_LAYER_ORDER + 2)
-    value = interpolation(x, points)
-    slope = value @ differentiation(x)
+    edges = _element_edges(rod)
+    x, _ = gauss_lobatto_rule(TIP_LAYER_ORDER)
+    points, weights = gauss_legendre_rule(TIP_LAYER_ORDER + 2)
+    value = lagrange_interpolation_matrix(x, points)
+    slope = value @ differentiation_matrix(x)
     lengths = np.diff(edges)
     local = rod.local(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
     stiffness = 1 / local.c3 * weights * (2 / lengths)[:, None]
@@ -58,11 +58,11 @@ def tip_layer_ratio(rod: Rod) -> float:
     total = 0.0
     for bend, press in zip(stiffness, foundation, strict=True):
         K = (slope.T * bend) @ slope + (value.T * press) @ value
-        total = _at_right_end(K, total)
+        total = _ratio_at_right_end(K, total)
     return total
 
 
-def _at_right_end(K: Array, before: float) -> float:
+def _ratio_at_right_end(K: Array, before: float) -> float:
     """The ratio d/m at the right end of an element. before: the ratio d/m at the left end.
 
     K: stiffness matrix of the element, (nodes, nodes).
@@ -79,7 +79,7 @@ def _at_right_end(K: Array, before: float) -> float:
     return float(np.linalg.solve(K, load)[-1])
 
 
-def _edges(rod: Rod) -> Array:
+def _element_edges(rod: Rod) -> Array:
     """Increasing edges of elements: breaks of the arm, edges of equal elements and, for a thin layer, edges
     of shorter elements towards the tip.
     """

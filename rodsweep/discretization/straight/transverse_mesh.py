@@ -38,6 +38,6 @@ def pencil_on(mesh: AnyMesh) -> AnyPencil:
     return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
 def _arm_pencil(mesh: ArmMesh) -> ArmPencil:
     return ArmPencil(mesh)

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.balance import Values
-from ..state_layout import PLANE_COMPONENTS
+from ..state_layout import PLANE_COMPONENT_COUNT
 from .elements import LU, StraightElements, lu_factorisation, solve_factorised
 from .mixed_form import MixedForm
 
 
 @dataclass(frozen=True, eq=False)
-class WholeMatrices:
+class WholeRodMatrices:
     """A and M of a `MixedForm` about its straight arm, restricted to some components of stresses and
     velocities.
 
@@ -33,7 +33,7 @@ class WholeMatrices:
     def state_indices(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
         size = self.form.mesh.nodes + 1
-        marks = np.isin(np.arange(PLANE_COMPONENTS), self.components)[:, None] * np.ones(size)
+        marks = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 
     @cached_property
@@ -54,15 +54,15 @@ class WholeMatrices:
         """Product M x, (unknowns,)."""
         return self._scatter(self.M * x[self.state_indices])
 
-    def size_of_product(self, p: Values, q: Values) -> float:
+    def product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
         machine epsilon times this number. p, q: (unknowns,).
         """
         return float(np.abs(p[self.state_indices]) @ (np.abs(self.A) @ np.abs(q[self.state_indices])))
 
-    def factors(self, shift: complex) -> "WholeFactors":
+    def lu_factors(self, shift: complex) -> "WholeRodFactors":
         """LU factorisation of A - shift M."""
-        return WholeFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
+        return WholeRodFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 
     def _scatter(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, and 0 in all other
@@ -74,10 +74,10 @@ class WholeMatrices:
 
 
 @dataclass(frozen=True, eq=False)
-class WholeFactors:
+class WholeRodFactors:
     """LU factorisation of the dense matrix K = A - shift M."""
 
-    matrices: WholeMatrices
+    matrices: WholeRodMatrices
     factors: LU
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
@@ -87,8 +87,8 @@ class WholeFactors:
         return x
 
 
-def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightElements | WholeMatrices:
+def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightElements | WholeRodMatrices:
     """A and M of the form `form` about its straight rod. components: indices of the components of stresses
     and velocities to which A and M are restricted.
     """
-    return (StraightElements if form.rod.standard else WholeMatrices)(form, components)
+    return (StraightElements if form.rod.standard else WholeRodMatrices)(form, components)

@@ -42,7 +42,7 @@ from ..state_layout import stress_index, velocity_index
 
 
 @UnrolledOverAlgebra
-def write_fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
+def write_strains_and_stresses(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
     """Writes the strains and the stresses of a state x, (unknowns,), at all nodes into E and S, each
     (d, nodes + 1).
     """
@@ -50,22 +50,22 @@ def write_fields(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
     for i in range(size):
         s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         for a in g.components:
-            E[a, i] = c.rest[a, i] + c.compliance[a, i] * s[a]
+            E[a, i] = c.rest_strain[a, i] + c.compliance[a, i] * s[a]
             S[a, i] = s[a]
     if c.law != LINEAR_LAW:
-        apply_law(S, c)
+        replace_by_law_stresses(S, c)
 
 
 @compiled
-def apply_law(S: Array, c: NodalRod) -> None:
+def replace_by_law_stresses(S: Array, c: NodalRod) -> None:
     """Replaces the unknown stresses S at all nodes, (3, nodes + 1), by s(S), for a rod in the plane."""
     k = 0
     for i in range(S.shape[1]):
         if k < len(c.jumps) and c.jumps[k] == i:
-            S[0, i], S[2, i] = stress_at_jump(c.law, c.sides[k], S[0, i], S[2, i])
+            S[0, i], S[2, i] = stress_at_jump(c.law, c.jump_sides[k], S[0, i], S[2, i])
             k += 1
         else:
-            at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
+            at = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
             S[0, i], S[2, i] = stress_beyond_rest(c.law, at, S[0, i], S[2, i])
 
 
@@ -73,7 +73,7 @@ def apply_law(S: Array, c: NodalRod) -> None:
 def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1).
 
-    E, S: strains and stresses from `write_fields`, (d, nodes + 1) each.
+    E, S: strains and stresses from `write_strains_and_stresses`, (d, nodes + 1) each.
     """
     size = len(m.weights)
     out[:, :] = 0.0
@@ -107,11 +107,11 @@ def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices
             rate[a] += sign * E[b, i] * V[o, i]
         for a in g.components:
             G[a, i] = m.weights[i] * rate[a]
-    add_weak_slope(g, V, G, m)
+    add_weak_derivative(g, V, G, m)
 
 
 @UnrolledOverAlgebra
-def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
+def add_weak_derivative(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
     """Adds -D^T W V to G, both (d, nodes + 1)."""
     size = len(m.weights)
     for j in range(size):
@@ -123,7 +123,7 @@ def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
 
 
 @UnrolledOverAlgebra
-def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
     V and G, (d, nodes + 1) each.
 
@@ -132,7 +132,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
-    write_fields(g, x, E, S, c)
+    write_strains_and_stresses(g, x, E, S, c)
     write_forces(g, E, S, V, c, m)
     for i in range(size):
         for a in g.components:
@@ -145,7 +145,7 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
 
 
 @UnrolledOverAlgebra
-def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_velocity_residuals(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,).
 
     x: state, (unknowns,). Entries of out for stresses are not changed.
@@ -154,7 +154,7 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     force = np.empty((g.dimension, size))
-    write_fields(g, x, E, S, c)
+    write_strains_and_stresses(g, x, E, S, c)
     write_forces(g, E, S, force, c, m)
     for k in range(len(c.unknown_velocities)):
         a = c.unknown_velocities[k]
@@ -164,7 +164,7 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
 
 
 @compiled
-def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
+def write_law_derivative(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
     """Writes the derivative of s(S) with respect to a parameter, at fixed S, into dS, (3, nodes + 1).
 
     x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to the parameter.
@@ -175,16 +175,16 @@ def law_change(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
         # At the tip S = 0.
         q1, q3 = (x[stress_index(0, i, n)], x[stress_index(2, i, n)]) if i < n else (0.0, 0.0)
         if k < len(c.jumps) and c.jumps[k] == i:
-            dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.sides[k], change.sides[k], q1, q3)
+            dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.jump_sides[k], change.jump_sides[k], q1, q3)
             k += 1
             continue
-        at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
-        moved = LocalSection(change.rest[0, i], change.compliance[0, i], change.compliance[2, i])
+        at = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+        moved = LocalSection(change.rest_strain[0, i], change.compliance[0, i], change.compliance[2, i])
         dS[0, i], dS[2, i] = stress_change(c.law, at, moved, q1, q3)
 
 
 @UnrolledOverAlgebra
-def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
+def write_balance_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivatives of the equations with respect to a parameter, at a fixed state x, (unknowns,),
@@ -198,12 +198,12 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
     dS = np.zeros((g.dimension, size))
-    write_fields(g, x, E, S, c)
+    write_strains_and_stresses(g, x, E, S, c)
     if c.law != LINEAR_LAW:
-        law_change(x, dS, change, c)
+        write_law_derivative(x, dS, change, c)
     for i in range(size):
         s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
-        dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
+        dE = [change.rest_strain[a, i] + change.compliance[a, i] * s[a] for a in g.components]
         # The derivative of Gamma V = D* Sigma at a fixed state: Gamma dV = d(force) - dGamma V.
         force = [-change.drag[a, i] * V[a, i] for a in g.components]
         if c.law != LINEAR_LAW:
@@ -221,4 +221,4 @@ def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
             out[0, a, i] = force[a]
             out[1, a, i] = dV[a]
             out[2, a, i] = m.weights[i] * rate[a]
-    add_weak_slope(g, out[1], out[2], m)
+    add_weak_derivative(g, out[1], out[2], m)

@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array
-from ..arm_on_mesh import jump_change_on, material_change_on
+from ..arm_on_mesh import jump_derivatives, material_derivative_at_nodes
 from ..elements.mesh import Mesh, interpolation_matrix
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
-from ..state_layout import PLANE_COMPONENTS, plane_layout
+from ..state_layout import PLANE_COMPONENT_COUNT, plane_layout
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,51 +43,51 @@ class StressForm(RodOnMesh):
     """
 
     @property
-    def omega_unknown(self) -> bool:
+    def is_omega_unknown(self) -> bool:
         """Whether the angular velocity Omega is an unknown."""
         return self.rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_drag
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:
-        return OMEGA_COMPONENT if self.omega_unknown else ()
+        return OMEGA_COMPONENT if self.is_omega_unknown else ()
 
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
 
-    def states_on(self, grid: Mesh, x: Array) -> Array:
+    def states_on_mesh(self, grid: Mesh, x: Array) -> Array:
         """States x, (..., unknowns), interpolated to the mesh `grid`, (..., unknowns on grid)."""
         E = interpolation_matrix(self.mesh, grid)
         if self.has_continuous_stresses:
             return self.layout.interpolate(x, E)
         layout = plane_layout(grid.nodes, self.unknown_velocities)
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.
-        V = np.zeros((PLANE_COMPONENTS, *x.shape[:-1], grid.nodes + 1))
+        V = np.zeros((PLANE_COMPONENT_COUNT, *x.shape[:-1], grid.nodes + 1))
         V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
-        return layout.state(self.stresses_on(grid, x), V)
+        return layout.state(self.stresses_on_mesh(grid, x), V)
 
     def parameter_derivative(self, name: str) -> NodalChange:
         """Derivative of `nodal` with respect to the coordinate of the parameter `name`: 1/k for a stiffness
         k, else the parameter itself.
         """
-        change = material_change_on(self.rod, name, self.mesh)
-        return nodal_change(change, self.mesh, jump_change_on(self.rod, name, self.mesh))
+        change = material_derivative_at_nodes(self.rod, name, self.mesh)
+        return nodal_change(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
 
     @cached_property
-    def mass(self) -> Array:
+    def mass_diagonal(self) -> Array:
         """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
-        return self.mass_of(self.nodal)
+        return self.mass_of(self.nodal_rod)
 
     def mass_of(self, rod: NodalRod | NodalChange) -> Array:
-        """The diagonal `mass` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
+        """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
         of a rod.
         """
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
-    def amplitude(self, x: Array) -> Array:
+    def energy_norm(self, x: Array) -> Array:
         """Amplitude sqrt(x M x), (...), of states x, (..., unknowns), with the mass matrix M; 0 for the
         straight rod.
         """
         # x M x is twice the elastic energy of a linear rod; Omega has mass 0.
-        amplitude: Array = np.sqrt(x**2 @ self.mass)
+        amplitude: Array = np.sqrt(x**2 @ self.mass_diagonal)
         return amplitude

@@ -20,15 +20,15 @@ from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import tangent_at_jump
-from ...model.material.response import LINEAR_LAW, LocalSection, tangent
+from ...model.material.response import LINEAR_LAW, LocalSection, stress_tangent
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
 from ..state_layout import stress_index, velocity_index
-from .balance import write_fields
+from .balance import write_strains_and_stresses
 
 
 @UnrolledOverAlgebra
-def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
+def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the Jacobian of the equations at the state x, (unknowns,), into J, (unknowns, unknowns).
@@ -40,20 +40,20 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
-    write_fields(g, x, E, S, c)
-    _derivative(g, (E, S, V), J, tip, c.compliance, c, m)
+    write_strains_and_stresses(g, x, E, S, c)
+    _write_linear_law_jacobian(g, (E, S, V), J, tip, c.compliance, c, m)
     if c.law != LINEAR_LAW:
         P = np.empty(J.shape)
         tip_P = np.empty(tip.shape)
         # With compliances of 0 the strain is fixed, so the derivative is P.
-        _derivative(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
+        _write_linear_law_jacobian(g, (E, S, V), P, tip_P, np.zeros(c.compliance.shape), c, m)
         # Unknown velocities do not depend on the law, so their columns of P are not used.
-        _by_law(x, J, P, c)
-        _by_law(x, tip, tip_P, c)
+        _add_law_tangent(x, J, P, c)
+        _add_law_tangent(x, tip, tip_P, c)
 
 
 @compiled
-def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
+def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
     """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the planar rod `c` at the state
     x.
     """
@@ -63,11 +63,11 @@ def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
         p1 = stress_index(0, i, n)
         p3 = stress_index(2, i, n)
         if k < len(c.jumps) and c.jumps[k] == i:
-            T = tangent_at_jump(c.law, c.sides[k], x[p1], x[p3])
+            T = tangent_at_jump(c.law, c.jump_sides[k], x[p1], x[p3])
             k += 1
         else:
-            at = LocalSection(c.rest[0, i], c.compliance[0, i], c.compliance[2, i])
-            T = tangent(c.law, at, x[p1], x[p3])
+            at = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+            T = stress_tangent(c.law, at, x[p1], x[p3])
         for r in range(len(J)):
             by_pull = P[r, p1]
             by_moment = P[r, p3]
@@ -77,7 +77,7 @@ def _by_law(x: Array, J: Array, P: Array, c: NodalRod) -> None:
 
 
 @UnrolledOverAlgebra
-def _derivative(  # noqa: PLR0913, PLR0917 - as above
+def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra,
     at: tuple[Array, Array, Array],
     J: Array,
@@ -92,22 +92,22 @@ def _derivative(  # noqa: PLR0913, PLR0917 - as above
     the part P. J: (unknowns, unknowns). tip: (d, unknowns).
     """
     slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
-    _velocity_slopes(g, at, slopes, compliance, c)
-    _rows(g, at, slopes, J, tip, compliance, c, m)
+    _write_velocity_derivatives(g, at, slopes, compliance, c)
+    _write_rate_derivatives(g, at, slopes, J, tip, compliance, c, m)
     for k in range(len(c.unknown_velocities)):
-        _kept_columns(g, k, at[0], J, tip, c, m)
-        _kept_rows(g, k, at, J, compliance, c, m)
+        _write_unknown_velocity_columns(g, k, at[0], J, tip, c, m)
+        _write_unknown_velocity_rows(g, k, at, J, compliance, c, m)
 
 
 @UnrolledOverAlgebra
-def _velocity_slopes(
+def _write_velocity_derivatives(
     g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
     """Writes the derivatives of the velocities with respect to the stresses of the same node into the nonzero
     blocks of slopes.
 
     slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma; the term with D is not
-    included. at, compliance: as in `_derivative`.
+    included. at, compliance: as in `_write_linear_law_jacobian`.
     """
     E, S, _ = at
     for i in range(slopes.shape[2]):
@@ -123,7 +123,7 @@ def _velocity_slopes(
 
 
 @UnrolledOverAlgebra
-def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
+def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
     g: Algebra,
     at: tuple[Array, Array, Array],
     slopes: Array,
@@ -135,7 +135,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 ) -> None:
     """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
 
-    at, compliance: as in `_derivative`. slopes: result of `_velocity_slopes`.
+    at, compliance: as in `_write_linear_law_jacobian`. slopes: result of `_write_velocity_derivatives`.
     """
     n = len(m.weights) - 1
     E, _, V = at
@@ -148,9 +148,9 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
         for a in g.components:
             for j in range(n):
                 # -D^T W Gamma^-1 D does not depend on the state and is computed once per rod.
-                rows[a][stress_index(a, j, n)] = c.second[a, i, j]
+                rows[a][stress_index(a, j, n)] = c.mobility_laplacian[a, i, j]
         for j in range(n):
-            weak = m.weak[i, j]
+            weak = m.weak_derivative[i, j]
             slope = m.D[i, j]
             for a, b in g.distinct_pairs:
                 back = weak * slopes[a, b, j] if g.coad_pattern[a][b] else 0.0
@@ -171,7 +171,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 
 
 @UnrolledOverAlgebra
-def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
+def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivative of the strain rates G with respect to the k-th unknown velocity component into J
@@ -187,14 +187,14 @@ def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
         rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(size):
-                rows[a][first + j] = m.weak[i, j] if of == a else 0.0
+                rows[a][first + j] = m.weak_derivative[i, j] if of == a else 0.0
         for a, b, o, sign in g.structure_constants:
             if o == of:
                 rows[a][first + i] += sign * m.weights[i] * E[b, i]
 
 
 @UnrolledOverAlgebra
-def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
+def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra,
     k: int,
     at: tuple[Array, Array, Array],
@@ -205,7 +205,7 @@ def _kept_rows(  # noqa: PLR0913, PLR0917 - as above
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
 
-    at, compliance: as in `_derivative`.
+    at, compliance: as in `_write_linear_law_jacobian`.
     """
     size = len(m.weights)
     n = len(m.weights) - 1

@@ -1,8 +1,7 @@
 """The compiled rod on a mesh as an explicit differential equation dz/dt = f(z), for finite stiffnesses.
 
-The unknown is z = C^(1/2) S, with the stresses S of `balance` and the nodal compliances C; z^2 is an energy
-density.
-"""
+The unknown is z = C^(1/2) S, with the stresses S of `write_balance` and the nodal compliances C; z^2 is an
+energy density."""
 
 import numpy as np
 
@@ -10,7 +9,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
-from ..plane import balance, jacobian
+from ..plane import write_balance, write_jacobian
 from ..state_layout import stress_index
 
 
@@ -24,8 +23,8 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
     V = np.empty((d, size))
     G = np.empty((d, size))
     x = np.empty(len(z))
-    _stresses_of_unknowns(z, x, roots)
-    balance(x, V, G, c, m)
+    _write_stresses_of_state(z, x, roots)
+    write_balance(x, V, G, c, m)
     for a in range(d):
         for i in range(size - 1):
             # W C dS/dt = G with z = C^(1/2) S, so dz/dt = G/(W C^(1/2)).
@@ -33,7 +32,7 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
 
 
 @compiled_for_vectors
-def _stresses_of_unknowns(z: Array, x: Array, roots: Array) -> None:
+def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
     """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,). roots: as in `write_rate`."""
     d = roots.shape[0]
     n = roots.shape[1] - 1
@@ -56,9 +55,9 @@ def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: Node
     x = np.empty(unknowns)
     J = np.empty((unknowns, unknowns))
     tip = np.empty((d, unknowns))
-    _stresses_of_unknowns(z, x, roots)
-    balance(x, V, G, c, m)
-    jacobian(x, V, J, tip, c, m)
+    _write_stresses_of_state(z, x, roots)
+    write_balance(x, V, G, c, m)
+    write_jacobian(x, V, J, tip, c, m)
     scale = np.empty(unknowns)
     inverse = np.empty(unknowns)
     for a in range(d):

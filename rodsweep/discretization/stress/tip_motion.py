@@ -12,34 +12,40 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
 from ..elements.elements import ELEMENT_SETTINGS, Elements
-from ..elements.mesh import reconstruction
+from ..elements.mesh import shape_integration_matrices
 
 
 class TipMatrices(NamedTuple):
     """Matrices that integrate strains to the position of the tip, on one element [0, 1] with p + 1 nodes.
 
-    values: interpolation from nodes to g Gauss points, (p + 1, g). angles: integrals of nodal polynomials
-    from 0 to the Gauss points, (p + 1, g). weights: Gauss weights, (g,). ends: integrals of nodal polynomials
-    over the element, (p + 1,). lengths: lengths of all elements, (elements,).
-    """
+    values_at_gauss_points: interpolation from nodes to g Gauss points, (p + 1, g). angles_at_gauss_points:
+    integrals of nodal polynomials from 0 to the Gauss points, (p + 1, g). gauss_weights: Gauss weights, (g,).
+    element_integrals: integrals of nodal polynomials over the element, (p + 1,). element_lengths: lengths of
+    all elements, (elements,)."""
 
-    values: Array
-    angles: Array
-    weights: Array
-    ends: Array
-    lengths: Array
+    values_at_gauss_points: Array
+    angles_at_gauss_points: Array
+    gauss_weights: Array
+    element_integrals: Array
+    element_lengths: Array
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
-    m = reconstruction(grid.order)
-    parts = m.values, m.angles, m.integrals[:, -1], m.ends[:, -1], grid.lengths
+    m = shape_integration_matrices(grid.order)
+    parts = (
+        m.values_at_gauss_points,
+        m.angles_at_gauss_points,
+        m.integrals_to_nodes[:, -1],
+        m.angles_at_nodes[:, -1],
+        grid.lengths,
+    )
     return TipMatrices(*map(np.ascontiguousarray, parts))
 
 
 @compiled_for_vectors
-def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
+def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative of (x, y, theta) into
     velocity.
 
@@ -47,8 +53,8 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
     derivatives of the strains, of the same shape. tip, velocity: (states, 3). The rod is clamped at the
     origin along e_x.
     """
-    size = len(m.ends)
-    points = len(m.weights)
+    size = len(m.element_integrals)
+    points = len(m.gauss_weights)
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
     for k in range(strains.shape[1]):
         x = 0.0
@@ -57,16 +63,16 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
         dx = 0.0
         dy = 0.0
         turn = 0.0
-        for e in range(len(m.lengths)):
+        for e in range(len(m.element_lengths)):
             first = e * size
-            length = m.lengths[e]
+            length = m.element_lengths[e]
             here = slice(first, first + size)
-            _to_points(strains[:, k, here], m, length, theta, fields[:3])
-            _to_points(rates[:, k, here], m, length, turn, fields[3:])
+            _write_fields_at_gauss_points(strains[:, k, here], m, length, theta, fields[:3])
+            _write_fields_at_gauss_points(rates[:, k, here], m, length, turn, fields[3:])
             for g in range(points):
                 cos = np.cos(fields[2, g])
                 sin = np.sin(fields[2, g])
-                w = length * m.weights[g]
+                w = length * m.gauss_weights[g]
                 u = w * (cos * fields[0, g] - sin * fields[1, g])
                 v = w * (sin * fields[0, g] + cos * fields[1, g])
                 x = x + u
@@ -76,8 +82,8 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
             for j in range(size):
-                theta += length * m.ends[j] * strains[2, k, first + j]
-                turn += length * m.ends[j] * rates[2, k, first + j]
+                theta += length * m.element_integrals[j] * strains[2, k, first + j]
+                turn += length * m.element_integrals[j] * rates[2, k, first + j]
         tip[k, 0] = x
         tip[k, 1] = y
         tip[k, 2] = theta
@@ -87,7 +93,9 @@ def tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocit
 
 
 @compiled_for_vectors
-def _to_points(nodal: Array, m: TipMatrices, length: float, start: float, fields: Array) -> None:
+def _write_fields_at_gauss_points(
+    nodal: Array, m: TipMatrices, length: float, start: float, fields: Array
+) -> None:
     """Writes h1, h2 and theta at the Gauss points of one element into fields, (3, g).
 
     nodal: (h1, h2, Pi) at the nodes of the element, (3, p + 1). length: length of the element. start: theta
@@ -95,11 +103,11 @@ def _to_points(nodal: Array, m: TipMatrices, length: float, start: float, fields
     """
     fields[:2] = 0.0
     fields[2] = start
-    for j in range(len(m.ends)):
+    for j in range(len(m.element_integrals)):
         h1 = nodal[0, j]
         h2 = nodal[1, j]
         Pi = nodal[2, j]
-        for g in range(len(m.weights)):
-            fields[0, g] += h1 * m.values[j, g]
-            fields[1, g] += h2 * m.values[j, g]
-            fields[2, g] += length * Pi * m.angles[j, g]
+        for g in range(len(m.gauss_weights)):
+            fields[0, g] += h1 * m.values_at_gauss_points[j, g]
+            fields[1, g] += h2 * m.values_at_gauss_points[j, g]
+            fields[2, g] += length * Pi * m.angles_at_gauss_points[j, g]

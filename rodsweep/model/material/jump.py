@@ -19,7 +19,15 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import LINEAR_LAW, LocalSection, Stress, Tangent, stress_beyond_rest, stress_change, tangent
+from .response import (
+    LINEAR_LAW,
+    LocalSection,
+    Stress,
+    Tangent,
+    stress_beyond_rest,
+    stress_change,
+    stress_tangent,
+)
 
 SIDE_COLUMNS = ("nu", "c1", "c3", "share of c1", "share of c3", "share of the quadrature", "c2")
 """Columns of the array that describes both sides of a jump: fields of `LocalSection`, weights w of q1 and q3
@@ -93,8 +101,8 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
         b = unknowns_behind_jump(sides, q, a)
         s = stress_beyond_rest(law, one, a.q1, a.q3)
         t = stress_beyond_rest(law, other, b.q1, b.q3)
-        S = tangent(law, one, a.q1, a.q3)
-        T = tangent(law, other, b.q1, b.q3)
+        S = stress_tangent(law, one, a.q1, a.q3)
+        T = stress_tangent(law, other, b.q1, b.q3)
         # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solve_tangent_system(J, t.N - s.N, t.M - s.M)
@@ -131,8 +139,8 @@ def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) 
 
     law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: (2, 7).
     """
-    S = tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
-    T = tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
+    S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
+    T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1
     t = T.N1 * T.M3 - T.N3 * T.M1
     s1 = sides[0, 3] / s
@@ -156,8 +164,8 @@ def changes_beside_jump(
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     stresses = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
-    S = tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
-    T = tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
+    S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
+    T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     return _solve_tangent_system(S, stresses.q1, stresses.q3), _solve_tangent_system(
         T, stresses.q1, stresses.q3
     )
@@ -195,7 +203,7 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
         own = stress_change(law, at, _section_of_side(change[i]), x.q1, x.q3)
         # At fixed stress the unknowns of this side would change by -back. A change of the stress keeps the
         # mean unknowns fixed.
-        back = _solve_tangent_system(tangent(law, at, x.q1, x.q3), own.N, own.M)
+        back = _solve_tangent_system(stress_tangent(law, at, x.q1, x.q3), own.N, own.M)
         moved1 += sides[i, 3] * back.q1
         moved3 += sides[i, 4] * back.q3
     out = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), moved1, moved3)

@@ -75,7 +75,7 @@ def stress_beyond_rest(law: int, at: LocalSection, q1: float, q3: float) -> Stre
 
 
 @compiled
-def tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
+def stress_tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3. law: number of
     the law.
     """

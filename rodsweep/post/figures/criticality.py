@@ -15,7 +15,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from . import style
 from .cycle.maps import label_maps, map_panels
-from .cycle.point_map import PointMap, cell_edges, is_map, point_map, varied_parameters
+from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
@@ -65,7 +65,7 @@ def draw_criticality(request: FigureRequest) -> str:
         return request.write(
             _curves_figure(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}"
         )
-    if not is_map(view):
+    if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
     shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"

@@ -11,7 +11,7 @@ from .cycle.amplitudes.branches import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
-from .cycle.point_map import is_map, point_map, varied_parameters
+from .cycle.point_map import point_map, varied_parameters, varies_two_parameters_on_grid
 from .cycle.portrait import draw_portrait
 from .cycle.selection import (
     ENERGY_BUDGET_VARIABLES,
@@ -113,7 +113,7 @@ def _default_figure_kind(request: FigureRequest) -> str:
 
 def _has_many_lines(view: View) -> bool:
     """Whether the points form a map that has more lines than a figure of amplitudes can show."""
-    if not is_map(view):
+    if not varies_two_parameters_on_grid(view):
         return False
     across = next(name for name in point_map(view).names if name != abscissa_parameter(view))
     return len(np.unique(view.point_columns[across])) > len(BRANCH_LOOKS)

@@ -123,7 +123,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     config = json.loads(attributes["config_resolved"])
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
-    require_matching_arguments(file, layout)
+    require_variables_of_layout(file, layout)
     fingerprint = fingerprint_of(config, points_in(file, layout).identity)
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
@@ -153,7 +153,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
         )
 
 
-def require_matching_arguments(file: h5py.File, layout: Layout) -> None:
+def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
     """Raises one of the exceptions DAMAGES unless the file has the variables of a layout.
 
     Every variable must be contiguous and have the type and shape of the layout.

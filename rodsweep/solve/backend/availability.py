@@ -4,7 +4,7 @@ import os
 from importlib import import_module
 
 from ...errors import EnvironmentIncomplete, InputError, import_refusal
-from .debian import add_debian_modules, is_found
+from .debian import add_debian_modules, is_module_found
 
 
 def require_directory() -> None:
@@ -30,7 +30,7 @@ def require_solvers() -> None:
     require_directory()
     add_debian_modules()
     for name in ("petsc4py", "slepc4py"):
-        if not is_found(name):
+        if not is_module_found(name):
             raise import_refusal(name, "not found")
 
 

@@ -61,19 +61,19 @@ def pointer(context: Any, address: Any) -> Any:
 
 
 @compiled
-def floats(address: int, size: int) -> Any:
+def doubles_at(address: int, size: int) -> Any:
     return numba.carray(pointer(address), (size,), np.float64)
 
 
 @compiled
 def double_array_at(address: int, shape: Any) -> Any:
-    """Array of doubles at the memory address `address`, of the given `shape`. `floats(...).reshape` would
+    """Array of doubles at the memory address `address`, of the given `shape`. `doubles_at(...).reshape` would
     take as long as one evaluation of the rod's equations with ten nodes."""
     return numba.carray(pointer(address), shape, np.float64)
 
 
 @compiled
-def integers(address: int, size: int) -> Any:
+def integers_at(address: int, size: int) -> Any:
     return numba.carray(pointer(address), (size,), np.int64)
 
 
@@ -84,7 +84,7 @@ def record_at(address: int, dtype: Any) -> Any:
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 
-def call(name: str, *arguments: int) -> None:
+def call_petsc(name: str, *arguments: int) -> None:
     """Calls the libpetsc function `name` with pointers `arguments`; raises RuntimeError if the returned error
     code is not 0."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):

@@ -21,13 +21,13 @@ def add_debian_modules(libraries: Path = LIBRARIES) -> None:
     SLEPC_DIR, is set.
     """
     for name in ("petsc", "slepc"):
-        if f"{name.upper()}_DIR" in os.environ or is_found(f"{name}4py"):
+        if f"{name.upper()}_DIR" in os.environ or is_module_found(f"{name}4py"):
             continue
         directories = libraries.glob(f"{name}dir/{name}[0-9].*/*-real/lib/python3/dist-packages")
         sys.path += map(str, sorted(directories, key=_petsc_version_numbers)[-1:])
 
 
-def is_found(module: str) -> bool:
+def is_module_found(module: str) -> bool:
     """Whether Python finds the module named `module`, tested without an import."""
     try:
         return find_spec(module) is not None

@@ -22,7 +22,7 @@ _dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *
 
 
 @compiled
-def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
+def matrix_product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
     """Matrix product C = factors[0] A B + factors[1] C by dgemm, written to C, for matrices stored by rows.
 
     a, b, c: memory addresses of the first entries of A, B and C. extents: int32 (m, n, k, lda, ldb, ldc) for
@@ -44,4 +44,4 @@ def square_product(A: Array, B: Array, C: Array, factor: float, keep: float) -> 
     n = len(A)
     extents = np.full(6, n, np.int32)
     factors = np.array([factor, keep])
-    product(A.ctypes.data, B.ctypes.data, C.ctypes.data, extents, factors)
+    matrix_product(A.ctypes.data, B.ctypes.data, C.ctypes.data, extents, factors)

@@ -24,23 +24,23 @@ _dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *
 class SmallEigenvalueSettings(CompiledSettings):
     """Size of the work array of LAPACK's dgeev."""
 
-    work: int = 12
+    work_array_ratio: int = 12
     """Length of the work array divided by n, for a matrix (n, n): dgeev needs at least 3, and is faster with
     more."""
-    ranges: ClassVar = {"work": (2, math.inf)}
+    ranges: ClassVar = {"work_array_ratio": (2, math.inf)}
 
 
 SMALL_EIGENVALUE_SETTINGS = SmallEigenvalueSettings()
 
 
 @compiled
-def eigenvalues(A: Array) -> Complex:
+def small_matrix_eigenvalues(A: Array) -> Complex:
     """Eigenvalues, (n,), of a matrix A, (n, n), with finite entries; all nan if LAPACK's iteration does not
     converge."""
     n = len(A)
     a = A.copy()
     parts = np.empty((2, n))
-    work = np.empty(SMALL_EIGENVALUE_SETTINGS.work * n)
+    work = np.empty(SMALL_EIGENVALUE_SETTINGS.work_array_ratio * n)
     extents = np.array([n, len(work), 0], np.int32)
     none = np.full(1, 78, np.uint8)  # "N"
     no = none.ctypes.data

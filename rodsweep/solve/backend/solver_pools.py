@@ -67,12 +67,12 @@ class LruPool(Generic[Key, Object]):
         self._objects.move_to_end(key)
         return self._objects[key]
 
-    def drop(self, key: Key) -> None:
+    def destroy_object(self, key: Key) -> None:
         """Destroys the object for `key`, if the pool has one."""
         if key in self._objects:
             self._objects.pop(key).destroy()
 
-    def clear(self) -> None:
+    def destroy_all(self) -> None:
         """Destroys all objects of the pool."""
         while self._objects:
             self._objects.popitem()[1].destroy()
@@ -85,4 +85,4 @@ def destroy_pooled_solvers() -> None:
     """Destroys the objects of all pools; called after an exception in a solve, which may leave objects
     unusable."""
     for pool in list(_pools):
-        pool.clear()
+        pool.destroy_all()

@@ -65,7 +65,7 @@ class ArcPoint:
     arc_since_measured: float = 0.0
     """Arc length of the branch since the last cycle with measured errors; 0 if `steps_since_measured` is
     0."""
-    before: PreviousCycle | None = None
+    previous: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
 
     @property
@@ -95,7 +95,7 @@ class ArcPoint:
     @property
     def coordinate(self) -> float:
         """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
-        return self.orbit.form.rod.coordinate(self.scale.name)
+        return self.orbit.form.rod.coordinate(self.scale.parameter)
 
     @property
     def parameter_rate(self) -> float:
@@ -116,25 +116,25 @@ class ArcPoint:
         values = bordered_matrix_of(self.cycle.converged).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
-    def condition(self, length: float) -> BorderCondition:
+    def arc_length_condition(self, length: float) -> BorderCondition:
         """The condition that the next cycle has the arc length `length` from this cycle."""
         return BorderCondition.at_arc_length(self.scale, self.unit_tangent, self.orbit, length)
 
-    def predicted(self, length: float) -> Orbit:
+    def predicted_orbit(self, length: float) -> Orbit:
         """Predicted orbit at the arc length `length` ahead, on the cubic through this cycle and the previous
         cycle, or on the tangent if there is no previous cycle; raises Unsolvable."""
         change = length * self.tangent
-        if self.before is not None:
-            change = length ** np.arange(1, 4) @ self._taylor(self.before)
-        return moved_orbit(self.orbit, self.scale.name, change)
+        if self.previous is not None:
+            change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
+        return moved_orbit(self.orbit, self.scale.parameter, change)
 
-    def _taylor(self, before: PreviousCycle) -> Array:
+    def _cubic_coefficients(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
         its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
         cubic."""
-        name = self.scale.name
+        name = self.scale.parameter
         mesh = mesh_of(self.orbit)
-        last = mesh.interpolate(before.orbit)
+        last = mesh.interpolated_orbit(before.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
         slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
@@ -156,7 +156,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> B
 
     In the result curvature and multiplier rate are 0, to be set by the caller.
     """
-    own = Scale.of(found.orbit, scale.name, scale.min_deflection_unit)
+    own = Scale.at_orbit(found.orbit, scale.parameter, scale.min_deflection_unit)
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
@@ -185,19 +185,19 @@ def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint
     """The cycle at the arc length `length` from `start`, to a relative accuracy; raises Unsolvable if no
     cycle is found, or if the prediction error or the angle is so large that the cycle may lie on another
     branch."""
-    return ARC_STEPS.accepted(_step_to_length(start, accuracy, length)).solution
+    return ARC_STEPS.require_small_errors(_step_to_length(start, accuracy, length)).solution
 
 
 def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
     and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch an
     allowed prediction error is replaced by `target_error`."""
-    condition = start.condition(length)
-    predicted = start.predicted(length)
+    condition = start.arc_length_condition(length)
+    predicted = start.predicted_orbit(length)
     tolerance = newton_tolerance(accuracy)
     found = condition.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.before is None and off <= ARC_STEPS.max_error:
+    if start.previous is None and off <= ARC_STEPS.max_error:
         off = (
             ARC_STEPS.target_error
         )  # the error of the tangent predictor does not predict the error of the cubic
@@ -237,5 +237,5 @@ def cycle_with_calibrated_errors(
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,
         arc_since_measured=start.arc_since_measured + length,
-        before=PreviousCycle(start.orbit, start.tangent),
+        previous=PreviousCycle(start.orbit, start.tangent),
     )

@@ -33,7 +33,7 @@ class BranchPoint:
     within its error."""
 
     @classmethod
-    def of(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
+    def from_cycle(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle
@@ -41,7 +41,7 @@ class BranchPoint:
         beyond = sizes - 1
         undecided = bool((np.abs(beyond) <= _multiplier_modulus_error(point)).any())
         return cls(
-            at=getattr(point.orbit.form.rod, point.scale.name),
+            at=getattr(point.orbit.form.rod, point.scale.parameter),
             at_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
@@ -83,7 +83,7 @@ class BranchCurve:
     start_hopf: int
     """Index of the Hopf point where the branch starts; -1 for an asymmetric branch."""
     points: list[BranchPoint] = field(default_factory=list)
-    special: list[SpecialPoint] = field(default_factory=list)
+    special_points: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
     """Index of the Hopf point where the branch ends; -1 if the branch has another end."""
     start_breaking: SymmetryBreaking | None = None
@@ -98,15 +98,15 @@ class BranchCurve:
     multipliers_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
-    def add(self, special: SpecialPoint) -> None:
+    def add_special_point(self, special: SpecialPoint) -> None:
         """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
-        self.special.append(replace(special, after=len(self.points) - 1))
+        self.special_points.append(replace(special, after=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
         """Appends the special points `between`, which lie between the present last cycle and the next cycle.
         explained: whether these points explain every multiplier that crosses the unit circle there."""
         for special in between:
-            self.add(special)
+            self.add_special_point(special)
         self.multipliers_explained &= explained
 
     def replace_last_cycles(self, points: Sequence[BranchPoint]) -> None:
@@ -117,12 +117,12 @@ class BranchCurve:
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
         del self.points[-count:]
-        self.special[:] = [point for point in self.special if point.after < len(self.points)]
+        self.special_points[:] = [point for point in self.special_points if point.after < len(self.points)]
 
     def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the
         branch."""
-        self.add(end.special)
+        self.add_special_point(end.special)
         self.complete = end.complete
         self.list_full = end.list_full
         self.end_hopf = end.end_hopf

@@ -18,7 +18,7 @@ def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialP
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
     the caller. message: cause of a failure."""
     measures = point.cycle.measures
-    at = getattr(point.orbit.form.rod, point.scale.name)
+    at = getattr(point.orbit.form.rod, point.scale.parameter)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,
@@ -41,12 +41,12 @@ class BranchRecord:
         self.accuracy = accuracy
         self._last_measured = first
         self._unmeasured: list[ArcPoint] = []
-        curve.points.append(BranchPoint.of(first, accuracy))
+        curve.points.append(BranchPoint.from_cycle(first, accuracy))
 
     def append(self, point: ArcPoint) -> None:
         """Appends the cycle `point`, whose errors are not measured."""
         self._unmeasured.append(point)
-        self.curve.points.append(BranchPoint.of(point, self.accuracy))
+        self.curve.points.append(BranchPoint.from_cycle(point, self.accuracy))
 
     def assign_errors(self, condition: BorderCondition | None = None) -> ArcPoint:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and solves
@@ -58,7 +58,7 @@ class BranchRecord:
         """
         if self._unmeasured:
             points = with_errors_in_accuracy(self._last_measured, self._unmeasured, self.accuracy, condition)
-            self.curve.replace_last_cycles([BranchPoint.of(point, self.accuracy) for point in points])
+            self.curve.replace_last_cycles([BranchPoint.from_cycle(point, self.accuracy) for point in points])
             self._last_measured = points[-1]
             self._unmeasured = []
         return self._last_measured

@@ -16,7 +16,7 @@ from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
-from ..cycle.hopf_start import HOPF_START, orbit_of_amplitude
+from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
@@ -67,7 +67,7 @@ class HopfBranchStart:
     name: str
     coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
-    slope: complex
+    growth_slope: complex
     """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
     normal_form: NormalForm
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
@@ -91,7 +91,7 @@ class HopfBranchStart:
         turned = -1.0 if Path(self.rod, self.name).is_compliance else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
-        squared = -turned * self.slope.real * self.coordinate / self.coefficients.landau.real
+        squared = -turned * self.growth_slope.real * self.coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
 
     @property
@@ -99,7 +99,7 @@ class HopfBranchStart:
         """Relative error of the amplitude coefficient: half the sum of the relative errors of Re c, of
         Re(slope) and of the parameter at the Hopf point."""
         c = self.coefficients.landau
-        slope = self.slope
+        slope = self.growth_slope
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         # Half, because a is a square root.
@@ -111,7 +111,7 @@ class HopfBranchStart:
         error at the Hopf point, plus the rounding error."""
         parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
         return (
-            abs(self.slope) * parameter_error / self.crossing.frequency
+            abs(self.growth_slope) * parameter_error / self.crossing.frequency
             + BRANCH_START_SETTINGS.frequency_rounding
         )
 
@@ -120,8 +120,8 @@ class HopfBranchStart:
         of the cycle whose largest tip y is `amplitude`, in L."""
         c = self.normal_form.c
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
-        change = -c.real * amplitude**2 / self.slope.real
-        return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
+        change = -c.real * amplitude**2 / self.growth_slope.real
+        return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
 def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
@@ -130,15 +130,15 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.at))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.at))
-    normal = accurate_normal_form(at, w, HOPF_START.normal_form_accuracy)
+    normal = accurate_normal_form(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
         name=path.name,
         coordinate=path.coordinate(crossing.at),
-        slope=complex(slope),
+        growth_slope=complex(slope),
         normal_form=normal,
-        coefficients=hopf_coefficients(at, crossing, HOPF_START.normal_form_accuracy),
+        coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
     )
 
 
@@ -192,15 +192,15 @@ def _cycle_of_amplitude(
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = wanted_mesh(start, aim, stages_for(aim)).interpolate(start)
+        start = wanted_mesh(start, aim, stages_for(aim)).interpolated_orbit(start)
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = Scale.of(start, hopf.name, least)
+    scale = Scale.at_orbit(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
     rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace)
     near = rough.orbit
-    y = float(near.form.tip(near.start)[1])
+    y = float(near.form.tip_coordinates(near.start)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:

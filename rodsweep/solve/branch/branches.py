@@ -149,7 +149,7 @@ def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace
         status=status,
         message=message,
         crossings=found.crossings,
-        unstable_at_start=found.unstable_at_start if found.searched[0] == low else -1,
+        unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
         proved=found.proved_to_the_end,
         curves=tuple(curves),
     )
@@ -205,7 +205,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
         arrived.add(curve.end_hopf)
         left -= len(curve.points)
         curves.append(curve)
-    breakings = symmetry_breakings_in([curve.special for curve in curves])
+    breakings = symmetry_breakings_in([curve.special_points for curve in curves])
     met: list[SymmetryBreaking] = []
     for which, breaking in enumerate(breakings):
         if breaking in met:
@@ -229,11 +229,11 @@ def _status_and_message(
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)
-        for special in curve.special
+        for special in curve.special_points
         if special.message
     ]
-    count = sum(len(curve.special) for curve in curves)
-    special = [point for curve in curves for point in curve.special]
+    count = sum(len(curve.special_points) for curve in curves)
+    special = [point for curve in curves for point in curve.special_points]
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
     if any(not curve.multipliers_explained for curve in curves):
@@ -247,4 +247,4 @@ def _status_and_message(
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
-    return status, "; ".join(filter(None, [*failures, *messages, found.doubts]))
+    return status, "; ".join(filter(None, [*failures, *messages, found.doubt_text]))

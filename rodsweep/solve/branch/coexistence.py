@@ -74,10 +74,11 @@ class StableStates(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
-    """Outcome for a row of a phase diagram. row: outcome for the straight rod. stable_states: `StableStates`
-    at each parameter value, (values,). special: special points of all branches. seconds: computing time."""
+    """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
+    `StableStates` at each parameter value, (values,). special: special points of all branches. seconds:
+    computing time."""
 
-    row: DiagramRow
+    straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
     special: tuple[SpecialPoint, ...]
     status: CoexistenceStatus
@@ -104,7 +105,7 @@ def solve_coexistence(
     undecided = request.values[(states == StableStates.undecided) & (row.rod_class != RodClass.undecided)]
     status, message = _status_and_message_of_row(row, branches, special, undecided)
     return CoexistenceRow(
-        row=row,
+        straight_rod_row=row,
         stable_states=states,
         special=special_points_of(branches),
         status=status,
@@ -132,7 +133,7 @@ def row_branches(
 
 def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
     """Special points of all branches of a rod, in one tuple, branch after branch."""
-    return tuple(point for curve in branches.curves for point in curve.special)
+    return tuple(point for curve in branches.curves for point in curve.special_points)
 
 
 def _undecided_values_text(name: str, values: Array) -> str:
@@ -196,7 +197,7 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     """Intervals of the parameter between successive special points of a branch, with the stability in each
     interval."""
     intervals = []
-    for one, other in zip(curve.special[:-1], curve.special[1:], strict=True):
+    for one, other in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
         signs = {
             point.min_unstable_multipliers for point in curve.points[one.after + 1 : other.after + 1]
         } - {-1}

@@ -16,8 +16,8 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.calibration import MULTIPLIER, Calibration, calibration_of
-from ..cycle.accuracy.calibration_settings import CALIBRATION
+from ..cycle.accuracy.calibration import MULTIPLIER_INDEX, Calibration, calibration_of
+from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.along_parameter import carried_change
@@ -112,28 +112,28 @@ class BranchCalibration:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
         the relative accuracy."""
         return max(
-            CALIBRATION.safety_factor * float(self.parameter_errors.sum()),
+            CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
             CYCLE_ERROR_SETTINGS.min_error_share * accuracy,
             CYCLE_ERROR_SETTINGS.rounding_error,
         )
 
-    def largest(self, accuracy: float) -> float:
+    def largest_error(self, accuracy: float) -> float:
         """The error that must not exceed the relative accuracy: the larger of the parameter error and the
         largest error at equal parameter, divided by max(1, sensitivity/max_sensitivity of the settings)."""
-        return self._limiting.errors(accuracy).largest
+        return self._limiting_errors.errors(accuracy).largest_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh for a relative accuracy of the cycle; the next finer mesh if none suffices."""
-        return self._limiting.cheapest_mesh(accuracy)
+        return self._limiting_errors.cheapest_mesh(accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
         """Like `cheapest_mesh`, for a relative accuracy of the parameter at equal deflection."""
-        return self._parameter_only.cheapest_mesh(accuracy)
+        return self._parameter_errors_only.cheapest_mesh(accuracy)
 
     @cached_property
-    def _limiting(self) -> Calibration:
-        """Errors from which the mesh is chosen: errors at equal parameter, reduced as in `largest`, and the
-        parameter error."""
+    def _limiting_errors(self) -> Calibration:
+        """Errors from which the mesh is chosen: errors at equal parameter, reduced as in `largest_error`, and
+        the parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
         steep = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
         parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
@@ -142,7 +142,7 @@ class BranchCalibration:
         return replace(self.at_parameter, space=parts[0], time=parts[1])
 
     @cached_property
-    def _parameter_only(self) -> Calibration:
+    def _parameter_errors_only(self) -> Calibration:
         """A calibration in which every error equals the parameter error at equal deflection."""
         numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
@@ -193,7 +193,7 @@ def measured_errors(
     condition = BorderCondition.at_arc_length(derivatives.scale, derivatives.unit_tangent, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
-    parts = np.empty((2, MULTIPLIER + 2))
+    parts = np.empty((2, MULTIPLIER_INDEX + 2))
     for part, target in zip(parts, finer, strict=True):
         fine = condition.on_mesh(
             target,
@@ -222,7 +222,7 @@ def _differences_between_meshes(
     target = mesh_of(fine.orbit)
     along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
-    slid = moved_orbit(fine.orbit, scale.name, length * along)
+    slid = moved_orbit(fine.orbit, scale.parameter, length * along)
     change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
         length * derivatives.multiplier_rate
     )
@@ -238,11 +238,8 @@ def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
-    ahead = CyclePath(
-        moved_orbit(
-            orbit, derivatives.scale.name, BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
-        )
-    )
+    step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
+    ahead = CyclePath(moved_orbit(orbit, derivatives.scale.parameter, step))
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(

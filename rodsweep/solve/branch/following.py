@@ -23,7 +23,7 @@ from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
 from .symmetry import (
-    BRANCH_END,
+    BRANCH_END_SETTINGS,
     SymmetryBreaking,
     first_asymmetric_cycle,
     reaches_symmetric_cycle,
@@ -54,7 +54,7 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
     """The branch from the Hopf point `limits.hopfs[number]`; the last special point stores a failure."""
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
-    curve.add(hopf_as_special_point(hopf))
+    curve.add_special_point(hopf_as_special_point(hopf))
     return _follow_to_end(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
 
 
@@ -63,7 +63,7 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     `limits.breakings[which]`; a failure is stored in the last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
-    curve.add(replace(breaking.point, message="", orbit=None))
+    curve.add_special_point(replace(breaking.point, message="", orbit=None))
 
     def first() -> ArcPoint:
         return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
@@ -102,7 +102,7 @@ def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits)
 
 def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
-    name = start.scale.name
+    name = start.scale.parameter
     # The end of the range towards which the parameter moves at present.
     aim = limits.ends[1 if start.unit_tangent[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.coordinate)
@@ -110,13 +110,13 @@ def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) 
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(
         words,
-        fraction_done(PARAMETERS[name].coordinate(curve.special[0].at), start.coordinate, aim),
+        fraction_done(PARAMETERS[name].coordinate(curve.special_points[0].at), start.coordinate, aim),
     )
 
 
 def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
-    born = curve.special[0]
+    born = curve.special_points[0]
     return replace(
         born,
         kind=SpecialKind.end,
@@ -146,7 +146,7 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         end = next_point(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
-            return (_end_at_hopf if start.orbit.symmetric else _end_at_breaking)(start, end, limits)
+            return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
         outside = _index_of_passed_range_end(end, limits)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
         if range_end is not None:
@@ -167,11 +167,9 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
-    at = getattr(last.orbit.form.rod, last.scale.name)
-    return BranchEnd(
-        replace(end_point(last, limits.reasons[outside]), error=BRANCH_END.range_end_error * abs(at)),
-        complete=True,
-    )
+    at = getattr(last.orbit.form.rod, last.scale.parameter)
+    error = BRANCH_END_SETTINGS.range_end_error * abs(at)
+    return BranchEnd(replace(end_point(last, limits.reasons[outside]), error=error), complete=True)
 
 
 def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
@@ -182,7 +180,7 @@ def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limi
 
 def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
     """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
-    if start.orbit.symmetric:
+    if start.orbit.is_symmetric:
         return passed_hopf_point(start, end)
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
@@ -195,8 +193,8 @@ def _step_hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
     before and two cycles after the corner.
     """
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    other = min(apart, 1 - apart) > BRANCH_END.max_peak_shift
-    return other and arc_length_between(start, end) > BRANCH_END.max_step_with_corner
+    other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
+    return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
 
 
 def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
@@ -204,16 +202,16 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.field(mesh.interpolate(start.orbit).start, "m3")
+    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start, "m3")
     # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
-    return float(one @ layout.field(end.orbit.start, "m3")) < 0
+    return float(one @ layout.stress_field(end.orbit.start, "m3")) < 0
 
 
 def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
     `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > BRANCH_END.max_last_amplitude:
+    if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if shorter < ARC_STEPS.min_length:
             raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
         return replace(start, next_arc_length=shorter)
@@ -223,13 +221,13 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
     share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     at = start.coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
-    rounding = max(BRANCH_END.parameter_tolerance, limits.accuracy)
+    rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(
+        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
             start.coordinate - hopf.coordinate
         ) + rounding * abs(hopf.coordinate)
-        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
-        period_tolerance += BRANCH_END.period_tolerance * hopf.period
+        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
+        period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"

@@ -114,13 +114,13 @@ def solve_on_sufficient_mesh(
     """The same cycle with measured errors within the relative accuracy, on a mesh chosen for this accuracy;
     raises Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every
     mesh; by default the condition that its arc length is unchanged."""
-    condition = condition or point.condition(0.0)
+    condition = condition or point.arc_length_condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
         if point.steps_since_measured:
             point = with_measured_errors(point, accuracy)
         known = point.calibration
-        enough = known.largest(accuracy) <= accuracy
+        enough = known.largest_error(accuracy) <= accuracy
         planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
         if enough and (finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost * known.mesh.cost):
@@ -128,7 +128,7 @@ def solve_on_sufficient_mesh(
         if not enough:
             finest = True
             planned = finer_mesh(known.mesh, planned)
-        if not planned.allowed:
+        if not planned.is_allowed:
             break
         point = solved_on_mesh(point, planned, condition, accuracy)
     raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
@@ -176,7 +176,9 @@ def with_errors_in_accuracy(
     # Only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
     again = [
-        point if point.calibration.largest(accuracy) <= accuracy else _cycle_on_mesh_of(end, point, accuracy)
+        point
+        if point.calibration.largest_error(accuracy) <= accuracy
+        else _cycle_on_mesh_of(end, point, accuracy)
         for point in known
     ]
     return [*again, end]
@@ -185,7 +187,7 @@ def with_errors_in_accuracy(
 def _cycle_on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
     """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
     sufficient mesh if these errors are too large; raises Unsolvable."""
-    solved = solved_on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
+    solved = solved_on_mesh(point, mesh_of(end.orbit), point.arc_length_condition(0.0), accuracy)
     # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
     solved = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
     return solve_on_sufficient_mesh(solved, accuracy)

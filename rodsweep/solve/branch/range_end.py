@@ -8,7 +8,7 @@ from .arc import ArcPoint, cycle_with_calibrated_errors, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .special.segment import BranchSegment
-from .symmetry import BRANCH_END
+from .symmetry import BRANCH_END_SETTINGS
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
 """Unit vector along the parameter, (3,), in components (deflection, log period, parameter)."""
@@ -30,12 +30,12 @@ def cycle_at_range_end(
 
     def beyond(length: float) -> float:
         # Evaluated on the predicted cubic; only the final cycle is solved, below.
-        return -range_end.residual(segment.predicted(length))
+        return -range_end.residual(segment.predicted_orbit(length))
 
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END.range_end_tolerance)
+    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END_SETTINGS.range_end_tolerance)
     tolerance = newton_tolerance(accuracy)
-    predicted = segment.predicted(length)
+    predicted = segment.predicted_orbit(length)
     found = range_end.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, scale, start.unit_tangent, bordered_matrix_of(found))
     return cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)

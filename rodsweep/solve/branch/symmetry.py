@@ -74,7 +74,7 @@ class BranchEndSettings:
     step is halved."""
 
 
-BRANCH_END = BranchEndSettings()
+BRANCH_END_SETTINGS = BranchEndSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +118,7 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     later = times > 1
     points = orbit.states_at(np.where(later, times - 1, times))
     # The second half of the period is the mirror image of the first.
-    points[later] = orbit.symmetry.of(points[later], orbit.form.layout)
+    points[later] = orbit.symmetry.apply(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
     return replace(orbit, symmetry=NO_SYMMETRY, intervals=intervals, values=values)
 
@@ -131,7 +131,7 @@ def asymmetry(orbit: Orbit) -> Array:
 
 def _bending_moments(states: Array, orbit: Orbit) -> Array:
     """Bending moments, (..., nodes), of states, (..., n), at the nodes of an orbit's mesh."""
-    return orbit.form.layout.field(states, "m3")
+    return orbit.form.layout.stress_field(states, "m3")
 
 
 def first_asymmetric_cycle(
@@ -142,7 +142,7 @@ def first_asymmetric_cycle(
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)
-    scale = Scale.of(whole, name, 0.0)
+    scale = Scale.at_orbit(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
@@ -172,7 +172,7 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not BRANCH_END.asymmetry_ratios[0] < found < BRANCH_END.asymmetry_ratios[1]:
+    if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
@@ -191,13 +191,11 @@ def reaches_symmetric_cycle(
     reference = asymmetry(start.orbit)
     other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
-    if float(asymmetry(other) @ reference) < BRANCH_END.lost_asymmetry_ratio * float(reference @ reference):
+    lost = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
+    if float(asymmetry(other) @ reference) < lost:
         return True
-    return (
-        start.parameter_rate * end.parameter_rate < 0
-        and _nearly_symmetric(start)
-        and _nearest_symmetry_breaking(start, known, accuracy) >= 0
-    )
+    turns_back = start.parameter_rate * end.parameter_rate < 0 and _nearly_symmetric(start)
+    return turns_back and _nearest_symmetry_breaking(start, known, accuracy) >= 0
 
 
 def _relative_asymmetry(start: ArcPoint) -> float:
@@ -207,7 +205,7 @@ def _relative_asymmetry(start: ArcPoint) -> float:
 
 
 def _nearly_symmetric(start: ArcPoint) -> bool:
-    return _relative_asymmetry(start) <= BRANCH_END.max_last_asymmetry
+    return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry
 
 
 def symmetry_breaking_between(
@@ -217,7 +215,7 @@ def symmetry_breaking_between(
     does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
     needed. Raises Unsolvable if no shorter step is allowed."""
     which = _nearest_symmetry_breaking(start, known, accuracy) if _nearly_symmetric(start) else -1
-    if which >= 0 or _relative_asymmetry(start) <= BRANCH_END.min_asymmetry:
+    if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
         return which
     if arc_length_between(start, end) / 2 < ARC_STEPS.min_length:
         raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
@@ -240,11 +238,11 @@ def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
-        symmetric_at = symmetric.form.rod.coordinate(start.scale.name)
-        tolerance = BRANCH_END.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
-        tolerance += max(BRANCH_END.parameter_tolerance, accuracy) * abs(symmetric_at)
-        period_tolerance = BRANCH_END.extrapolation_tolerance * abs(start.orbit.period - symmetric.period)
-        period_tolerance += max(BRANCH_END.period_tolerance, accuracy) * symmetric.period
+        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter)
+        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
+        tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
+        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)
+        period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period
         if abs(at - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
             return which
     return -1

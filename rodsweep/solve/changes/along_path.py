@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover_with_boxes
 from ...determinant.certificate.first_boxes import first_boxes
-from ...determinant.parameter_path import Path, coefficients_at, determinant_along
+from ...determinant.parameter_path import Path, coefficients_at, determinant_along_path
 from ...determinant.roots.newton import LocatedZero
 from ..point import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
-from .leading_eigenvalue import Tracer
+from .leading_eigenvalue import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
 from .unstable_modes import ChangeKind, Crossing, ModeCounter
@@ -42,10 +42,10 @@ class Transitions:
     list is proved complete."""
 
     crossings: tuple[Crossing, ...] = ()
-    searched: tuple[float, float] = (math.nan, math.nan)
+    searched_interval: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
-    """Whether the searched interval is shorter than the requested interval; the reason is in `doubts`."""
+    """Whether the searched interval is shorter than the requested interval; the reason is in `doubt_text`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
     """Smallest interval that contains all possible further crossings; (nan, nan) without such crossings."""
     unstable_at_start: int = -1
@@ -55,11 +55,11 @@ class Transitions:
     proved: bool
     """Whether the covering is complete, all counts agree, and no eigenvalue lies to the right of a leading
     eigenvalue."""
-    boxes: int = 0
+    box_count: int = 0
     """Number of evaluations of the determinant D in the covering."""
-    solves: int = 0
+    solve_count: int = 0
     """Number of solved eigenvalue problems."""
-    doubts: str = ""
+    doubt_text: str = ""
     """Reasons why the list is not proved or the search ended early."""
 
     @property
@@ -71,28 +71,28 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. end: end of the search. boxes: number of evaluations of the determinant D in the covering."""
+    crossings. search_end: end of the search. box_count: number of evaluations of D in the covering."""
 
     path: Path
     crossings: list[Crossing]
     gaps: list[tuple[float, float]]
-    end: SearchEnd
-    boxes: int = 0
+    search_end: SearchEnd
+    box_count: int = 0
 
-    def up_to(self, reach: SearchEnd) -> "AxisCrossings":
+    def restricted_to(self, reach: SearchEnd) -> "AxisCrossings":
         """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
         end."""
-        if reach.p == self.end.p:
+        if reach.p == self.search_end.p:
             return self
         crossings = [c for c in self.crossings if self.path.coordinate(c.at) <= reach.p]
         gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= reach.p]
-        return replace(self, crossings=crossings, gaps=gaps, end=reach)
+        return replace(self, crossings=crossings, gaps=gaps, search_end=reach)
 
     def searched_interval(self, start: float, stop: float) -> tuple[float, float]:
         """The searched part (low, high) of the requested parameter interval from `start` to `stop`."""
-        if not self.end.reason:
+        if not self.search_end.reason:
             return start, stop
-        end = self.path.parameter.value(self.end.p)
+        end = self.path.parameter.value(self.search_end.p)
         return (end, stop) if self.path.is_compliance else (start, end)
 
 
@@ -108,12 +108,12 @@ def transitions(
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
-    tracer = Tracer(problem, certify)
-    edges = problem.edges(low, high)
+    tracer = LeaderExchangeSearch(problem, certify)
+    edges = problem.interval_edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
-        changes, reach = tracer.changes([*(p for p in edges if p < found.end.p), found.end.p])
-        found = found.up_to(reach) if reach.reason else found
+        changes, reach = tracer.changes([*(p for p in edges if p < found.search_end.p), found.search_end.p])
+        found = found.restricted_to(reach) if reach.reason else found
         ends = found.searched_interval(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
@@ -132,7 +132,7 @@ def transitions(
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _counted(counts, unstable, crossings, at_end)
     counted = _with_searched(counted, found, (start, stop))
-    return replace(counted, oscillates_at_start=oscillates, solves=problem.solves)
+    return replace(counted, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
 def pair_crossings(
@@ -165,22 +165,22 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
         unstable_at_start=unstable,
         unstable_at_end=at_end,
         proved=counts.certify and not counts.gaps and not counts.doubts and known,
-        doubts="; ".join(counts.doubts),
+        doubt_text="; ".join(counts.doubts),
     )
 
 
 def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched_interval(*asked)
-    reason = found.end.reason
-    end = found.path.parameter.value(found.end.p)
+    reason = found.search_end.reason
+    end = found.path.parameter.value(found.search_end.p)
     early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
     return replace(
         counted,
-        searched=searched,
+        searched_interval=searched,
         ended_early=bool(reason),
-        boxes=found.boxes,
-        doubts="; ".join(filter(None, (early, counted.doubts))),
+        box_count=found.box_count,
+        doubt_text="; ".join(filter(None, (early, counted.doubt_text))),
     )
 
 
@@ -190,7 +190,7 @@ def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, m
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
-    found, reach = search.crossings(problem.edges(*ends), most)
+    found, reach = search.crossings(problem.interval_edges(*ends), most)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
     return AxisCrossings(problem.path, found, gaps, reach)
@@ -231,7 +231,7 @@ def _pairs_missed_as_leaders(
 def _hopf_crossing(path: Path, zero: LocatedZero) -> Crossing:
     """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
-    there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
+    there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
     growing = (-there.D_p / there.D_w).real > 0
     kind = ChangeKind.hopf if growing != path.is_compliance else ChangeKind.hopf_reverse

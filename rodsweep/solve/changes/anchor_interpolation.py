@@ -54,9 +54,9 @@ def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
         missed = _unexplained_change(a, b, h)
         sign = math.copysign(h, a[0])
         lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.explained * smallest:
+        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.interpolation_tolerance * smallest:
             return share, True
-        if missed > ANCHOR_SETTINGS.explained * max(smallest, abs(b[0] - a[0])):
+        if missed > ANCHOR_SETTINGS.interpolation_tolerance * max(smallest, abs(b[0] - a[0])):
             return 0.5, False
     return 0.0, False
 
@@ -133,8 +133,9 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: fl
     smallest = min(a, b)
     lowest, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
     missed = _unexplained_change(left, right, h)
-    return lowest >= ANCHOR_SETTINGS.explained * smallest > 0 and missed <= ANCHOR_SETTINGS.explained * max(
-        smallest, abs(b - a)
+    return (
+        lowest >= ANCHOR_SETTINGS.interpolation_tolerance * smallest > 0
+        and missed <= ANCHOR_SETTINGS.interpolation_tolerance * max(smallest, abs(b - a))
     )
 
 
@@ -143,7 +144,8 @@ def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], h:
     (value, slope) at the anchors. h: distance of the anchors."""
     change = abs(right[0] - left[0])
     return (
-        left[0] * right[0] < 0 and _unexplained_change(left, right, h) <= ANCHOR_SETTINGS.explained * change
+        left[0] * right[0] < 0
+        and _unexplained_change(left, right, h) <= ANCHOR_SETTINGS.interpolation_tolerance * change
     )
 
 

@@ -17,7 +17,7 @@ class AnchorSettings:
     place_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
     D."""
-    explained: float = 0.25
+    interpolation_tolerance: float = 0.25
     """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
     smaller end value, so that no zero is missed. The difference of the end values must agree, within this
     fraction, with the difference that the slopes give by the trapezoidal rule."""
@@ -29,17 +29,18 @@ ANCHOR_SETTINGS = AnchorSettings()
 @dataclass(frozen=True)
 class Anchor:
     """A rod of a path, at path variable p, with its leading eigenvalues w and their slopes dw/dp,
-    (ANCHOR_MODES,) each.
+    (ANCHOR_MODE_COUNT,) each.
 
-    time: a relaxation time of the rod, smooth in p. lengthening: d time/dp. The product w time is of order
-    one; w alone grows without bound near crushing for a rod that has neither shear nor rotational drag.
+    relaxation_time: a relaxation time of the rod, smooth in p; the methods call it time.
+    relaxation_time_slope: d time/dp. The product w time is of order one; w alone grows without bound near
+    crushing for a rod that has neither shear nor rotational drag.
     """
 
     p: float
     w: Complex
     slope: Complex
-    time: float = 1.0
-    lengthening: float = 0.0
+    relaxation_time: float = 1.0
+    relaxation_time_slope: float = 0.0
 
     @cached_property
     def oscillates(self) -> bool:
@@ -84,7 +85,7 @@ class Anchor:
         lead, slope = float(self.w[0].real), float(self.slope[0].real)
         product = ((lead - a) * (lead - b)).real
         product_slope = ((slope - slope_a) * (lead - b) + (lead - a) * (slope - slope_b)).real
-        squared_time = self.time**2, 2 * self.time * self.lengthening
+        squared_time = self.relaxation_time**2, 2 * self.relaxation_time * self.relaxation_time_slope
         return (
             self._in_units_of_time(lead - (a + b).real / 2, slope - (slope_a + slope_b).real / 2),
             (product * squared_time[0], product_slope * squared_time[0] + product * squared_time[1]),
@@ -108,5 +109,7 @@ class Anchor:
 
     def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
         """Returns (value time, derivative of this product with respect to p) for a quantity `value` with
-        derivative `slope`; the factor `time` preserves zeros and signs."""
-        return float(value * self.time), float(slope * self.time + value * self.lengthening)
+        derivative `slope`; the factor `relaxation_time` preserves zeros and signs."""
+        return float(value * self.relaxation_time), float(
+            slope * self.relaxation_time + value * self.relaxation_time_slope
+        )

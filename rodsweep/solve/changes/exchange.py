@@ -17,10 +17,10 @@ class ExchangeSettings:
     """Maximum number of Newton steps to an overtaking."""
     carrying_steps: int = 8
     """Number of steps in which an eigenvalue is followed from an anchor to the middle of the interval."""
-    converged: float = 4.0
+    converged_step_in_errors: float = 4.0
     """Newton's method for an overtaking stops when the step is smaller than this multiple of the error
     estimate."""
-    rounding: float = 4e-16
+    rounding_error: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     accuracy: float = 1e-6
     """No overtaking is found from eigenvalues w whose error exceeds this multiple of |w|: Newton's method has
@@ -32,11 +32,11 @@ EXCHANGE_SETTINGS = ExchangeSettings()
 
 class LeaderExchange(NamedTuple):
     """Exchange of the leading eigenvalue at path variable p: a double real eigenvalue (frequency 0), or a
-    real eigenvalue and a pair with equal real parts. error: error of p. growth_rate: the common real part.
-    frequency: Im w of the pair. All in 1/tau2, except for p and its error."""
+    real eigenvalue and a pair with equal real parts. error_of_p: error of p. growth_rate: the common real
+    part. frequency: Im w of the pair. All in 1/tau2, except for p and its error."""
 
     p: float
-    error: float
+    error_of_p: float
     growth_rate: float
     frequency: float
 
@@ -79,11 +79,11 @@ def overtaking_between(problem: PathProblem, pair: Anchor, real: Anchor) -> Lead
         if w_real.imag != 0 or abs(w_pair.imag) <= e_pair or slope == 0 or not math.isfinite(slope):
             return None
         step = -(w_real.real - w_pair.real) / slope
-        error = (e_real + e_pair) / abs(slope) + EXCHANGE_SETTINGS.rounding * abs(p)
+        error = (e_real + e_pair) / abs(slope) + EXCHANGE_SETTINGS.rounding_error * abs(p)
         p += step
         if not ends[0] <= p <= ends[1]:
             return None
-        if abs(step) <= EXCHANGE_SETTINGS.converged * error:
+        if abs(step) <= EXCHANGE_SETTINGS.converged_step_in_errors * error:
             return LeaderExchange(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
         w_real = w_real + step * s_real
         w_pair = w_pair + step * s_pair

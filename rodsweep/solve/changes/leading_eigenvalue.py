@@ -26,7 +26,7 @@ from .path_problem import PathProblem
 from .search_range import SearchedIntervals, SearchEnd
 from .unstable_modes import ChangeKind, Crossing
 
-ANCHOR_MODES = 4
+ANCHOR_MODE_COUNT = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
 two. The number is a constant, because with fewer eigenvalues it would be unknown which eigenvalues become
 equal."""
@@ -49,10 +49,10 @@ class LeadingEigenvalueSettings:
     found, at this fraction of the interval."""
     smallest_hiding_interval: float = 1e-9
     """Like `smallest_interval`, for two anchors between which two exchanges may lie."""
-    same_errors: float = 10.0
+    max_distance_in_errors: float = 10.0
     """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
-    start exceeds this multiple of the start's error estimate and `same` times |w|."""
-    same: float = 1e-12
+    start exceeds this multiple of the start's error estimate and `max_relative_distance` times |w|."""
+    max_relative_distance: float = 1e-12
     """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
     multiple of |w|: some thousand rounding errors."""
     smallest_step: float = 1e-12
@@ -63,7 +63,7 @@ class LeadingEigenvalueSettings:
 LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
 
 
-class Tracer:
+class LeaderExchangeSearch:
     """Finds the exchanges of the leading eigenvalue along a path. anchors: the solved anchors, by path
     variable."""
 
@@ -84,19 +84,21 @@ class Tracer:
         return self.anchors[p]
 
     def _solve(self, p: float) -> Anchor:
-        request = SpectrumRequest(ANCHOR_MODES, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
+        request = SpectrumRequest(ANCHOR_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
         self.leaders_proved &= found.certified or found.status == SpectrumStatus.undecided
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
-        slope = np.empty(ANCHOR_MODES, dtype=complex)
+        slope = np.empty(ANCHOR_MODE_COUNT, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            error = LEADING_EIGENVALUE_SETTINGS.same_errors * found.error_estimate[i]
-            if abs(polished - guess) <= max(error, LEADING_EIGENVALUE_SETTINGS.same * abs(guess)):
+            error = LEADING_EIGENVALUE_SETTINGS.max_distance_in_errors * found.error_estimate[i]
+            if abs(polished - guess) <= max(
+                error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess)
+            ):
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
@@ -141,7 +143,7 @@ class Tracer:
                     "from real to complex or back"
                 )
         middle = a + share * (b - a)
-        intervals.divide((a, middle), (middle, b))
+        intervals.add_parts((a, middle), (middle, b))
         return []
 
     def _alone_or_divided(
@@ -160,7 +162,7 @@ class Tracer:
         p = self.path.coordinate(change.at)
         beside = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
         places = sorted({left.p, max(left.p, p - beside), min(right.p, p + beside), right.p})
-        intervals.divide(*pairwise(places))
+        intervals.add_parts(*pairwise(places))
         return []
 
     def _exchange_between(self, left: Anchor, right: Anchor) -> Crossing | None:
@@ -187,6 +189,6 @@ class Tracer:
             # unproved.
             if count.number in (meeting, None):
                 self.leaders_proved = self.leaders_proved and count.number == meeting
-                at, error = self.path.value(found.p, found.error)
+                at, error = self.path.value(found.p, found.error_of_p)
                 return Crossing(at, kind, found.frequency, found.growth_rate, error)
         return None

@@ -14,7 +14,7 @@ class PathProblem(ABC):
 
     def __init__(self, path: Path):
         self.path = path
-        self.solves = 0
+        self.solve_count = 0
         """Number of eigenvalue problems solved so far."""
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
@@ -24,11 +24,11 @@ class PathProblem(ABC):
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.rod_at(p), request)
-            self.solves += 1
+            self.solve_count += 1
         return self._spectra[key]
 
     @abstractmethod
-    def edges(self, low: float, high: float) -> list[float]:
+    def interval_edges(self, low: float, high: float) -> list[float]:
         """Path variables from `low` to `high`, both included, spaced so closely that neighbouring rods differ
         little."""
 
@@ -61,7 +61,7 @@ class UniformPath(PathProblem):
     """Eigenvalue problem along a path of uniform rods of linear material, whose determinant D has a closed
     form."""
 
-    def edges(self, low: float, high: float) -> list[float]:
+    def interval_edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in path_intervals(self.path, low, high)] + [high]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:

@@ -61,7 +61,7 @@ class SearchedIntervals:
         if self.end.reason and self.end.p <= self.first:
             raise Unsolvable(self.end.reason)
 
-    def divide(self, *intervals: tuple[float, float]) -> None:
+    def add_parts(self, *intervals: tuple[float, float]) -> None:
         """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
         self._left += intervals[::-1]
 

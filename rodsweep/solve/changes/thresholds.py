@@ -107,7 +107,9 @@ def thresholds_with_status(found: Transitions, accuracy: float, certify: bool, m
         status = ThresholdStatus.accuracy_not_reached
     elif certify and not found.proved:
         status = ThresholdStatus.not_certified
-    return Thresholds(status=status, transitions=found, end=found.searched[1], message=found.doubts)
+    return Thresholds(
+        status=status, transitions=found, end=found.searched_interval[1], message=found.doubt_text
+    )
 
 
 @cache

@@ -23,13 +23,13 @@ class UnstableModeCountSettings:
 
     crushing_margin: float = 1e-6
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
-    meets_crushing: float = 1e-12
+    crushing_tolerance: float = 1e-12
     """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
     of F and k1 the two forces may differ by rounding alone."""
-    places: tuple[float, ...] = (0.5, 0.3, 0.7)
+    count_positions: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
-    too_close: float = 1e-3
+    min_crossing_distance: float = 1e-3
     """Modes are not counted between two crossings with a relative distance below this, because a pair is then
     too close to the imaginary axis."""
 
@@ -94,9 +94,8 @@ class ModeCounter:
     """Number of unstable modes along a path, from the directions of the crossings, confirmed by winding
     numbers.
 
-    gaps: intervals of the parameter that may contain crossings missing from the list. doubts: sentences on
-    counts that are undecided or contradict the crossings.
-    """
+    gaps: intervals of the parameter that may contain crossings missing from the list. doubts:
+    sentences on counts that are undecided or contradict the crossings."""
 
     def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):
         self.problem = problem
@@ -116,7 +115,7 @@ class ModeCounter:
         known = self.problem.known_count_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
         if known is not None:
             return known
-        for share in UNSTABLE_MODE_COUNT_SETTINGS.places:
+        for share in UNSTABLE_MODE_COUNT_SETTINGS.count_positions:
             number = self.count_at(a + share * (b - a))
             if number >= 0:
                 return number
@@ -135,9 +134,8 @@ class ModeCounter:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
         the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
-        unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` are those of this
-        call only.
-        """
+        unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` are those of
+        this call only."""
         self.doubts = []
         out: list[Crossing] = []
         start = ends[0]
@@ -155,15 +153,15 @@ class ModeCounter:
 
     def _count_before(self, a: float, b: float, unstable: int) -> int:
         """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count
-        between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and b, the
-        result is the number counted behind the gap, or -1 if undecided."""
+        between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a
+        and b, the result is the number counted behind the gap, or -1 if undecided."""
         inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
         if inside:
             # A gap may hide crossings, so the modes are counted again after the gap.
             a = max(gap[1] for gap in inside)
         elif not self.certify:
             return unstable
-        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.too_close * abs(b):
+        if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_crossing_distance * abs(b):
             return -1 if inside else unstable
         counted = self.count_between(a, b)
         if inside or unstable < 0:

@@ -91,7 +91,7 @@ class StepControl:
         if not self.max_ratio > 1:
             raise ValueError(f"max_ratio = {self.max_ratio} must be above 1, so that steps can grow")
 
-    def accepted(self, there: StepResult[Solution]) -> StepResult[Solution]:
+    def require_small_errors(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The result `there` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
         if not there.prediction_error <= self.max_error:
@@ -148,7 +148,7 @@ def advance(
     length = min(length, control.max_length)
     while True:
         try:
-            return control.accepted(step(length)), length
+            return control.require_small_errors(step(length)), length
         except FAILURES:
             if length / 2 < control.min_length:
                 raise

@@ -15,14 +15,14 @@ from ...arrays import Array
 from ...discretization.stress.form import StressForm
 from ..continuation.follower import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, at_orbit, newton, relative_change
+from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_orbit_matrix
 from ..orbit.normalised import (
     normalised,
     normalised_tangent,
     polynomial_weights,
-    reflected,
-    values_of,
-    with_weighted_data,
+    predicted_normalised_values,
+    reflection_arrays,
+    values_from_normalised,
 )
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -95,7 +95,7 @@ class CyclePredictor:
         weights: Array = polynomial_weights(self.offsets, self.orders, step)
         return weights
 
-    def at(self, form: StressForm, name: str) -> Orbit:
+    def predicted_orbit(self, form: StressForm, name: str) -> Orbit:
         """The predicted orbit of the rod in `form`, on the mesh of the solved orbit; the mesh of `form` is
         ignored.
 
@@ -103,25 +103,27 @@ class CyclePredictor:
         positive.
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
-        values = with_weighted_data(self.values, self.data, self.orders, self.weights(step))
+        values = predicted_normalised_values(self.values, self.data, self.orders, self.weights(step))
         # The last value, the squared size, goes linearly through 0 at a Hopf point, where cycles end.
         if not values[-1] > 0:
             raise Unsolvable("no cycle is predicted: the branch ends before this parameter value")
         target = replace(form, mesh=self.orbit.form.mesh)
-        return replace(self.orbit, form=target, values=values_of(values, reflected(self.orbit)))
+        return replace(
+            self.orbit, form=target, values=values_from_normalised(values, reflection_arrays(self.orbit))
+        )
 
-    def on(self, target: OrbitMesh) -> "CyclePredictor":
+    def on_mesh(self, target: OrbitMesh) -> "CyclePredictor":
         """This predictor with the solved orbit and all data interpolated to the mesh `target`."""
         if target == mesh_of(self.orbit):
             return self
         data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
-        return replace(self, orbit=target.interpolate(self.orbit), data=np.array(data))
+        return replace(self, orbit=target.interpolated_orbit(self.orbit), data=np.array(data))
 
 
 def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
     (N of the target,)."""
-    return target.interpolate(replace(orbit, values=change)).values
+    return target.interpolated_orbit(replace(orbit, values=change)).values
 
 
 def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:
@@ -140,7 +142,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     step = orbit.form.rod.coordinate(name) - before.orbit.form.rod.coordinate(name) if before else 0.0
     if before is None or step == 0:
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
-    last = before.on(mesh_of(orbit))
+    last = before.on_mesh(mesh_of(orbit))
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
     if last is not before:
         return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
@@ -197,7 +199,7 @@ def orbit_in_steps(
     def step(length: float) -> StepResult[ConvergedOrbit]:
         at = share + length
         between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
-        predicted = predictor.at(between, name)
+        predicted = predictor.predicted_orbit(between, name)
         found = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(found, _prediction_error(predicted, found), 1.0)
 
@@ -212,7 +214,9 @@ def orbit_in_steps(
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(
-            at_orbit(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_tangent_distance, name), predictor, name
+            with_orbit_matrix(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_tangent_distance, name),
+            predictor,
+            name,
         )
         length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
     raise Unsolvable(

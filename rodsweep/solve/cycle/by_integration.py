@@ -8,7 +8,7 @@ two results gives the error estimate. Near a Hopf point a motion may not settle 
 """
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isnan, nan
 
 import numpy as np
@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.elements.mesh import mesh_on
+from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
@@ -31,7 +31,8 @@ from ..point import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_pair
 from .cycle import Cycle, CycleRequest, with_measures
-from .marching_settings import MARCHING
+from .marching_settings import MARCHING_SETTINGS
+from .settled_motion import NoCycleFound, SettledMotion
 from .status import MarchedStatus
 from .straight_rod import straight_rod
 from .transient.from_motion import form_states
@@ -45,25 +46,6 @@ from .transient.returns import (
     until_returns,
     why_not_settled,
 )
-
-
-@dataclass(frozen=True, eq=False)
-class _SettledMotion:
-    """A motion that has settled on a cycle. z: present state, (unknowns,). turns: number of returns of the
-    tip to theta = 0 per period. step: last time step, in tau2."""
-
-    z: Array
-    turns: int
-    step: float
-
-
-class _NoCycle(Exception):
-    """Raised if the motion does not settle on a cycle. status, message: outcome of the motion."""
-
-    def __init__(self, status: MarchedStatus, message: str) -> None:
-        super().__init__(message)
-        self.status = status
-        self.message = message
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
@@ -81,97 +63,103 @@ class _MarchedMotion:
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request = request
-        self.limit = rod
+        self.limiting_rod = rod
         self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        self.scheme = TimeScheme("arkimex", "5", tolerance=MARCHING.local_tolerance * request.accuracy)
+        tolerance = MARCHING_SETTINGS.local_tolerance * request.accuracy
+        self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
         self.beam = self._beam()
         self.mode = leading_mode(self.beam)
-        self.returns = 0
+        self.return_count = 0
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
-        w = straight_rod(self.limit).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
+        w = straight_rod(self.limiting_rod).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
             z = relax_fast_components(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
             settled = self._integrate_until_settled(z)
             path = self._path(settled)
-            in_limit = self.rod != self.limit
-            enough = self.request.accuracy * (MARCHING.pair_error_share_in_limit if in_limit else 1.0)
-            for _ in range(MARCHING.max_comparisons):
+            in_limit = self.rod != self.limiting_rod
+            share = MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
+            enough = self.request.accuracy * share
+            for _ in range(MARCHING_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
                 path = self._path(settled)
-                errors = errors_of_pair(before, path, MARCHING.settled_distance * self.request.accuracy)
-                if errors.largest <= enough:
+                errors = errors_of_pair(
+                    before, path, MARCHING_SETTINGS.settled_distance * self.request.accuracy
+                )
+                if errors.largest_error <= enough:
                     break
             if in_limit:
                 errors = self._limit_errors(settled, path, errors)
-        except _NoCycle as end:
-            return replace(straight, status=end.status, message=end.message, periods=self.returns)
+        except NoCycleFound as end:
+            return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, path, errors)
 
     def _beam(self) -> Beam:
         return Beam(self.rod, self.mesh)
 
-    def _settled_on_finer_mesh(self, settled: _SettledMotion) -> _SettledMotion:
+    def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
-        self.mesh = mesh_on(self.mesh.edges, self.mesh.order + MARCHING.order_increase)
-        self.scheme = replace(self.scheme, tolerance=MARCHING.tolerance_ratio * self.scheme.tolerance)
+        self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
+        self.scheme = replace(
+            self.scheme, tolerance=MARCHING_SETTINGS.tolerance_ratio * self.scheme.tolerance
+        )
         self.beam = self._beam()
-        z = self.beam.state_of_stresses(before.stresses_on(self.beam.mesh, settled.z))
+        z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.z))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.mode.period))
 
-    def _integrate_until_settled(self, z: Array) -> _SettledMotion:
-        """Integrates from the state z, (unknowns,), until the motion has settled, or raises _NoCycle."""
+    def _integrate_until_settled(self, z: Array) -> SettledMotion:
+        """Integrates from the state z, (unknowns,), until the motion has settled, or raises NoCycleFound."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
-        step = self.mode.period / MARCHING.first_steps_per_period
+        step = self.mode.period / MARCHING_SETTINGS.first_steps_per_period
         last = nan
         rate = 0.0
         most = self.request.most_periods
-        while self.returns < most:
-            report(lambda: SolvePosition(f"{self.returns} of at most {most} returns of the tip"))
+        while self.return_count < most:
+            report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
             run = self._run(
                 z,
-                MARCHING.max_run_duration * MARCHING.returns_per_test * self.mode.period,
+                MARCHING_SETTINGS.max_run_duration * MARCHING_SETTINGS.returns_per_test * self.mode.period,
                 step,
-                until_returns(row, z, MARCHING.returns_per_test),
+                until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
-            past.extend(self.beam.layout.field(states, "m3"))
-            self.returns += max(len(states), 1)
+            past.extend(self.beam.layout.stress_field(states, "m3"))
+            self.return_count += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
-                raise _NoCycle(MarchedStatus.straight, "the motion has decayed to rounding error")
-            if len(past) <= MARCHING.returns_per_test:
+                raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
+            if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            noise = MARCHING.return_noise * self.scheme.tolerance
+            noise = MARCHING_SETTINGS.return_noise * self.scheme.tolerance
             # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
-                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING.returns_per_test)
+                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING_SETTINGS.returns_per_test)
             elif isnan(last):
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-            if distance <= MARCHING.settled_distance * self.request.accuracy * (1 - rate):
-                return _SettledMotion(z, turns, step)
-        raise _NoCycle(MarchedStatus.not_settled, why_not_settled(self.returns, len(past), last))
+            if distance <= MARCHING_SETTINGS.settled_distance * self.request.accuracy * (1 - rate):
+                return SettledMotion(z, turns, step)
+        raise NoCycleFound(MarchedStatus.not_settled, why_not_settled(self.return_count, len(past), last))
 
     def _run(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
-        """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises _NoCycle
-        if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
+        """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
+        NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
-        if end := early_end(self.beam, run, self.returns):
+        if end := early_end(self.beam, run, self.return_count):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
-            raise _NoCycle(status, end.message)
+            raise NoCycleFound(status, end.message)
         return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
@@ -193,37 +181,41 @@ class _MarchedMotion:
             states[i] = z - late * rates
         return times, states
 
-    def _path(self, settled: _SettledMotion) -> CyclePath:
-        """The cycle of a settled motion, from a further run of more than a period; raises _NoCycle."""
+    def _path(self, settled: SettledMotion) -> CyclePath:
+        """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.turns + 2
         limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
-        scheme = replace(self.scheme, tolerance=min(self.scheme.tolerance, MARCHING.max_measured_tolerance))
-        run = self._run(
-            settled.z, MARCHING.max_run_duration * returns * self.mode.period, settled.step, limit, scheme
-        )
+        tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measured_tolerance)
+        duration = MARCHING_SETTINGS.max_run_duration * returns * self.mode.period
+        scheme = replace(self.scheme, tolerance=tolerance)
+        run = self._run(settled.z, duration, settled.step, limit, scheme)
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
-            raise _NoCycle(MarchedStatus.not_settled, f"the tip stops returning after {self.returns} returns")
+            raise NoCycleFound(
+                MarchedStatus.not_settled, f"the tip stops returning after {self.return_count} returns"
+            )
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
+        stages = MARCHING_SETTINGS.measured_stages
         states = spline(
-            times[0]
-            + period * node_times(MARCHING.measured_intervals * settled.turns, MARCHING.measured_stages)
+            times[0] + period * node_times(MARCHING_SETTINGS.measured_intervals * settled.turns, stages)
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
-            Orbit.of(
-                form, NO_SYMMETRY, period, form_states(self.beam, form, states), MARCHING.measured_stages
-            )
+            Orbit.from_states(form, NO_SYMMETRY, period, form_states(self.beam, form, states), stages)
         )
 
-    def _limit_errors(self, settled: _SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises _NoCycle."""
+    def _limit_errors(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
+        """`errors` plus the error of integrating a nearby rod instead of a limiting rod.
+
+        Raises NoCycleFound."""
         known = path.orbit.form.rod
-        limit = self.limit
+        limit = self.limiting_rod
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
-        coordinates = {name: MARCHING.limit_distance_ratio * known.coordinate(name) for name in in_limits}
+        coordinates = {
+            name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
+        }
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relax_fast_components(self.beam, settled.z, self.mode.period)
@@ -237,13 +229,13 @@ class _MarchedMotion:
 
     def _with_measures(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
         """The outcome `straight` with the status, measures and errors of the settled cycle of `path`."""
-        enough = errors.largest <= self.request.accuracy
+        enough = errors.largest_error <= self.request.accuracy
         cycle = replace(
             straight,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
             message=""
             if enough
-            else f"the cycle's errors, up to {errors.largest:.1e}, exceed the requested accuracy",
-            periods=self.returns,
+            else f"the cycle's errors, up to {errors.largest_error:.1e}, exceed the requested accuracy",
+            periods=self.return_count,
         )
         return with_measures(cycle, self.request, path, measures_of(path), errors)

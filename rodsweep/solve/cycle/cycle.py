@@ -129,7 +129,7 @@ def with_measures(
         measures=replace(measures, harmonic_amplitude=amplitudes),
         errors=errors,
         tip=path.tip(request.samples) if request.samples else None,
-        energy=path.energy(request.samples) if request.samples else None,
+        energy=path.energy_and_powers(request.samples) if request.samples else None,
         shape=path.shapes(request.shapes, request.nodes) if request.shapes else None,
     )
 

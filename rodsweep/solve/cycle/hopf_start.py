@@ -20,7 +20,7 @@ from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import at_orbit, newton
+from ..orbit.newton import newton, with_orbit_matrix
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
@@ -71,7 +71,7 @@ class HopfStartSettings:
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
 
 
-HOPF_START = HopfStartSettings()
+HOPF_START_SETTINGS = HopfStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +100,9 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     no such Hopf point is found. Raises Unsolvable."""
     F = rod.F
     above = leading_eigenvalue(rod)
-    while HOPF_START.min_force < F:
+    while HOPF_START_SETTINGS.min_force < F:
         # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
-        lower = F * (1 - HOPF_START.scan_step)
+        lower = F * (1 - HOPF_START_SETTINGS.scan_step)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _hopf_point_between(rod, (lower, below), (F, above))
@@ -119,13 +119,13 @@ def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float,
     """
     problem = path_problem(Path(rod, "F"))
     (a, below), (b, above) = low, high
-    while b - a > HOPF_START.hopf_tolerance * b:
+    while b - a > HOPF_START_SETTINGS.hopf_tolerance * b:
         share = below.real / (below.real - above.real)
         found = _newton_hopf_point(problem, a + share * (b - a), below + share * (above - below), (a, b))
         if found is not None:
             # The eigenvalue on the axis must lead; otherwise another mode is already unstable.
             w = leading_eigenvalue(replace(rod, F=found.F))
-            tolerance = HOPF_START.hopf_tolerance * abs(w)
+            tolerance = HOPF_START_SETTINGS.hopf_tolerance * abs(w)
             if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
                 return found
         middle = (a + b) / 2
@@ -144,14 +144,14 @@ def _newton_hopf_point(
 ) -> HopfPointBelow | None:
     """The Hopf point with a force between `ends`, by Newton's method from the force `F` and the eigenvalue
     `guess`; None if not found."""
-    for _ in range(HOPF_START.max_newton_steps):
+    for _ in range(HOPF_START_SETTINGS.max_newton_steps):
         w, slope, error = problem.eigenvalue(guess, F)
         if not (slope.real and isfinite(slope.real)):
             return None
         step = -w.real / slope.real
-        if abs(w.real) <= HOPF_START.converged_growth * error or abs(step) <= HOPF_START.converged_step * abs(
-            F
-        ):
+        if abs(w.real) <= HOPF_START_SETTINGS.converged_growth * error or abs(
+            step
+        ) <= HOPF_START_SETTINGS.converged_step * abs(F):
             return HopfPointBelow(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
@@ -170,14 +170,14 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     rod = form.rod
     at = replace(rod, F=hopf.F)
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
-    if not normal.amplitude > 0:
+    if not normal.amplitude_coefficient > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces")
-    if hopf.F * (1 + HOPF_START.max_direct_distance) >= rod.F:
+    if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh(rod))
-    for distance in HOPF_START.start_distances:
+    for distance in HOPF_START_SETTINGS.start_distances:
         try:
-            return _orbit_from(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
+            return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why
@@ -195,12 +195,12 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
-    if not w.real <= HOPF_START.max_direct_distance * rate:
+    if not w.real <= HOPF_START_SETTINGS.max_direct_distance * rate:
         raise Unsolvable(f"F = {form.rod.F:g} is too far from a Hopf point for the normal form")
     normal = _normal_form(form, w)
-    if not normal.supercritical:
+    if not normal.is_supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= HOPF_START.max_direct_distance * rate / -normal.c.real:
+    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
     if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second pair of modes may be unstable, so the normal form is not valid")
@@ -209,42 +209,40 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
     """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of the mesh's eigenvalue."""
-    normal = accurate_normal_form(form.rod, w, HOPF_START.normal_form_accuracy)
+    normal = accurate_normal_form(form.rod, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return replace(normal, w=w)
 
 
-def _orbit_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
+def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
     raises Unsolvable."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
-    found = at_orbit(
-        newton(start, HOPF_START.branch_tolerance, workspace, "F"), HOPF_START.branch_tolerance, "F"
-    )
-    squared = normal.cycle(F)[0]
-    least, most = HOPF_START.squared_amplitude_ratios
-    if not least < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < most:
+    tolerance = HOPF_START_SETTINGS.branch_tolerance
+    found = with_orbit_matrix(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    squared = normal.squared_y_and_frequency(F)[0]
+    least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
+    if not least < found.orbit.form.tip_coordinates(found.orbit.start)[1] ** 2 / squared < most:
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
-    return orbit_in_steps(
-        predictor_from(found, None, "F"), form, "F", HOPF_START.branch_tolerance, workspace
-    ).orbit
+    return orbit_in_steps(predictor_from(found, None, "F"), form, "F", tolerance, workspace).orbit
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
     """The orbit that a normal form predicts for the rod in `form`, whose force is near the Hopf point."""
-    squared, frequency = normal.cycle(form.rod.F)
+    squared, frequency = normal.squared_y_and_frequency(form.rod.F)
     return orbit_of_amplitude(normal, form, squared**0.5, frequency)
 
 
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
-    X = normal.motion(amplitude, np.pi * node_times(HOPF_START.intervals, HOPF_START.stages))
-    S, V = normal.form.fields(X)
+    times = node_times(HOPF_START_SETTINGS.intervals, HOPF_START_SETTINGS.stages)
+    X = normal.cycle_states(amplitude, np.pi * times)
+    S, V = normal.form.stresses_and_velocities(X)
     source = normal.form.mesh
     target = form.mesh
     states = form.layout.state(
         interpolate_stress(form.rod, S, source, target), V @ interpolation_matrix(source, target).T
     )
-    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START.stages)
+    return Orbit.from_states(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.stages)

@@ -137,7 +137,7 @@ def _with_motion_data(
 ) -> Cycle:
     """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of the
     integrated motion `transient`. end: outcome of this motion."""
-    trace = transient.trace
+    trace = transient.record
     return replace(
         straight,
         periods=end.periods,
@@ -169,7 +169,7 @@ def _with_chain_state(
     if along is None:
         return cycle
     eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
-    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, eigenvalues))
+    return replace(cycle, neighbour=Neighbour.from_cycle(found, before, along, accuracy, eigenvalues))
 
 
 def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
@@ -224,7 +224,7 @@ def _cycle_from_motion(
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.predictor.orbit
-        start = beam.state_of_stresses(orbit.form.stresses_on(beam.mesh, orbit.start))
+        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 

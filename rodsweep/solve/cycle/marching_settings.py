@@ -49,4 +49,4 @@ class MarchingSettings:
     """Number of time intervals, per return of the tip, of the orbit from which the cycle is measured."""
 
 
-MARCHING = MarchingSettings()
+MARCHING_SETTINGS = MarchingSettings()

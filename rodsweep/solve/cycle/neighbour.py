@@ -20,7 +20,7 @@ from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, at_orbit, newton
+from ..orbit.newton import ConvergedOrbit, newton, with_orbit_matrix
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
@@ -75,7 +75,7 @@ class Neighbour:
     eigenvalues: Complex = field(default_factory=UNKNOWN_EIGENVALUES.copy)
 
     @classmethod
-    def of(
+    def from_cycle(
         cls,
         found: RefinedCycle,
         before: "Neighbour | None",
@@ -99,7 +99,7 @@ class Neighbour:
             "rod": np.array(list(orbit.form.rod.values.values())),
             # Checkpoints hold arrays only, so a text is stored as its bytes.
             "build": np.frombuffer(orbit.form.rod.build.text.encode(), np.uint8),
-            "symmetric": np.array(orbit.symmetric),
+            "symmetric": np.array(orbit.is_symmetric),
             "mesh": mesh_of(orbit).as_array,
             "orbit": orbit.values,
             "places": branch.offsets,
@@ -131,7 +131,7 @@ def _next_mesh_and_calibration(
     parameter. accuracy: requested relative accuracy."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest <= NEXT_MESH_SETTINGS.max_error_of_same_mesh * accuracy
+    fits = found.errors.largest_error <= NEXT_MESH_SETTINGS.max_error_of_same_mesh * accuracy
     if known.reach and not fits:
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
         return present, known.rates_only
@@ -165,7 +165,7 @@ def cycle_from_neighbour(
     """
     if form.rod.build != neighbour.predictor.orbit.form.rod.build:
         raise Unsolvable("the neighbouring rod has another constitutive law or another profile along the rod")
-    if form.omega_unknown != neighbour.predictor.orbit.form.omega_unknown:
+    if form.is_omega_unknown != neighbour.predictor.orbit.form.is_omega_unknown:
         raise Unsolvable(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
@@ -175,7 +175,7 @@ def cycle_from_neighbour(
     )
     if known.is_valid:
         cycle = with_calibrated_errors(known, found, accuracy)
-        if cycle.errors.largest <= accuracy:
+        if cycle.errors.largest_error <= accuracy:
             return cycle
     return calibrated_cycle(found, known, accuracy, name)
 
@@ -189,10 +189,10 @@ def _cycle_on_next_mesh(
     target = neighbour.next_mesh
     try:
         found = orbit_near_prediction(
-            neighbour.predictor.on(target).at(form, name), tolerance, workspace, name
+            neighbour.predictor.on_mesh(target).predicted_orbit(form, name), tolerance, workspace, name
         )
     except Unsolvable:
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
-        start = orbit_in_steps(neighbour.predictor.on(target.coarser), form, name, tolerance, workspace)
-        found = newton(target.interpolate(start.orbit), tolerance, workspace, name)
-    return at_orbit(found, matrix_distance(accuracy), name)
+        start = orbit_in_steps(neighbour.predictor.on_mesh(target.coarser), form, name, tolerance, workspace)
+        found = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
+    return with_orbit_matrix(found, matrix_distance(accuracy), name)

@@ -18,7 +18,7 @@ from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import small_orbit
 from .status import CycleStatus
-from .transient.transient_settings import TRANSIENT
+from .transient.transient_settings import TRANSIENT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +48,7 @@ def stable_cycle_near_hopf(
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None
+    return found if settled and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance else None
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:

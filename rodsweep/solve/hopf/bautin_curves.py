@@ -36,7 +36,7 @@ class BautinEnd(IntEnum):
     closed = 5
 
 
-END_OTHERWISE = {
+END_BY_STOP_REASON = {
     CurveStop.closed: BautinEnd.closed,
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
@@ -75,15 +75,15 @@ class _CurvePoint:
 class BautinSpace:
     """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
     values of the fixed parameters. requested_values: values of the third parameter of further points, (m,).
-    accuracy: relative accuracy of c. side: sign of the first step along the third parameter, 1 or -1."""
+    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or -1."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
     requested_values: Array
     accuracy: float
-    side: float = 1.0
+    direction: float = 1.0
 
-    def scaled(self, values: Array, frequency: float) -> Array:
+    def scaled_coordinates(self, values: Array, frequency: float) -> Array:
         """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
         places = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
@@ -99,7 +99,7 @@ class BautinSpace:
         accuracy = min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
         hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)
         start = guess[[*free, 3]]
-        point = self._zero(hopf, start, boundary.tangent(start))
+        point = self._zero_by_secants(hopf, start, boundary.tangent(start))
         found_values = np.empty(3)
         errors = np.zeros(3)
         found_values[free] = point.values
@@ -108,13 +108,13 @@ class BautinSpace:
         found = BautinCurvePoint(
             values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
         )
-        return _CurvePoint(self.scaled(found_values, point.frequency), found)
+        return _CurvePoint(self.scaled_coordinates(found_values, point.frequency), found)
 
     def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
         """The next point after `behind`, predicted along the last chord, at first along the third parameter;
         raises Unsolvable. length: largest predicted change of a parameter, divided by its range."""
         here = behind[-1].v
-        tangent = np.array([0.0, 0.0, self.side, 0.0])
+        tangent = np.array([0.0, 0.0, self.direction, 0.0])
         if len(behind) > 1:
             chord = here - behind[-2].v
             # Step lengths are shares of a parameter's range; the frequency has no range.
@@ -163,14 +163,14 @@ class BautinSpace:
         return len(behind) > BAUTIN_SETTINGS.min_loop_points and bool(near)
 
     @staticmethod
-    def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
+    def _zero_by_secants(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
         s = BAUTIN_SETTINGS.first_secant
-        last = hopf.at(start, way, hopf.accuracy).relative_real_part
+        last = hopf.hopf_point_on_plane(start, way, hopf.accuracy).relative_real_part
         for _ in range(BAUTIN_SETTINGS.max_secants):
-            here = hopf.at(start + s * way, way, hopf.accuracy)
+            here = hopf.hopf_point_on_plane(start + s * way, way, hopf.accuracy)
             if here.relative_real_part == last:
                 break
             slope = (here.relative_real_part - last) / (s - before)
@@ -179,7 +179,7 @@ class BautinSpace:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN_SETTINGS.tolerance, along):
-                return hopf.as_point(here, 0, way * (along + abs(step)))
+                return hopf.as_generalised_hopf(here, 0, way * (along + abs(step)))
             last = here.relative_real_part
             before = s
             s = s + step
@@ -188,8 +188,8 @@ class BautinSpace:
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
-    here = _CurvePoint(space.scaled(start.values, start.frequency), start)
-    back, first = _follow_in_direction(replace(space, side=-1.0), here)
+    here = _CurvePoint(space.scaled_coordinates(start.values, start.frequency), start)
+    back, first = _follow_in_direction(replace(space, direction=-1.0), here)
     if first is BautinEnd.closed:
         return BautinCurve(tuple(point.point for point in back), (first, first))
     on, last = _follow_in_direction(space, here)
@@ -197,7 +197,7 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
 
 
-def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
+def as_curve_point(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
     """A generalised Hopf point of a plane as a point of a curve. third: value of the third parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, third]),
@@ -207,17 +207,17 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
     )
 
 
-def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
+def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
     """Whether `point`, at a requested third parameter, equals a point of `curve`."""
-    v = space.scaled(point.values, point.frequency)
-    others = [space.scaled(other.values, other.frequency) for other in curve.points]
+    v = space.scaled_coordinates(point.values, point.frequency)
+    others = [space.scaled_coordinates(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
 
 
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """(points from `start` in the direction `space.side` of the third parameter, including points at its
     requested values; reason for the end of the curve)."""
-    if not 0 < start.v[2] + space.side * BAUTIN_STEPS.min_length < 1:
+    if not 0 < start.v[2] + space.direction * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report_point_count)
     places = curve.solutions[:1]
@@ -228,7 +228,7 @@ def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_
             return places, BautinEnd.not_found
     if curve.end is CurveStop.margin:
         return places, BautinEnd.range_end if curve.margin // 2 == 2 else BautinEnd.plane_edge
-    return places, END_OTHERWISE[curve.end]
+    return places, END_BY_STOP_REASON[curve.end]
 
 
 def _report_point_count(places: Sequence[_CurvePoint]) -> None:

@@ -18,7 +18,13 @@ from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
-from .normal_form import NORMAL_FORM_SETTINGS, NormalForm, elements_for, finer_by_a_third, normal_form_on
+from .normal_form import (
+    NORMAL_FORM_SETTINGS,
+    NormalForm,
+    elements_for_coefficient,
+    elements_with_third_more_unknowns,
+    normal_form_on,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +77,7 @@ class HopfCoefficients:
     message: str = ""
 
     @property
-    def known(self) -> bool:
+    def are_known(self) -> bool:
         """Whether the coefficients were computed; otherwise they are NaN."""
         return not math.isnan(self.landau_error)
 
@@ -79,7 +85,7 @@ class HopfCoefficients:
     def criticality(self) -> float:
         """Sign of Re c, c: Landau coefficient: -1 (supercritical) or 1 (subcritical); 0 if |Re c| is not
         larger than the error of c; nan if the coefficients are not known."""
-        if not self.known:
+        if not self.are_known:
             return math.nan
         if abs(self.landau.real) <= self.landau_error * abs(self.landau):
             return 0.0
@@ -101,7 +107,7 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = elements_for(
+    start = elements_for_coefficient(
         rod,
         w,
         min(accuracy / NORMAL_FORM_SETTINGS.accuracy_share, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
@@ -112,7 +118,7 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     for number in range(HOPF_COEFFICIENT_SETTINGS.max_refinements):
         here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
         more = (
-            finer_by_a_third(here)
+            elements_with_third_more_unknowns(here)
             if number
             else Elements(here.edges, here.order + HOPF_COEFFICIENT_SETTINGS.more_orders)
         )
@@ -149,7 +155,7 @@ def _coefficients_with_errors(
     slope_off = slope_error * abs(slope)
     c_off = landau_error * abs(c)
     ratio = c.imag / c.real
-    a = normal.amplitude
+    a = normal.amplitude_coefficient
     b = normal.frequency_slope
     # b = Im w' - ratio Re w': an error d of w' changes b by Im d - ratio Re d, at most |d| hypot(1, ratio).
     b_off = math.hypot(1, ratio) * (slope_off + abs(slope.real / c.real) * c_off)
@@ -179,5 +185,5 @@ def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
 
 def _landau_rounding_error(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
-    sizes = straight_matrices(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
+    sizes = straight_matrices(normal.form, TRANSVERSE).product_magnitude(normal.p, normal.q)
     return HOPF_COEFFICIENT_SETTINGS.landau_rounding * sizes / abs(normal.w)

@@ -106,7 +106,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             status=status,
             transitions=found,
             coefficients=coefficients,
-            end=found.searched[1],
+            end=found.searched_interval[1],
             message=message,
         )
 
@@ -149,7 +149,7 @@ def _status_and_message(
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
     problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
-    known = [c for c in coefficients if c.known]
+    known = [c for c in coefficients if c.are_known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(
         c.largest_error > request.accuracy for c in known
     )
@@ -164,4 +164,4 @@ def _status_and_message(
         CriticalityStatus.not_certified: request.certify and not found.proved,
     }
     status = next((status for status, holds in verdicts.items() if holds), CriticalityStatus.ok)
-    return status, "; ".join(filter(None, (failures, found.doubts)))
+    return status, "; ".join(filter(None, (failures, found.doubt_text)))

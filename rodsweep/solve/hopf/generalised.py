@@ -95,15 +95,17 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
     hopf = HopfCurve(
-        Boundary(plane, curve.sign), curve.scaled, min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
+        Boundary(plane, curve.eigenvalue_sign),
+        curve.scaled,
+        min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy),
     )
-    signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
+    signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled))])
     points = []
     unlocated = 0
     decided = np.flatnonzero(signs != 0)  # the sign may change within the error of a point
     for a, b in zip(decided[:-1], decided[1:], strict=True):
         if signs[a] * signs[b] < 0:
-            found = hopf.located(int(a), int(b))
+            found = hopf.generalised_hopf_between(int(a), int(b))
             points += [found] if found else []
             unlocated += found is None
     return CurveCriticality(signs, tuple(points), unlocated)
@@ -121,7 +123,7 @@ class HopfCurve:
     scaled: Array
     accuracy: float
 
-    def sign(self, i: int) -> float:
+    def criticality_at(self, i: int) -> float:
         """Sign of Re c at the stored point with the index i: -1 or 1; 0 if undecided, NaN if the normal form
         fails."""
         points = len(self.scaled)
@@ -129,13 +131,15 @@ class HopfCurve:
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
-            rough = self.at(v, normal, GENERALISED_HOPF_SETTINGS.first_sign_accuracy).coefficients.criticality
+            rough = self.hopf_point_on_plane(
+                v, normal, GENERALISED_HOPF_SETTINGS.first_sign_accuracy
+            ).coefficients.criticality
             # An accurate c, which costs more, is needed only where the rough sign is undecided.
-            return rough or self.at(v, normal, self.accuracy).coefficients.criticality
+            return rough or self.hopf_point_on_plane(v, normal, self.accuracy).coefficients.criticality
         except FAILURES:
             return math.nan
 
-    def at(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
+    def hopf_point_on_plane(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
         """The Hopf point at which the Hopf curve crosses the plane through `guess`, (3,), with normal vector
         `normal`, (3,), and its normal form; raises Unsolvable. accuracy: relative accuracy of c."""
         there = self.boundary.point_near(guess, normal)
@@ -151,7 +155,7 @@ class HopfCurve:
         hopf = Crossing(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
         return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
 
-    def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
+    def generalised_hopf_between(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The generalised Hopf point between the stored points with the indices `first` and `last`, at which
         Re c has opposite signs. None if a normal form fails, if Brent's method finds no zero, or if Re c
         jumps there."""
@@ -162,7 +166,7 @@ class HopfCurve:
         normal = chord / np.linalg.norm(chord)
 
         def on_chord(s: float) -> _HopfNormalForm:
-            return self.at(start + s * chord, normal, self.accuracy)
+            return self.hopf_point_on_plane(start + s * chord, normal, self.accuracy)
 
         try:
             s = float(
@@ -186,9 +190,9 @@ class HopfCurve:
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
         along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF_SETTINGS.tolerance
-        return self.as_point(here, first + int(passed.sum()), chord * along)
+        return self.as_generalised_hopf(here, first + int(passed.sum()), chord * along)
 
-    def as_point(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
+    def as_generalised_hopf(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
         """The generalised Hopf point at the Hopf point `here`, with errors of both parameters.
 
         after: index of the curve's stored point before this point. moved: position error along the chord,

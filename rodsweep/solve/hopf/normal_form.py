@@ -23,12 +23,12 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...determinant.wave_number import wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halve_elements
-from ...discretization.elements.mesh import mesh_on
+from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for
 from ...discretization.straight.arm_resolution import arm_elements
 from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...discretization.straight.mixed_form import MixedForm
-from ...discretization.straight.whole_matrices import WholeMatrices, straight_matrices
+from ...discretization.straight.whole_matrices import WholeRodMatrices, straight_matrices
 from ...model.rod import Rod
 from ..point import Unsolvable
 
@@ -40,7 +40,7 @@ class NormalFormSettings:
     shift_offset: float = 1e-10
     """Relative offset of the shift from the eigenvalue estimate; without an offset the shifted matrix might
     be singular."""
-    found: float = 1e-8
+    converged_distance: float = 1e-8
     """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
     two iterations with this shift reach rounding error."""
     max_shifts: int = 10
@@ -90,13 +90,13 @@ class NormalForm:
         return self.form.rod.F
 
     @property
-    def supercritical(self) -> bool:
+    def is_supercritical(self) -> bool:
         """Whether Re c < 0: the nonlinearity then limits the growth, and cycles are stable if no further mode
         grows."""
         return self.c.real < 0
 
     @property
-    def amplitude(self) -> float:
+    def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
         largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
         squared = -self.slope.real / self.c.real
@@ -108,7 +108,7 @@ class NormalForm:
         Im w + b (F' - F), in 1/tau2."""
         return self.slope.imag - self.c.imag * self.slope.real / self.c.real
 
-    def cycle(self, F: float) -> tuple[float, float]:
+    def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
 
         The eigenvalue at F is approximated by w + slope (F - self.F). If the square is negative, no cycle
@@ -118,7 +118,7 @@ class NormalForm:
         squared = -w.real / self.c.real
         return squared, w.imag + self.c.imag * squared
 
-    def motion(self, amplitude: float, phases: Array) -> Array:
+    def cycle_states(self, amplitude: float, phases: Array) -> Array:
         """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
 
         amplitude: the largest tip y, in L, which is reached at phase 0.
@@ -135,12 +135,12 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
-    h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
-    h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
+    h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))
+    h11 = -longitudinal.lu_factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
-    if form.law.nonlinear:
+    if form.law.is_nonlinear:
         c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
-    slope = np.vdot(p, form.times_A_F(q))
+    slope = np.vdot(p, form.times_force_derivative_of_A(q))
     return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
 
 
@@ -149,10 +149,10 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w, or too many nodes, as in `normal_form_on`.
     """
-    return normal_form_on(elements_for(rod, w, accuracy), rod, w, accuracy)
+    return normal_form_on(elements_for_coefficient(rod, w, accuracy), rod, w, accuracy)
 
 
-def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
+def elements_for_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
     mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM_SETTINGS.accuracy_share
@@ -160,21 +160,21 @@ def elements_for(rod: Rod, w: complex, accuracy: float) -> Elements:
     if not rod.standard:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
-    return of_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
+    return with_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
 
 
-def of_odd_order(elements: Elements) -> Elements:
+def with_odd_order(elements: Elements) -> Elements:
     """The same elements, with their order increased by 1 if it is even; elements of even order cannot be
     eliminated one by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
-def finer_by_a_third(elements: Elements) -> Elements:
+def elements_with_third_more_unknowns(elements: Elements) -> Elements:
     """Elements with about a third more unknowns than `elements`, of odd order."""
     order = ceil(elements.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
-        return of_odd_order(Elements(elements.edges, order))
-    return of_odd_order(
+        return with_odd_order(Elements(elements.edges, order))
+    return with_odd_order(
         Elements(
             halve_elements(elements.edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * elements.order)
         )
@@ -193,8 +193,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
         raise Unsolvable(
             f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
         )
-    normal = normal_form(MixedForm(rod, mesh_on(elements.edges, elements.order)), w)
-    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.found) * abs(w):
+    normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
+    if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_distance) * abs(w):
         raise Unsolvable(
             f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest eigenvalue is "
             f"{normal.w:.12g}"
@@ -203,7 +203,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
 
 
 def _eigenvalue_and_modes(
-    elements: StraightElements | WholeMatrices, guess: complex
+    elements: StraightElements | WholeRodMatrices, guess: complex
 ) -> tuple[complex, Complex, Complex]:
     """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
     docstring.
@@ -213,9 +213,9 @@ def _eigenvalue_and_modes(
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)
-        factors = elements.factors(shift)
+        factors = elements.lu_factors(shift)
         # Odd unknowns are transverse. The longitudinal unknowns start at 0 and remain 0.
-        q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
+        q = p = np.where(elements.form.reflection_signs < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS_PER_SHIFT):
             q = factors.solve(elements.times_M(q))
             p = factors.solve(elements.times_M(p), adjoint=True)
@@ -223,7 +223,7 @@ def _eigenvalue_and_modes(
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
         w = complex(np.vdot(p, elements.apply_A(q)) / np.vdot(p, Mq))
-        if abs(w - shift) <= NORMAL_FORM_SETTINGS.found * abs(w):
+        if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_distance * abs(w):
             break
     else:
         raise Unsolvable(f"inverse iteration finds no eigenvalue near w = {guess:.6g}")
@@ -231,5 +231,5 @@ def _eigenvalue_and_modes(
         raise Unsolvable(f"the eigenvalue near w = {guess:.6g} is real: no mode oscillates there")
     # The tip of q is at y = 1/2, so that |z| is the largest tip y of z q + c.c.; with <p, M q> = 1, a
     # projection on q needs no denominator.
-    scale = 2 * (elements.form.tip_y @ q)
+    scale = 2 * (elements.form.tip_y_row @ q)
     return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

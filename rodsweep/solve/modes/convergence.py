@@ -34,7 +34,7 @@ class ModeMeshSettings:
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
     finest_accuracy: float = 1e-24
     """The first mesh is chosen for a relative accuracy of eigenvalues not smaller than this."""
-    roundings: float = 2.0
+    condition_rounding_factor: float = 2.0
     """Relative rounding error of a condition number, divided by (rounding error of the eigenvalue)/(distance
     to the nearest eigenvalue); measured: median 0.6, maximum 3.4."""
 
@@ -94,7 +94,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, gaps: Array
         error = np.maximum(error, relative.max(axis=0))
     # Rounding turns no eigenvector of a normal operator, whose condition numbers are 1.
     turned = (
-        MODE_MESH_SETTINGS.roundings
+        MODE_MESH_SETTINGS.condition_rounding_factor
         * (1 - 1 / fine.condition**2)
         * fine.rounding
         / np.maximum(gaps, EXPONENT_SETTINGS.least_divisor)

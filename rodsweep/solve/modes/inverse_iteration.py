@@ -14,7 +14,7 @@ from ...arrays import Array, Complex
 from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_form
-from ...discretization.straight.pencil import tip_scale
+from ...discretization.straight.pencil import factors_to_unit_tip
 from ...model.rod import Rod
 
 
@@ -24,7 +24,7 @@ class ModeIterationSettings:
 
     iterations: int = 4
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
-    conjugate: float = 1e-12
+    conjugate_tolerance: float = 1e-12
     """An eigenvalue w is the complex conjugate v* of its predecessor v in the list if |w - v*|/|w| is at most
     this."""
 
@@ -73,12 +73,12 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,)."""
     form = dense_form(rod, pencil)
     X, Z, rounding = _eigenvectors(form, eigenvalues)
-    evaluation = form.mesh.evaluation(points)
+    evaluation = form.mesh.evaluation_matrix(points)
     B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        unknown_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
+        placeholder_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
         right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
         deformation=form.strains(X, points),
         left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),
@@ -88,7 +88,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def unknown_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
+def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
     """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of modes and
     points."""
     shape = np.full((2, modes, points), np.nan + 0j)
@@ -118,7 +118,7 @@ def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Compl
         if (
             i
             and w.imag < 0
-            and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION_SETTINGS.conjugate * abs(w)
+            and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION_SETTINGS.conjugate_tolerance * abs(w)
         ):
             X[:, i] = X[:, i - 1].conj()
             Z[:, i] = Z[:, i - 1].conj()
@@ -127,7 +127,7 @@ def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Compl
     # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
-    right, left = (V * tip_scale(*form.fields(V)) for V in (X, Z))
+    right, left = (V * factors_to_unit_tip(*form.fields(V)) for V in (X, Z))
     return right, left, rounding
 
 

@@ -25,7 +25,7 @@ from ..point import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
-from .inverse_iteration import ModeVectors, unknown_vectors
+from .inverse_iteration import ModeVectors, placeholder_vectors
 from .transient_growth import Growth, growth_of
 
 
@@ -77,9 +77,9 @@ class Modes:
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     """The leading `request.modes` modes of a rod; a failure is returned as a status, never raised."""
     if rod.uniform and not rod.standard:
-        return _from_equivalent(rod, request)
+        return _modes_by_equivalent_rod(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = unknown_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
+    vectors = placeholder_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,
@@ -96,7 +96,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     return replace(found, seconds=spectrum.seconds + found.seconds)
 
 
-def _from_equivalent(rod: Rod, request: ModesRequest) -> Modes:
+def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
     """Modes of a uniform rod of nonlinear material, from the equivalent linear rod; times are rescaled."""
     linear, rate = rod.equivalent_linear_rod
     found = solve_modes(linear, request)

@@ -31,13 +31,13 @@ class NormMaximumSettings:
     max_open_intervals: int = 4000
     """Maximum number of intervals in which a larger norm is possible; with more intervals, the bound is not
     improved further."""
-    batch: int = 128
+    times_per_batch: int = 128
     """Number of times at which the propagator is evaluated in one call; limits the memory."""
     max_exponent: float = 300.0
     """Larger arguments of exp are replaced by this value, at which exp does not overflow."""
     max_peak_steps: int = 40
     """Maximum number of regula falsi steps to a maximum of the norm."""
-    rise_left: float = 1e-14
+    max_remaining_rise: float = 1e-14
     """Tolerance of the search for a maximum: largest possible relative increase of the norm within the final
     bracket. The relative error of the time is about the square root of this tolerance."""
 
@@ -45,7 +45,7 @@ class NormMaximumSettings:
 NORM_MAXIMUM_SETTINGS = NormMaximumSettings()
 
 
-def largest_norm(
+def largest_propagator_norm(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
     """Returns ((maximum of |exp(L t)|, time of the maximum), upper bound of |exp(L t)|) for times from
@@ -96,15 +96,16 @@ def _squared_norms_and_bends(propagator: Propagator, times: Array) -> tuple[Arra
     """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, evaluated in batches to
     limit the memory."""
     parts = [
-        propagator.squares(part)
-        for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.batch + 1)
+        propagator.squared_norms_and_bounds(part)
+        for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.times_per_batch + 1)
     ]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _squared_norm_bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
     """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at the `left` and `right` ends
-    and the curvature bound c (`bend`) at the left ends; all (intervals,). abscissa: as in `largest_norm`."""
+    and the curvature bound c (`bend`) at the left ends; all (intervals,). abscissa: as in
+    `largest_propagator_norm`."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)
@@ -113,16 +114,16 @@ def _squared_norm_bound(h: Array, left: Array, right: Array, bend: Array, abscis
 def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """Returns (|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by
     the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between."""
-    at_low, rate_low = propagator.norm(low)
-    at_high, rate_high = propagator.norm(high)
+    at_low, rate_low = propagator.norm_and_log_slope(low)
+    at_high, rate_high = propagator.norm_and_log_slope(high)
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)
     for _ in range(NORM_MAXIMUM_SETTINGS.max_peak_steps):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
-        value, rate = propagator.norm(t)
+        value, rate = propagator.norm_and_log_slope(t)
         best = max(best, (value, t))
-        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.rise_left:
+        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_remaining_rise:
             break
         if rate > 0:
             low = t

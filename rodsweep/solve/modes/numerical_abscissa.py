@@ -24,7 +24,7 @@ class NumericalAbscissaSettings:
     close_shift: float = 0.05
     """Relative distance of the last shift above the numerical abscissa: so small that shift + 1/eigenvalue
     loses no digits by cancellation."""
-    positive: float = 1e-9
+    min_positive_ratio: float = 1e-9
     """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
     fraction of the modulus of the most negative eigenvalue."""
 
@@ -50,7 +50,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
         H = shifted_inverse(A, B, shift)
         values = np.linalg.eigvalsh((H + H.T) / 2)
         if (
-            values[-1] > -NUMERICAL_ABSCISSA_SETTINGS.positive * values[0]
+            values[-1] > -NUMERICAL_ABSCISSA_SETTINGS.min_positive_ratio * values[0]
         ):  # an eigenvalue lies above the shift
             shift = 2 * abs(shift) + 1
             continue

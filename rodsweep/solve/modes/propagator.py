@@ -20,7 +20,7 @@ from ...determinant.exponents import ROUND_OFF
 class PropagatorSettings:
     """Settings for exp(L t) and for its representation by the leading modes."""
 
-    infinite: float = 1e-12
+    infinite_eigenvalue_ratio: float = 1e-12
     """An eigenvalue of G = L^-1 whose modulus is at most this fraction of the largest modulus belongs to an
     infinite eigenvalue of the operator L."""
     taylor_terms: int = 16
@@ -58,7 +58,9 @@ class Propagator:
     def __init__(self, G: Array):
         self.G = G
         values, right = np.linalg.eig(G)
-        finite = np.nonzero(np.abs(values) > PROPAGATOR_SETTINGS.infinite * np.abs(values).max())[0]
+        finite = np.nonzero(
+            np.abs(values) > PROPAGATOR_SETTINGS.infinite_eigenvalue_ratio * np.abs(values).max()
+        )[0]
         # G is the inverse of L: its eigenvalues near 0 are the infinite ones of the pencil, which carry no
         # dynamics.
         w = 1 / values[finite]
@@ -69,7 +71,7 @@ class Propagator:
         self.generator: Array = np.zeros((0, 0))
         self.overlap: Array = np.zeros((0, 0))
 
-    def truncate(self, k: int) -> int:
+    def use_leading_modes(self, k: int) -> int:
         """Represents exp(L t) from now on by k leading modes, as Q exp(L_k t) (Z^T Q)^-1 Z^T, with
         orthonormal real Q, Z.
 
@@ -90,23 +92,23 @@ class Propagator:
         self.overlap = Z.T @ Q
         return k
 
-    def at(self, times: Array) -> Array:
+    def propagators_at(self, times: Array) -> Array:
         """The matrix exp(L_k t) (Z^T Q)^-1, whose norm is |exp(L t) P_k|, at each of `times`: (times, k,
         k)."""
-        return exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
+        return matrix_exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
 
-    def norm(self, time: float) -> tuple[float, float]:
+    def norm_and_log_slope(self, time: float) -> tuple[float, float]:
         """Returns (norm |exp(L t)|, derivative of its logarithm) at `time`, in tau2."""
         # d|E|/dt = u . dE/dt v = |E| u . L u, with u the left singular vector.
-        u, sizes, _ = np.linalg.svd(self.at(np.array([time]))[0])
+        u, sizes, _ = np.linalg.svd(self.propagators_at(np.array([time]))[0])
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
-    def squares(self, times: Array) -> tuple[Array, Array]:
+    def squared_norms_and_bounds(self, times: Array) -> tuple[Array, Array]:
         """Returns (N^2, c), (times,) each, at each of `times`, in tau2.
 
         N = |exp(L t)|. c bounds a curvature: f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1.
         """
-        E = self.at(times)
+        E = self.propagators_at(times)
         first = self.generator @ E
         half = np.swapaxes(E, 1, 2) @ (self.generator @ first) + np.swapaxes(first, 1, 2) @ first
         size = np.asarray(np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1], np.float64)
@@ -115,8 +117,8 @@ class Propagator:
     def truncation_contribution(self, m: int, time: float) -> float:
         """|exp(L t) (P_k - P_m)|, the contribution of the modes m + 1 to k at `time`; m < k must not split a
         complex pair."""
-        E = self.at(np.array([time]))[0]
-        E[:m, :m] -= exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
+        E = self.propagators_at(np.array([time]))[0]
+        E[:m, :m] -= matrix_exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
         return float(np.linalg.norm(E, 2))
 
 
@@ -128,7 +130,7 @@ def _orthonormal_basis(vectors: NDArray, w: NDArray) -> Array:
     return np.linalg.qr(columns[:, np.argsort(column)])[0]
 
 
-def exponential(matrices: Array) -> Array:
+def matrix_exponential(matrices: Array) -> Array:
     """exp of one small matrix or a stack of matrices, (..., k, k), by Taylor series, scaling and squaring.
 
     The function squares exp - 1 instead of exp: in a block triangular matrix with slow and fast blocks, the

@@ -18,7 +18,7 @@ import numpy as np
 from ...discretization.straight.dense_form import AnyPencil, dense_form
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
-from .norm_maximum import NORM_MAXIMUM_SETTINGS, largest_norm
+from .norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
 from .numerical_abscissa import numerical_abscissa
 from .propagator import Propagator, shifted_inverse
 
@@ -34,9 +34,9 @@ class GrowthSettings:
     truncation_margin: float = 4.0
     """The omitted modes contribute at most exp(-`truncation_margin`) times the accuracy."""
     search_share: float = 0.25
-    """Tolerance of `largest_norm`, as a fraction of the requested accuracy."""
+    """Tolerance of `largest_propagator_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
-    """Smallest tolerance of `largest_norm`: rounding error of the norm."""
+    """Smallest tolerance of `largest_propagator_norm`: rounding error of the norm."""
     first_more_orders: int = 4
     """Increase of the element order from the first mesh to the second."""
     order_factor: float = 1.4
@@ -151,13 +151,13 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     tail = stop = 0.0
     k = GROWTH_SETTINGS.min_modes
     while True:
-        k = fine.truncate(k)
+        k = fine.use_leading_modes(k)
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
         first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
         if not stop:
             stop, tail = _end_of_growth(fine, first, patience)
-        if stop > first and fine.norm(first)[0] >= 1:
-            peak, bound = largest_norm(fine, (first, stop), abscissa, best[0], tolerance)
+        if stop > first and fine.norm_and_log_slope(first)[0] >= 1:
+            peak, bound = largest_propagator_norm(fine, (first, stop), abscissa, best[0], tolerance)
             best = max(best, peak)
             ceiling = max(ceiling, bound)
         stop = first
@@ -170,9 +170,9 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     if best[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
-        coarse.truncate(int((1 + GROWTH_SETTINGS.more_modes) * k))
+        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.more_modes) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
-        hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
+        hidden += max(abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
 
 
@@ -194,7 +194,7 @@ def _end_of_growth(propagator: Propagator, first: float, patience: float) -> tup
     alone = (patience + log(share)) / gap if gap > 0 else inf
     end = first
     while end < alone:
-        if propagator.norm(end)[0] < 1:
+        if propagator.norm_and_log_slope(end)[0] < 1:
             return end, 0.0
         end *= 2
     alone = max(alone, first)

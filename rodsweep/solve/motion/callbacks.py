@@ -2,7 +2,7 @@
 
 numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
 iteration of 5 us would take 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`.
-The memory of this record belongs to a `Workspace`, which must outlive the TS.
+The memory of this record belongs to a `CallbackWorkspace`, which must outlive the TS.
 
 The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even if the full Jacobian
 of the step is implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
@@ -17,25 +17,33 @@ from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
 from ...discretization.stress.rates import write_rate, write_rate_jacobian
-from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
+from ..backend.c_functions import (
+    POINTER,
+    c_function,
+    call_petsc,
+    doubles_at,
+    integers_at,
+    petsc_function,
+    record_at,
+)
 from ..backend.petsc import PETSc
 from .context import (
     AT_BASE,
     AT_ITERATE,
-    CONTEXT,
-    HANDLES,
-    MATRIX_STATE,
+    CONTEXT_DTYPE,
+    MATRIX_STATE_OFFSET,
     MAX_STAGES,
-    OUTPUTS,
+    OUTPUTS_OFFSET,
+    PETSC_HANDLE_FIELDS,
     UP_TO_DATE,
-    arrays_of,
     matrices_of,
+    rod_arrays_by_field,
     rod_of,
-    roots_of,
+    sqrt_compliance_of,
 )
 from .petsc_calls import read_array, release_read, release_write, write_array
-from .predictor import STAGE_PREDICTOR_SETTINGS, begin_step, points_of
-from .stage_newton import newton_test, solve_stage
+from .predictor import STAGE_PREDICTOR_SETTINGS, begin_step, extrapolation_points_of
+from .stage_newton import solve_stage, test_newton_convergence
 from .step_record import take_steps
 
 _get_dense = petsc_function("MatDenseGetArray")
@@ -47,20 +55,20 @@ _object_state = petsc_function("PetscObjectStateGet")
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     """PETSc's implicit function R = Udot - f(U), or R = Udot if `without_rate` is set in the context. U,
     Udot, R: handles of vectors. context: address of the context record."""
-    c = record_at(context, CONTEXT)
+    c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
-    at = context + OUTPUTS
-    outputs = integers(at, 3)
+    at = context + OUTPUTS_OFFSET
+    outputs = integers_at(at, 3)
     read_array(U, at)
     read_array(Udot, at + 8)
     write_array(R, at + 16)
-    out = floats(outputs[2], n)
-    dot = floats(outputs[1], n)
+    out = doubles_at(outputs[2], n)
+    dot = doubles_at(outputs[1], n)
     c.time = t
     if c.without_rate:
         out[:] = dot
     else:
-        write_rate(floats(outputs[0], n), out, roots_of(c), rod_of(c), matrices_of(c))
+        write_rate(doubles_at(outputs[0], n), out, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
     release_read(U, at)
@@ -76,10 +84,10 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     Without a right-hand side, PETSc from 3.20 on treats the rod as a differential-algebraic system and
     computes the first slope of each step by an additional Newton solve.
     """
-    c = record_at(context, CONTEXT)
-    at = context + OUTPUTS
+    c = record_at(context, CONTEXT_DTYPE)
+    at = context + OUTPUTS_OFFSET
     write_array(F, at)
-    floats(integers(at, 1)[0], c.unknowns)[:] = 0.0
+    doubles_at(integers_at(at, 1)[0], c.unknowns)[:] = 0.0
     release_write(F, at)
     return 0
 
@@ -90,38 +98,38 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
 ) -> int:
     """PETSc's matrix B = shift I - J, with J = df/dU at the state selected by `matrix_due` in the context.
     PETSc keeps the LU factors of an unchanged B."""
-    c = record_at(context, CONTEXT)
+    c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
-    at = context + OUTPUTS
-    outputs = integers(at, 1)
+    at = context + OUTPUTS_OFFSET
+    outputs = integers_at(at, 1)
     _object_state(B, at)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
     untouched = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
         return 0
-    J = floats(c.jacobian, n * n).reshape(n, n)
+    J = doubles_at(c.jacobian, n * n).reshape(n, n)
     # The Jacobian is the expensive part; if only the shift is new, the Jacobian is reused.
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
-        write_rate_jacobian(floats(outputs[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
+        write_rate_jacobian(doubles_at(outputs[0], n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
         release_read(U, at)
     elif c.matrix_due == AT_BASE:
-        write_rate_jacobian(floats(c.base, n), J, roots_of(c), rod_of(c), matrices_of(c))
+        write_rate_jacobian(doubles_at(c.base, n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
     _get_dense(B, at)
-    M = floats(outputs[0], n * n).reshape(n, n)
+    M = doubles_at(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift
     _restore_dense(B, at)
     c.last_matrix = B
-    _object_state(B, context + MATRIX_STATE)
+    _object_state(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
     c.shift = shift
     c.factorisations += 1
     return 0
 
 
-class Workspace:
+class CallbackWorkspace:
     """Arrays and context record used by the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
@@ -133,43 +141,43 @@ class Workspace:
             "jacobian": np.zeros((n, n)),
             "times": np.zeros(2 * MAX_STAGES),
             "states": np.zeros((2 * MAX_STAGES, n)),
-            "points": points_of(""),
+            "points": extrapolation_points_of(""),
             "constant": np.zeros(n),
             "rates": np.zeros(n),
         }
         self._vectors = [PETSc.Vec().createSeq(n, comm=PETSc.COMM_SELF) for _ in range(2)]
-        self.context = np.zeros((), CONTEXT)
-        self._set({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
-        self._set({name: array.ctypes.data for name, array in self._arrays.items()})
+        self.context = np.zeros((), CONTEXT_DTYPE)
+        self._set_context_fields({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
+        self._set_context_fields({name: array.ctypes.data for name, array in self._arrays.items()})
 
-    def _set(self, values: Mapping[str, float]) -> None:
+    def _set_context_fields(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             self.context[name] = value
 
-    def prepare(self, beam: Beam, error: float, floor: float) -> None:
+    def set_rod_and_tolerances(self, beam: Beam, error: float, floor: float) -> None:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
         stage.
 
         error: Newton's method stops when the estimated error of a stage is at most this. floor: if the Newton
         steps stagnate below this size, the stagnation is attributed to rounding errors.
         """
-        self._rod = arrays_of(beam)  # the callbacks read these arrays by address as well
-        self._set({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set({"components": len(self._rod["tip_stress"]), "law": beam.nodal.law})
-        self._set({"jump_count": len(beam.nodal.jumps)})
+        self._rod = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
+        self._set_context_fields({name: array.ctypes.data for name, array in self._rod.items()})
+        self._set_context_fields({"components": len(self._rod["tip_stress"]), "law": beam.nodal_rod.law})
+        self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknowns**0.5
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
-        self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
-        self._set({"small_error": error * root, "rounding": floor * root})
+        self._set_context_fields(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
+        self._set_context_fields({"small_error": error * root, "rounding": floor * root})
         take_steps(self.context)
 
-    def predict_as(self, variant: str) -> None:
+    def set_extrapolation_points(self, variant: str) -> None:
         """Sets the extrapolation points of the stages for the ARKIMEX type `variant`; no points if
         `EXTRAPOLATION_POINTS` does not contain the type."""
-        self._arrays["points"][:] = points_of(variant)
+        self._arrays["points"][:] = extrapolation_points_of(variant)
 
-    def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
+    def register_callbacks(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
         """Registers the callbacks in `ts`, whose options must already be set. matrix: the matrix in which
         PETSc stores the Jacobian of a stage."""
         context = self.context.ctypes.data
@@ -178,26 +186,28 @@ class Workspace:
         if ts.getType() == "arkimex":
             # Without an explicit part PETSc 3.20 and newer would treat the problem as a DAE, with a separate
             # computation of the first slope.
-            call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
-            self.predict_as(ts.getARKIMEXType())
-            self.context["middle"] = STAGE_PREDICTOR_SETTINGS.middle
-        call("TSSetIFunction", ts.handle, 0, residual.address, context)
-        call("TSSetIJacobian", ts.handle, B, B, residual_jacobian.address, context)
-        call("TSSetApplicationContext", ts.handle, context)
-        call("TSSetPreStep", ts.handle, begin_step.address)
+            call_petsc("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
+            self.set_extrapolation_points(ts.getARKIMEXType())
+            self.context["middle"] = STAGE_PREDICTOR_SETTINGS.matrix_time_fraction
+        call_petsc("TSSetIFunction", ts.handle, 0, residual.address, context)
+        call_petsc("TSSetIJacobian", ts.handle, B, B, residual_jacobian.address, context)
+        call_petsc("TSSetApplicationContext", ts.handle, context)
+        call_petsc("TSSetPreStep", ts.handle, begin_step.address)
         if snes.getType() == "shell":
             self._solve_stages_of(ts, snes, matrix)
         else:
-            call("SNESSetConvergenceTest", snes.handle, newton_test.address, context, 0)
+            call_petsc("SNESSetConvergenceTest", snes.handle, test_newton_convergence.address, context, 0)
 
     def _solve_stages_of(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
         objects = ts, matrix, ksp, *self._vectors
-        self._set({name: entry.handle for name, entry in zip(HANDLES, objects, strict=True)})
+        self._set_context_fields(
+            {name: entry.handle for name, entry in zip(PETSC_HANDLE_FIELDS, objects, strict=True)}
+        )
         self.context["most_iterations"] = snes.getTolerances()[3]
-        call("SNESShellSetContext", snes.handle, self.context.ctypes.data)
-        call("SNESShellSetSolve", snes.handle, solve_stage.address)
+        call_petsc("SNESShellSetContext", snes.handle, self.context.ctypes.data)
+        call_petsc("SNESShellSetSolve", snes.handle, solve_stage.address)
 
     def destroy(self) -> None:
         """Frees the stored steps and the PETSc vectors."""

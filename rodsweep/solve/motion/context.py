@@ -12,7 +12,7 @@ from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import SIDE_COLUMNS
-from ..backend.c_functions import double_array_at, floats, integers
+from ..backend.c_functions import double_array_at, doubles_at, integers_at
 from .time_scheme import EXTRAPOLATION_POINTS
 
 CONSTANTS_PER_JUMP_SIDE = len(SIDE_COLUMNS)
@@ -25,81 +25,96 @@ MAX_STAGE_POINTS = max(
 )
 """Maximum number of stored stages through which the prediction of a stage is extrapolated."""
 FLOAT = "<f8"
-WHOLE = "<i8"
-ROD = (*(name for name in NodalRod._fields if name not in ("unknown_velocities", "law")), "roots", "crushed")
-"""Fields of `CONTEXT` with the addresses of the integrated rod's arrays. `roots`: square roots of the
+INTEGER = "<i8"
+ROD_ARRAY_FIELDS = (
+    *(name for name in NodalRod._fields if name not in ("unknown_velocities", "law")),
+    "roots",
+    "crushed",
+)
+"""Fields of `CONTEXT_DTYPE` with the addresses of the integrated rod's arrays. `roots`: square roots of the
 compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
-ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Fields of `CONTEXT` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns, unknowns);
-the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,), and states, (2
-MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of each stage,
+WORKSPACE_ARRAY_FIELDS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
+"""Fields of `CONTEXT_DTYPE` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns,
+unknowns); the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,), and states,
+(2 MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of each stage,
 (MAX_STAGES, MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
-HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
-"""Fields of `CONTEXT` with the handles of PETSc objects."""
-CONTEXT = np.dtype(
+PETSC_HANDLE_FIELDS = ("ts", "matrix", "ksp", "residual", "correction")
+"""Fields of `CONTEXT_DTYPE` with the handles of PETSc objects."""
+CONTEXT_DTYPE = np.dtype(
     [
-        *((name, WHOLE) for name in (*NodeMatrices._fields, *ROD, *ARRAYS, *HANDLES)),
-        ("nodes", WHOLE),  # including the tip
-        ("components", WHOLE),  # of a stress
-        ("unknowns", WHOLE),
-        ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
+        *(
+            (name, INTEGER)
+            for name in (
+                *NodeMatrices._fields,
+                *ROD_ARRAY_FIELDS,
+                *WORKSPACE_ARRAY_FIELDS,
+                *PETSC_HANDLE_FIELDS,
+            )
+        ),
+        ("nodes", INTEGER),  # including the tip
+        ("components", INTEGER),  # of a stress
+        ("unknowns", INTEGER),
+        ("matrix_due", INTEGER),  # UP_TO_DATE, AT_BASE or AT_ITERATE
         ("shift", FLOAT),  # shift of the last matrix
-        ("last_matrix", WHOLE),  # handle of the last matrix
-        ("matrix_state", WHOLE),  # PETSc's state number of this matrix, which increases with every change
-        ("factorisations", WHOLE),  # number of LU factorisations so far, for tests
+        ("last_matrix", INTEGER),  # handle of the last matrix
+        ("matrix_state", INTEGER),  # PETSc's state number of this matrix, which increases with every change
+        ("factorisations", INTEGER),  # number of LU factorisations so far, for tests
         ("contraction", FLOAT),  # ratio of successive steps of Newton's method
-        ("measured", WHOLE),  # whether the contraction was measured with the present matrix
-        ("growing", WHOLE),  # number of successive growing Newton steps
+        ("measured", INTEGER),  # whether the contraction was measured with the present matrix
+        ("growing", INTEGER),  # number of successive growing Newton steps
         ("last_step", FLOAT),  # 2-norm of the last Newton step
         ("small_error", FLOAT),  # 2-norm of an acceptable error
         ("rounding", FLOAT),  # 2-norm of the largest Newton step that rounding errors cause
-        ("most_iterations", WHOLE),
-        ("without_rate", WHOLE),  # whether the residual omits f
+        ("most_iterations", INTEGER),
+        ("without_rate", INTEGER),  # whether the residual omits f
         ("time", FLOAT),  # time of the last residual
-        ("current", WHOLE),  # 0 or 1: half of `times` and `states` for this step
-        ("stages", WHOLE),  # number of known stages of this step
-        ("steps", WHOLE),  # number of known steps before this one, at most 1
+        ("current", INTEGER),  # 0 or 1: half of `times` and `states` for this step
+        ("stages", INTEGER),  # number of known stages of this step
+        ("steps", INTEGER),  # number of known steps before this one, at most 1
         ("length", FLOAT),  # length of this step, in tau2
         ("middle", FLOAT),  # time at which the matrix is evaluated, as a fraction of the step
-        ("rows", WHOLE),  # address of the stored steps, a row (time, state) each, allocated by compiled code
-        ("stored", WHOLE),  # number of stored steps
-        ("capacity", WHOLE),  # number of steps for which memory is allocated
-        ("law", WHOLE),  # number of the constitutive law
-        ("jump_count", WHOLE),  # number of nodes at which the material jumps
-        ("left", WHOLE),  # whether the rod has left the model
-        ("error", WHOLE),  # PETSc's error code inside a stage
-        ("outputs", WHOLE, (3,)),  # output arguments of PETSc's functions
+        (
+            "rows",
+            INTEGER,
+        ),  # address of the stored steps, a row (time, state) each, allocated by compiled code
+        ("stored", INTEGER),  # number of stored steps
+        ("capacity", INTEGER),  # number of steps for which memory is allocated
+        ("law", INTEGER),  # number of the constitutive law
+        ("jump_count", INTEGER),  # number of nodes at which the material jumps
+        ("left", INTEGER),  # whether the rod has left the model
+        ("error", INTEGER),  # PETSc's error code inside a stage
+        ("outputs", INTEGER, (3,)),  # output arguments of PETSc's functions
     ]
 )
 """Record type of the argument `context` of every callback."""
-CONTEXT_FIELDS: Mapping[str, Any] = CONTEXT.fields or {}
-OUTPUTS, MATRIX_STATE = (CONTEXT_FIELDS[name][1] for name in ("outputs", "matrix_state"))
-"""Offsets, in bytes, of the fields of `CONTEXT` into which PETSc's functions write."""
+CONTEXT_FIELDS: Mapping[str, Any] = CONTEXT_DTYPE.fields or {}
+OUTPUTS_OFFSET, MATRIX_STATE_OFFSET = (CONTEXT_FIELDS[name][1] for name in ("outputs", "matrix_state"))
+"""Offsets, in bytes, of the fields of `CONTEXT_DTYPE` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 """Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the present
 iterate of Newton's method."""
 
 
-def arrays_of(beam: Beam) -> dict[str, Array]:
-    """Arrays of the rod `beam` by the names in `ROD`; the shapes differ."""
-    own = beam.nodal._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
-    return {name: own[name] for name in ROD}
+def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:
+    """Arrays of the rod `beam` by the names in `ROD_ARRAY_FIELDS`; the shapes differ."""
+    own = beam.nodal_rod._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
+    return {name: own[name] for name in ROD_ARRAY_FIELDS}
 
 
 @compiled
 def rod_of(c: Any) -> NodalRod:
     d = c.components
     m = c.nodes
-    rest = double_array_at(c.rest, (d, m))
+    rest = double_array_at(c.rest_strain, (d, m))
     compliance = double_array_at(c.compliance, (d, m))
     drag = double_array_at(c.drag, (d, m))
     mobility = double_array_at(c.mobility, (d, m))
-    second = double_array_at(c.second, (d, m, m))
-    none = integers(c.rest, 0)
-    jumps = integers(c.jumps, c.jump_count)
-    sides = double_array_at(c.sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
-    tip_stress = floats(c.tip_stress, d)
+    second = double_array_at(c.mobility_laplacian, (d, m, m))
+    none = integers_at(c.rest_strain, 0)
+    jumps = integers_at(c.jumps, c.jump_count)
+    sides = double_array_at(c.jump_sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
+    tip_stress = doubles_at(c.tip_stress, d)
     return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
 
 
@@ -108,17 +123,19 @@ def matrices_of(c: Any) -> NodeMatrices:
     all_nodes = (c.nodes, c.nodes)
     D = double_array_at(c.D, all_nodes)
     D_transposed = double_array_at(c.D_transposed, all_nodes)
-    return NodeMatrices(D, D_transposed, double_array_at(c.weak, all_nodes), floats(c.weights, c.nodes))
+    return NodeMatrices(
+        D, D_transposed, double_array_at(c.weak_derivative, all_nodes), doubles_at(c.weights, c.nodes)
+    )
 
 
 @compiled
-def roots_of(c: Any) -> Any:
+def sqrt_compliance_of(c: Any) -> Any:
     return double_array_at(c.roots, (c.components, c.nodes))
 
 
 @compiled
 def times_of(c: Any) -> Any:
-    return floats(c.times, 2 * MAX_STAGES)
+    return doubles_at(c.times, 2 * MAX_STAGES)
 
 
 @compiled

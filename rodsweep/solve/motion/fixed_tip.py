@@ -25,7 +25,7 @@ from ...discretization.elements.mesh import shape_from_strains
 class FixedTipSettings:
     """Settings of the rod that is bent until its tip is at a given point."""
 
-    reach: float = 0.98
+    max_tip_distance: float = 0.98
     """Largest distance of the tip from the clamp, divided by the length of the straight rod: at 1 the rod
     cannot be bent."""
     first_angle: float = 0.8
@@ -38,7 +38,7 @@ class FixedTipSettings:
     last target reached."""
     max_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
-    placed: float = 1e-10
+    target_tolerance: float = 1e-10
     """Tolerance of Newton's method: distance of the tip from its target, in L."""
     largest_turn: float = 1.0
     """Newton's method fails if a Newton step changes theta by more than this, in rad: a longer step may lead
@@ -51,24 +51,23 @@ FIXED_TIP_SETTINGS = FixedTipSettings()
 def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
 
-    A target beyond `FixedTipSettings.reach` is moved towards the clamp. If Newton's method fails on the path
-    of targets, the state for the last target reached is returned.
-    """
-    bending = _Bending(beam)
+    A target beyond `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails
+    on the path of targets, the state for the last target reached is returned."""
+    bending = _BentRod(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
     Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.positions)
-    first = bending.tip(Pi)
+    first = bending.tip_position(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
-    end = np.array([min(hypot(x, y), FIXED_TIP_SETTINGS.reach * bending.length), atan2(y, x)])
+    end = np.array([min(hypot(x, y), FIXED_TIP_SETTINGS.max_tip_distance * bending.length), atan2(y, x)])
     force = np.zeros(2)
     reached = 0.0
     step = FIXED_TIP_SETTINGS.first_step
     while reached < 1 and step > FIXED_TIP_SETTINGS.least_step:
         share = min(1.0, reached + step)
         radius, angle = start + share * (end - start)
-        found = bending.placed(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
+        found = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
         if found is None:
             step /= 2
         else:
@@ -77,13 +76,13 @@ def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
     return bending.state(Pi)
 
 
-class _Bending:
+class _BentRod:
     """Bending of a rod with fixed stretch and shear: position of the tip as a function of Pi. length: length
     of the straight rod, in L."""
 
     def __init__(self, beam: Beam) -> None:
         self.mesh = beam.mesh
-        self._beam = beam
+        self._straight_beam = beam
         self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
         size = beam.mesh.nodes + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
@@ -93,16 +92,16 @@ class _Bending:
         """Matrix from Pi to theta, both at all nodes; at a jump of the material the mean of both values of Pi
         is used."""
 
-    def tip(self, Pi: Array) -> Array:
+    def tip_position(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""
-        end: Array = self._beam.tip(self.state(Pi))[:2]
+        end: Array = self._straight_beam.tip_coordinates(self.state(Pi))[:2]
         return end
 
     def state(self, Pi: Array) -> Array:
         """The state z, (unknowns,), for curvatures Pi at all nodes, (nodes + 1,)."""
-        return self._beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
+        return self._straight_beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
-    def placed(self, Pi: Array, force: Array, target: Array) -> tuple[Array, Array] | None:
+    def newton_to_target(self, Pi: Array, force: Array, target: Array) -> tuple[Array, Array] | None:
         """Returns (Pi, force), (nodes + 1,) and (2,): the curvatures and the force for which the tip is at
         the point `target`, (2,), by Newton's method from `Pi` and `force`; None if Newton's method fails."""
         size = len(Pi)
@@ -114,14 +113,14 @@ class _Bending:
             matrix[:size, :size] = np.diag(weights) - second
             matrix[:size, size:] = -first.T
             matrix[size:, :size] = first
-            misplaced = target - self.tip(Pi)
+            misplaced = target - self.tip_position(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
             if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
-            if np.abs(misplaced).max() < FIXED_TIP_SETTINGS.placed:
+            if np.abs(misplaced).max() < FIXED_TIP_SETTINGS.target_tolerance:
                 return Pi, force
         return None
 

@@ -17,10 +17,10 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
-from ..backend.c_functions import call
+from ..backend.c_functions import call_petsc
 from ..backend.petsc import PETSc
 from ..backend.solver_pools import LruPool
-from .callbacks import Workspace
+from .callbacks import CallbackWorkspace
 from .step_record import end_step, take_steps
 from .time_scheme import TimeScheme
 
@@ -50,7 +50,7 @@ class IntegratorSettings:
     relaxation_tolerance: float = 1e-3
     """Relative local error per time step of the run that relaxes the fast components (see
     `relax_fast_components`)."""
-    kept: int = 8
+    max_pooled_integrators: int = 8
     """Maximum number of integrators in the pool, which serve further runs with the same mesh and scheme."""
 
 
@@ -65,7 +65,7 @@ RELAXATION = TimeScheme(
 
 class RunEnding(IntEnum):
     """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
-    `RunLimit.reached`. too_many_steps: `RunLimit.max_steps`."""
+    `RunLimit.is_reached`. too_many_steps: `RunLimit.max_steps`."""
 
     reached = 0
     stopped = 1
@@ -90,7 +90,7 @@ class RunLimit:
     """Conditions that end a run early: a step ends at a state z for which `reached(z)` is true, or
     `max_steps` steps are made."""
 
-    reached: Callable[[Array], bool] | None = None
+    is_reached: Callable[[Array], bool] | None = None
     max_steps: int = INTEGRATOR_SETTINGS.max_steps
 
 
@@ -102,14 +102,14 @@ class Integrator:
 
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
-        self.workspace = Workspace(mesh)
+        self.workspace = CallbackWorkspace(mesh)
         unknowns = plane_layout(mesh.nodes).unknowns
         self.vector = PETSc.Vec().createSeq(unknowns, comm=PETSc.COMM_SELF)
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()
         self.matrix.assemble()
         self.ts = self._create()
-        self.broken = False
+        self.is_broken = False
         self._limit = UNLIMITED
 
     def _create(self) -> "PETSc.TS":
@@ -134,14 +134,14 @@ class Integrator:
         finally:
             for name in ours:  # the remaining options are the user's, and are recorded as such
                 database.delValue(name)
-        self.workspace.attach(ts, self.matrix)
+        self.workspace.register_callbacks(ts, self.matrix)
         return ts
 
     def _stop_at_limit(self, ts: "PETSc.TS") -> None:
-        """Post-step function of a run with a `RunLimit.reached`: stores the step, and ends the run at the
+        """Post-step function of a run with a `RunLimit.is_reached`: stores the step, and ends the run at the
         limit."""
         end_step.ctypes(ts.handle)
-        if self._limit.reached is not None and self._limit.reached(self.vector.array_r.copy()):
+        if self._limit.is_reached is not None and self._limit.is_reached(self.vector.array_r.copy()):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
     def run(
@@ -161,8 +161,8 @@ class Integrator:
         size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
-        tolerance = scheme.newton * scheme.tolerance * size
-        self.workspace.prepare(beam, tolerance, INTEGRATOR_SETTINGS.stage_rounding * size)
+        tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * size
+        self.workspace.set_rod_and_tolerances(beam, tolerance, INTEGRATOR_SETTINGS.stage_rounding * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
@@ -170,8 +170,8 @@ class Integrator:
         ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_share * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
-        if limit.reached is None:
-            call("TSSetPostStep", ts.handle, end_step.address)
+        if limit.is_reached is None:
+            call_petsc("TSSetPostStep", ts.handle, end_step.address)
         else:
             ts.setPostStep(self._stop_at_limit)
         message = ""
@@ -179,7 +179,7 @@ class Integrator:
             ts.solve(self.vector)
         except (PETSc.Error, SystemError) as error:
             message = str(error.__cause__ or error).splitlines()[-1]
-            self.broken = True  # after an error inside PETSc its objects are unusable
+            self.is_broken = True  # after an error inside PETSc its objects are unusable
         rows = np.concatenate([[np.append(0.0, z)], take_steps(self.workspace.context)])
         times = np.ascontiguousarray(rows[:, 0])
         states = np.ascontiguousarray(rows[:, 1:])
@@ -208,7 +208,7 @@ class Integrator:
 
 
 _integrators: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(
-    lambda key: Integrator(*key), INTEGRATOR_SETTINGS.kept
+    lambda key: Integrator(*key), INTEGRATOR_SETTINGS.max_pooled_integrators
 )
 
 
@@ -216,14 +216,14 @@ def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
     """The pooled integrator for `mesh` and `scheme`; replaced by a new integrator after an error inside
     PETSc."""
     key = mesh, scheme
-    if _integrators.get(key).broken:
-        _integrators.drop(key)
+    if _integrators.get(key).is_broken:
+        _integrators.destroy_object(key)
     return _integrators.get(key)
 
 
 def forget_integrators() -> None:
     """Destroys all pooled integrators, after an error or a change of PETSc options."""
-    _integrators.clear()
+    _integrators.destroy_all()
 
 
 def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:

@@ -32,12 +32,12 @@ def leading_mode(beam: Beam) -> LeadingMode:
     decoupled."""
     layout = beam.layout
     rest = np.zeros(layout.unknowns)
-    J = layout.transverse(layout.transverse(beam.jacobian(rest)).T).T
+    J = layout.transverse_unknowns(layout.transverse_unknowns(beam.jacobian(rest)).T).T
     values, vectors = np.linalg.eig(J)
     # The second key selects the member of a complex pair with Im w > 0.
     k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknowns, complex)
-    layout.transverse(z)[:] = vectors[:, k]
+    layout.transverse_unknowns(z)[:] = vectors[:, k]
     # The tip's y is linear in z about the straight rod, so the tip's 'velocity' along z is its deflection.
     tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))
     return LeadingMode(complex(values[k]), z / tip)

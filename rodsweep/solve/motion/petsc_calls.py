@@ -15,38 +15,38 @@ from ..backend.c_functions import INT, LIBRARY, POINTER
 ENUM = types.int32
 
 
-def _external(name: str, *arguments: Any) -> Any:
+def _int_function(name: str, *arguments: Any) -> Any:
     """The libpetsc function `int name(arguments)` for compiled code. Compiled code that calls a function of
     this type can be cached on disk; code that calls a ctypes function cannot.
     """
-    return _found(name, typing.signature(types.int32, *arguments))
+    return _compiled_symbol(name, typing.signature(types.int32, *arguments))
 
 
-def _found(name: str, signature: Any) -> Any:
+def _compiled_symbol(name: str, signature: Any) -> Any:
     binding.add_symbol(name, ctypes.cast(getattr(LIBRARY, name), ctypes.c_void_p).value)
     return types.ExternalFunction(name, signature)
 
 
-read_array = _external("VecGetArrayRead", POINTER, POINTER)
-release_read = _external("VecRestoreArrayRead", POINTER, POINTER)
-write_array = _external("VecGetArray", POINTER, POINTER)
-release_write = _external("VecRestoreArray", POINTER, POINTER)
+read_array = _int_function("VecGetArrayRead", POINTER, POINTER)
+release_read = _int_function("VecRestoreArrayRead", POINTER, POINTER)
+write_array = _int_function("VecGetArray", POINTER, POINTER)
+release_write = _int_function("VecRestoreArray", POINTER, POINTER)
 
-time_of = _external("TSGetTime", POINTER, POINTER)
-step_of = _external("TSGetTimeStep", POINTER, POINTER)
-solution_of = _external("TSGetSolution", POINTER, POINTER)
-context_of_ts = _external("TSGetApplicationContext", POINTER, POINTER)
+time_of = _int_function("TSGetTime", POINTER, POINTER)
+step_of = _int_function("TSGetTimeStep", POINTER, POINTER)
+solution_of = _int_function("TSGetSolution", POINTER, POINTER)
+context_of_ts = _int_function("TSGetApplicationContext", POINTER, POINTER)
 
-set_ts_reason = _external("TSSetConvergedReason", POINTER, ENUM)
+set_ts_reason = _int_function("TSSetConvergedReason", POINTER, ENUM)
 
-context_of_snes = _external("SNESShellGetContext", POINTER, POINTER)
-stage_residual = _external("SNESTSFormFunction", POINTER, POINTER, POINTER, POINTER)
-stage_matrix = _external("SNESTSFormJacobian", POINTER, POINTER, POINTER, POINTER, POINTER)
-right_side_of = _external("SNESGetRhs", POINTER, POINTER)
-set_reason = _external("SNESSetConvergedReason", POINTER, ENUM)
-set_iterations = _external("SNESSetIterationNumber", POINTER, INT)
+context_of_snes = _int_function("SNESShellGetContext", POINTER, POINTER)
+stage_residual = _int_function("SNESTSFormFunction", POINTER, POINTER, POINTER, POINTER)
+stage_matrix = _int_function("SNESTSFormJacobian", POINTER, POINTER, POINTER, POINTER, POINTER)
+right_side_of = _int_function("SNESGetRhs", POINTER, POINTER)
+set_reason = _int_function("SNESSetConvergedReason", POINTER, ENUM)
+set_iterations = _int_function("SNESSetIterationNumber", POINTER, INT)
 
-solve_linear = _external("KSPSolve", POINTER, POINTER, POINTER)
+solve_linear = _int_function("KSPSolve", POINTER, POINTER, POINTER)
 
-resized_memory = _found("realloc", typing.signature(POINTER, POINTER, POINTER))
-free_memory = _found("free", typing.signature(types.void, POINTER))
+resized_memory = _compiled_symbol("realloc", typing.signature(POINTER, POINTER, POINTER))
+free_memory = _compiled_symbol("free", typing.signature(types.void, POINTER))

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
-from .context import AT_BASE, CONTEXT, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS, states_of, times_of
+from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
+from .context import AT_BASE, CONTEXT_DTYPE, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS_OFFSET, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
 from .time_scheme import EXTRAPOLATION_POINTS
 
@@ -30,7 +30,7 @@ class StagePredictorSettings(CompiledSettings):
     """Stages are extrapolated only if this step is at most `largest_step_ratio` times as long as the last
     step. With 1, no growing step would be extrapolated: Newton's method would stop too early at PETSc's
     prediction, with errors of a motion five times as large."""
-    middle: float = 0.5
+    matrix_time_fraction: float = 0.5
     """Time at which the state for Newton's matrix is predicted, as a fraction of the step; 0 (the start) for
     methods of a single stage."""
     ranges: ClassVar = {"largest_step_ratio": (1.0, inf)}
@@ -42,7 +42,7 @@ NO_POINT = -1
 """Value of the unused entries in the array of extrapolation points."""
 
 
-def points_of(variant: str) -> NDArray[np.int64]:
+def extrapolation_points_of(variant: str) -> NDArray[np.int64]:
     """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
     (MAX_STAGES, MAX_STAGE_POINTS); unused entries are NO_POINT.
 
@@ -62,13 +62,13 @@ def begin_step(ts: int) -> int:
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
-    c = record_at(context, CONTEXT)
-    at = context + OUTPUTS
-    outputs = integers(at, 3)
-    real = floats(at, 3)
+    c = record_at(context, CONTEXT_DTYPE)
+    at = context + OUTPUTS_OFFSET
+    outputs = integers_at(at, 3)
+    real = doubles_at(at, 3)
     times = times_of(c)
     states = states_of(c)
-    base = floats(c.base, c.unknowns)
+    base = doubles_at(c.base, c.unknowns)
     last = c.current * MAX_STAGES
     # The two halves of the array take turns: stages of this step and of the last step.
     c.current = 1 - c.current
@@ -78,7 +78,7 @@ def begin_step(ts: int) -> int:
     solution_of(ts, at)
     solution = outputs[0]
     read_array(solution, at)
-    states[now] = floats(outputs[0], c.unknowns)
+    states[now] = doubles_at(outputs[0], c.unknowns)
     release_read(solution, at)
     step_of(ts, at)
     c.length = real[0]
@@ -110,12 +110,14 @@ def extrapolate(points: NDArray[np.int64], times: Array, states: Array, t: float
 
 
 @compiled
-def predict(c: Any, guess: Array) -> None:
+def predict_stage(c: Any, guess: Array) -> None:
     """Writes the predicted stage at time `c.time` into `guess`, (unknowns,); `guess` is unchanged if no
-    extrapolation is possible. c: context record (`CONTEXT`)."""
+    extrapolation is possible. c: context record (`CONTEXT_DTYPE`)."""
     if c.stages >= MAX_STAGES or not c.steps:
         return
-    points = integers(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[c.stages]
+    points = integers_at(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[
+        c.stages
+    ]
     points = points[: np.sum(points != NO_POINT)]
     times = times_of(c)
     now = c.current * MAX_STAGES

@@ -17,17 +17,17 @@ from ...arrays import Array
 from ...discretization.stress.rates import write_rate
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..backend.c_functions import INT, POINTER, c_function, floats, integers, pointer, record_at
+from ..backend.c_functions import INT, POINTER, c_function, doubles_at, integers_at, pointer, record_at
 from .context import (
     AT_BASE,
     AT_ITERATE,
-    CONTEXT,
+    CONTEXT_DTYPE,
     MAX_STAGES,
-    OUTPUTS,
+    OUTPUTS_OFFSET,
     UP_TO_DATE,
     matrices_of,
     rod_of,
-    roots_of,
+    sqrt_compliance_of,
     states_of,
 )
 from .petsc_calls import (
@@ -44,7 +44,7 @@ from .petsc_calls import (
     step_of,
     write_array,
 )
-from .predictor import predict, store_stage
+from .predictor import predict_stage, store_stage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,12 +54,12 @@ class StageNewtonSettings(CompiledSettings):
 
     new_matrix_contraction: float = 0.3
     """If the contraction exceeds this, a new matrix is computed at the present iterate."""
-    stagnant: float = 0.5
+    stagnant_contraction: float = 0.5
     """If the contraction exceeds this and the Newton steps are as small as rounding error, the iteration ends
     as converged."""
-    diverging: float = 2.0
+    growing_step_ratio: float = 2.0
     """A Newton step is growing if the contraction exceeds this."""
-    max_growing: int = 2
+    max_growing_steps: int = 2
     """Number of successive growing Newton steps after which the iteration has failed."""
     min_contraction_ratio: float = 0.3
     """Smallest ratio of the new contraction to the stored contraction, so that one exceptionally small step
@@ -71,7 +71,7 @@ class StageNewtonSettings(CompiledSettings):
     """Growing Newton steps end the iteration only after more than this number of iterations."""
 
 
-STAGE_NEWTON = StageNewtonSettings()
+STAGE_NEWTON_SETTINGS = StageNewtonSettings()
 
 ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 """Values of PETSc's SNESConvergedReason."""
@@ -80,12 +80,12 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 @compiled
 def linearise_at_start(c: Any) -> None:
     """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
-    of the step. c: context record (`CONTEXT`).
+    of the step. c: context record (`CONTEXT_DTYPE`).
 
     The last matrix may belong to a diverged iterate and have entries that are not finite; with such a matrix
     all shorter steps would fail.
     """
-    floats(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
+    doubles_at(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
     c.matrix_due = AT_BASE
 
 
@@ -106,31 +106,33 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        c.contraction = max(STAGE_NEWTON.min_contraction_ratio * c.contraction if c.measured else 0.0, theta)
+        least = STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0
+        c.contraction = max(least, theta)
         c.measured = 1
-    c.growing = c.growing + 1 if theta > STAGE_NEWTON.diverging else 0
+    c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.growing_step_ratio else 0
     c.last_step = dx
     # The contraction of an earlier stage is a guess for this one.
-    unsure = STAGE_NEWTON.first_iteration_safety if iteration == 1 else 1.0
+    unsure = STAGE_NEWTON_SETTINGS.first_iteration_safety if iteration == 1 else 1.0
     small = dx * min(1.0, unsure * c.contraction) <= c.small_error
-    if small or (theta > STAGE_NEWTON.stagnant and iteration > 2 and dx <= c.rounding):
+    if small or (theta > STAGE_NEWTON_SETTINGS.stagnant_contraction and iteration > 2 and dx <= c.rounding):
         return STEP_SMALL
-    if c.growing >= STAGE_NEWTON.max_growing and iteration > STAGE_NEWTON.iterations_before_giving_up:
+    may_give_up = iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
+    if may_give_up and c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps:
         linearise_at_start(c)
         return NOT_CONTRACTING
-    if theta > STAGE_NEWTON.new_matrix_contraction:
+    if theta > STAGE_NEWTON_SETTINGS.new_matrix_contraction:
         c.matrix_due = AT_ITERATE
     return ITERATING
 
 
 @c_function(POINTER, INT, types.float64, types.float64, types.float64, POINTER, POINTER)
-def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
+def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
 ) -> int:
     """Stopping test for PETSc's Newton method, called after every iteration: writes the SNESConvergedReason
     to the address `reason`. iteration: number of iterations made. dx, size: 2-norms of the Newton step and of
     the residual."""
-    c = record_at(context, CONTEXT)
+    c = record_at(context, CONTEXT_DTYPE)
     answer = numba.carray(pointer(reason), (1,), np.int32)
     answer[0] = ITERATING
     if not np.isfinite(size):
@@ -142,7 +144,7 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
 
 
 @compiled
-def state_equation(c: Any, at: int, snes: int, X: int) -> None:
+def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
     """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores it in
     the context record `c`. at: address of scratch memory, into which PETSc writes
     the addresses of three arrays. snes: handle of the stage's solver. X: handle of a vector
@@ -152,7 +154,7 @@ def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     PETSc passes with the matrix, therefore determine the equation.
     """
     n = c.unknowns
-    outputs = integers(at, 3)
+    outputs = integers_at(at, 3)
     # Without f, PETSc's stage residual is affine in x: one evaluation yields its constant.
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
@@ -160,9 +162,9 @@ def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     c.error |= stage_matrix(snes, X, c.matrix, c.matrix, c.ts)
     read_array(X, at)
     read_array(c.residual, at + 8)
-    x = floats(outputs[0], n)
-    residual = floats(outputs[1], n)
-    constant = floats(c.constant, n)
+    x = doubles_at(outputs[0], n)
+    residual = doubles_at(outputs[1], n)
+    constant = doubles_at(c.constant, n)
     for i in range(n):
         constant[i] = residual[i] - c.shift * x[i]
     release_read(X, at)
@@ -171,12 +173,12 @@ def state_equation(c: Any, at: int, snes: int, X: int) -> None:
     right_side = outputs[0]
     if right_side:
         read_array(right_side, at)
-        constant -= floats(outputs[0], n)
+        constant -= doubles_at(outputs[0], n)
         release_read(right_side, at)
 
 
 @compiled
-def norm(x: Array) -> float:
+def euclidean_norm(x: Array) -> float:
     """2-norm of x, (unknowns,)."""
     total = 0.0
     for value in x:
@@ -190,22 +192,22 @@ def newton_step(c: Any, at: int, X: int) -> float:
     context record. at: address of scratch memory, into which PETSc writes the addresses of three arrays. X:
     handle of the stage's vector."""
     n = c.unknowns
-    outputs = integers(at, 3)
-    constant = floats(c.constant, n)
-    f = floats(c.rates, n)
+    outputs = integers_at(at, 3)
+    constant = doubles_at(c.constant, n)
+    f = doubles_at(c.rates, n)
     write_array(X, at)
     write_array(c.residual, at + 8)
-    x = floats(outputs[0], n)
-    residual = floats(outputs[1], n)
-    write_rate(x, f, roots_of(c), rod_of(c), matrices_of(c))
+    x = doubles_at(outputs[0], n)
+    residual = doubles_at(outputs[1], n)
+    write_rate(x, f, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
     release_write(c.residual, at + 8)
     c.error |= solve_linear(c.ksp, c.residual, c.correction)
     read_array(c.correction, at + 16)
-    step = floats(outputs[2], n)
+    step = doubles_at(outputs[2], n)
     x -= step
-    size = norm(step)
+    size = euclidean_norm(step)
     release_read(c.correction, at + 16)
     release_write(X, at)
     return size
@@ -218,15 +220,15 @@ def solve_stage(snes: int, X: int) -> int:
     address = np.empty(1, np.int64)
     context_of_snes(snes, address.ctypes.data)
     context = address[0]
-    c = record_at(context, CONTEXT)
-    at = context + OUTPUTS
+    c = record_at(context, CONTEXT_DTYPE)
+    at = context + OUTPUTS_OFFSET
     step_of(c.ts, at)
-    if floats(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
-        c.length = floats(at, 1)[0]
+    if doubles_at(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
+        c.length = doubles_at(at, 1)[0]
         c.stages = 1
-    state_equation(c, at, snes, X)
+    read_stage_equation(c, at, snes, X)
     write_array(X, at)
-    predict(c, floats(integers(at, 1)[0], c.unknowns))
+    predict_stage(c, doubles_at(integers_at(at, 1)[0], c.unknowns))
     release_write(X, at)
     reason = ITERATING
     iteration = 0
@@ -239,7 +241,7 @@ def solve_stage(snes: int, X: int) -> int:
             linearise_at_start(c)
             reason = NOT_CONTRACTING
     read_array(X, at)
-    store_stage(c, floats(integers(at, 1)[0], c.unknowns))
+    store_stage(c, doubles_at(integers_at(at, 1)[0], c.unknowns))
     release_read(X, at)
     set_iterations(snes, iteration)
     set_reason(snes, reason)

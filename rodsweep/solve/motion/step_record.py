@@ -9,9 +9,9 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
-from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
+from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from ..backend.petsc import PETSc
-from .context import CONTEXT, OUTPUTS
+from .context import CONTEXT_DTYPE, OUTPUTS_OFFSET
 from .petsc_calls import (
     context_of_ts,
     free_memory,
@@ -43,10 +43,10 @@ CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 @compiled
 def store_step(c: Any, at: int, ts: int) -> int:
     """Stores time and state of `ts` as a row of the record, and returns PETSc's error code; ends the run if
-    h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT`). at: address for
+    h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT_DTYPE`). at: address for
     outputs."""
     n = c.unknowns
-    outputs = integers(at, 3)
+    outputs = integers_at(at, 3)
     if c.stored == c.capacity:
         # Doubling keeps the cost of copying proportional to the number of steps.
         c.capacity = max(2 * c.capacity, STEP_RECORD_SETTINGS.first_capacity)
@@ -57,15 +57,15 @@ def store_step(c: Any, at: int, ts: int) -> int:
     time_of(ts, at)
     solution_of(ts, at + 8)
     read_array(outputs[1], at + 16)
-    row = floats(c.rows + 8 * c.stored * (n + 1), n + 1)
-    z = floats(outputs[2], n)
-    row[0] = floats(at, 1)[0]
+    row = doubles_at(c.rows + 8 * c.stored * (n + 1), n + 1)
+    z = doubles_at(outputs[2], n)
+    row[0] = doubles_at(at, 1)[0]
     row[1:] = z
     release_read(outputs[1], at + 16)
     c.stored += 1
     # z1 is the first of three fields; h1 = 0 where z1 equals `crushed`.
     nodes = n // 3
-    crushed = floats(c.crushed, nodes)
+    crushed = doubles_at(c.crushed, nodes)
     for i in range(nodes):
         if row[1 + i] <= crushed[i] and not c.left:
             c.left = 1
@@ -79,16 +79,16 @@ def end_step(ts: int) -> int:
     address = np.empty(1, np.int64)
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
-    return store_step(record_at(context, CONTEXT), context + OUTPUTS, ts)
+    return store_step(record_at(context, CONTEXT_DTYPE), context + OUTPUTS_OFFSET, ts)
 
 
 @compiled
-def _kept_rows(address: int, rows: int, columns: int) -> Array:
-    return floats(address, rows * columns).reshape(rows, columns).copy()
+def _copied_rows(address: int, rows: int, columns: int) -> Array:
+    return doubles_at(address, rows * columns).reshape(rows, columns).copy()
 
 
 @compiled
-def _freed(address: int) -> None:
+def _free_address(address: int) -> None:
     free_memory(address)
 
 
@@ -98,7 +98,7 @@ def take_steps(context: Any) -> Array:
     address = int(context["rows"])
     kept = int(context["stored"])
     columns = int(context["unknowns"]) + 1
-    rows = _kept_rows(address, kept, columns) if kept else np.empty((0, columns))
-    _freed(address)
+    rows = _copied_rows(address, kept, columns) if kept else np.empty((0, columns))
+    _free_address(address)
     context["rows"] = context["stored"] = context["capacity"] = 0
     return rows

@@ -44,14 +44,14 @@ class TimeScheme:
     """Time scheme: `family` is PETSc's TS type, `variant` its sub-type (for bdf: its order).
 
     tolerance: local error per time step of each component of z, divided by the largest component of the
-    initial state. newton: Newton's method for a stage stops at the error newton * tolerance. equal_steps:
-    whether the step length is constant. prefix: prefix of the PETSc options that override the scheme.
-    """
+    initial state. newton_tolerance_ratio: Newton's method for a stage stops at the error
+    newton_tolerance_ratio * tolerance. equal_steps: whether the step length is constant. prefix: prefix of
+    the PETSc options that override the scheme."""
 
     family: str = "arkimex"
     variant: str = "5"
     tolerance: float = 5e-6
-    newton: float = 0.1
+    newton_tolerance_ratio: float = 0.1
     equal_steps: bool = False
     prefix: str = CYCLE_PREFIX
 

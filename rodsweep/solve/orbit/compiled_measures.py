@@ -8,15 +8,20 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.element_strains import write_element_strain_changes, write_element_strains
-from ...discretization.elements.periodic import hermite_columns, maxima, minima, series_samples_of_columns
+from ...discretization.elements.periodic import (
+    hermite_coefficients_of_columns,
+    series_maxima,
+    series_minima,
+    series_samples_of_columns,
+)
 from ...discretization.nodal_rod import NodalRod
-from ...discretization.plane import balance
+from ...discretization.plane import write_balance
 from ...discretization.state_layout import stress_index
-from ...discretization.stress.tip_motion import TipMatrices, tip_motion
+from ...discretization.stress.tip_motion import TipMatrices, write_tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from ...model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
-from .semidiscrete import Semidiscrete
+from .semidiscrete import SemidiscreteEquations
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: half a period later, a symmetric orbit
@@ -38,17 +43,17 @@ class TipPath(NamedTuple):
     """Path of the tip over a period, and strains, as trigonometric polynomials through the states at the time
     nodes.
 
-    strains: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with respect to
-    t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). coefficients: the `count` Fourier
-    coefficients of (x, y, theta) of the tip, (count, 3). samples: (x, y, theta) at equidistant times of the
-    period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least, largest: smallest and largest (x, y,
-    theta), (3,)."""
+    strains_and_rates: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with
+    respect to t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). tip_coefficients: the
+    `count` Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at
+    equidistant times of the period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least_tip_values,
+    largest_tip_values: smallest and largest (x, y, theta), (3,)."""
 
-    strains: Array
-    coefficients: Complex
-    samples: Array
-    least: Array
-    largest: Array
+    strains_and_rates: Array
+    tip_coefficients: Complex
+    tip_samples: Array
+    least_tip_values: Array
+    largest_tip_values: Array
 
 
 class OrbitMeans(NamedTuple):
@@ -63,31 +68,31 @@ class OrbitMeans(NamedTuple):
 
 
 @compiled_for_vectors
-def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
+def tip_path(states: Array, period: float, p: SemidiscreteEquations, m: TipMatrices) -> TipPath:
     """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
     period for a symmetric orbit, otherwise the period. period: in tau2. p: equations of the orbit. m: result
     of `tip_matrices`."""
-    size = len(p.matrices.weights)
-    order = len(m.ends) - 1
-    strains = np.empty((2, 3, len(states), len(m.lengths) * (order + 1)))
+    size = len(p.node_matrices.weights)
+    order = len(m.element_integrals) - 1
+    strains = np.empty((2, 3, len(states), len(m.element_lengths) * (order + 1)))
     tip = np.empty((len(states), 3))
     velocity = np.empty((len(states), 3))
     S = np.empty((3, len(states), size))
     rates = np.empty((3, len(states), size))
-    node_stresses(states, S)
-    strain_rates(states, rates, p)
+    write_node_stresses(states, S)
+    write_strain_rates(states, rates, p)
     rates *= period
     write_element_strains(S, p.rod, order, strains[0])
     write_element_strain_changes(S, rates, p.rod, order, strains[1])
-    tip_motion(strains[0], strains[1], m, tip, velocity)
+    write_tip_motion(strains[0], strains[1], m, tip, velocity)
     # For an orbit without symmetry the signs are 0, because its values cover the whole period.
-    c = hermite_columns(tip, velocity, REFLECTION_SIGNS * (p.parts - 1))
+    c = hermite_coefficients_of_columns(tip, velocity, REFLECTION_SIGNS * (p.period_parts - 1))
     samples = series_samples_of_columns(c, TIP_EXTREMUM_SETTINGS.oversampling * (len(c) - 1))
-    return TipPath(strains, c, samples, minima(c, samples), maxima(c, samples))
+    return TipPath(strains, c, samples, series_minima(c, samples), series_maxima(c, samples))
 
 
 @compiled_for_vectors
-def node_stresses(states: Array, out: Array) -> None:
+def write_node_stresses(states: Array, out: Array) -> None:
     """Writes the stresses S at all nodes of `states`, (K, n), into `out`, (3, K, nodes + 1)."""
     n = out.shape[2] - 1
     for a in range(len(out)):
@@ -103,10 +108,9 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
     """Size of each harmonic from the first, (count - 1,): square root of the sum of squared moduli over all
     columns of `values`.
 
-    values, slopes: as in `hermite_columns`. sign: factor by which every column changes in half a period of a
-    symmetric orbit; 0 for an orbit without symmetry.
-    """
-    c = hermite_columns(values, slopes, np.full(values.shape[1], sign))
+    values, slopes: as in `hermite_coefficients_of_columns`. sign: factor by which every column changes in
+    half a period of a symmetric orbit; 0 for an orbit without symmetry."""
+    c = hermite_coefficients_of_columns(values, slopes, np.full(values.shape[1], sign))
     sizes = np.zeros(len(c) - 1)
     for k in range(1, len(c)):
         for a in range(c.shape[1]):
@@ -115,30 +119,30 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 
 @compiled_for_vectors
-def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
+def power_means_and_least_stretch(stages: Array, weights: Array, p: SemidiscreteEquations) -> OrbitMeans:
     """Means and rms deviations of the powers over a period, and the smallest h1. stages: states at the
     stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of the orbit."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
-    nodes = len(p.matrices.weights) - 1
+    nodes = len(p.node_matrices.weights) - 1
     power = np.empty((2, K * s))
     mean = np.zeros(2)
     square = np.zeros(2)
-    powers(flat, power, p)
+    write_powers(flat, power, p)
     for a in range(2):
         for i in range(K * s):
-            mean[a] += weights[i % s] * p.lengths[i // s] * power[a, i]
+            mean[a] += weights[i % s] * p.interval_lengths[i // s] * power[a, i]
         for i in range(K * s):
             # In a second pass, because mean(P^2) - mean(P)^2 would cancel for a nearly constant power P.
-            square[a] += weights[i % s] * p.lengths[i // s] * (power[a, i] - mean[a]) ** 2
-    stretch = p.rod.rest[0, nodes]  # at the tip
+            square[a] += weights[i % s] * p.interval_lengths[i // s] * (power[a, i] - mean[a]) ** 2
+    stretch = p.rod.rest_strain[0, nodes]  # at the tip
     for i in range(K * s):
         for j in range(nodes):
             pull = flat[i, stress_index(0, j, nodes)]
-            stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
+            stretch = min(stretch, p.rod.rest_strain[0, j] + p.rod.compliance[0, j] * pull)
         # At a jump the node has a mean strain; the smaller of the stretches on the two sides is used.
         for j in range(len(p.rod.jumps)):
-            stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.sides[j], p.rod))
+            stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.jump_sides[j], p.rod))
     return OrbitMeans(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
 
 
@@ -146,7 +150,7 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> OrbitMeans:
 def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> float:
     """The smaller h1 of the two sides of a jump of the material at the node with the index `node`. state:
     (n,). sides: material constants on the two sides, (2, 7). rod: material at the nodes."""
-    n = rod.rest.shape[1] - 1
+    n = rod.rest_strain.shape[1] - 1
     q = LawUnknowns(state[stress_index(0, node, n)], state[stress_index(2, node, n)])
     a = unknowns_before_jump(rod.law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
@@ -154,35 +158,35 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 
 
 @compiled_for_vectors
-def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
+def write_strain_rates(states: Array, out: Array, p: SemidiscreteEquations) -> None:
     """Writes the strain rates dE/dt at all nodes of `states`, (m, n), into `out`, (3, m, nodes + 1); at the
     tip 0 is written. p: equations of the orbit."""
-    size = len(p.matrices.weights)
+    size = len(p.node_matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))
     for k in range(len(states)):
-        balance(states[k], V, G, p.rod, p.matrices)
+        write_balance(states[k], V, G, p.rod, p.node_matrices)
         for a in range(3):
             for i in range(size - 1):
-                out[a, k, i] = G[a, i] / p.matrices.weights[i]
+                out[a, k, i] = G[a, i] / p.node_matrices.weights[i]
             out[a, k, size - 1] = 0.0
 
 
 @compiled_for_vectors
-def powers(states: Array, out: Array, p: Semidiscrete) -> None:
+def write_powers(states: Array, out: Array, p: SemidiscreteEquations) -> None:
     """Writes two powers for `states`, (m, n), into `out`, (2, m): row 0, the power of the follower force,
     computed from the reaction at the tip; row 1, the power lost by drag. p: equations of the orbit."""
-    size = len(p.matrices.weights)
+    size = len(p.node_matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))
     c = p.rod
     for k in range(len(states)):
-        balance(states[k], V, G, c, p.matrices)
+        write_balance(states[k], V, G, c, p.node_matrices)
         gained = 0.0
         lost = 0.0
         for a in range(len(V)):
             gained -= c.tip_stress[a] * G[a, size - 1]
             for i in range(size):
-                lost += p.matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
+                lost += p.node_matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
         out[0, k] = gained
         out[1, k] = lost

@@ -16,13 +16,19 @@ from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.periodic import (
     hermite_coefficients,
-    hermite_columns,
+    hermite_coefficients_of_columns,
     series_samples,
     time_of_rise_through_mean,
 )
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.stress.tip_motion import tip_matrices
-from .compiled_measures import REFLECTION_SIGNS, harmonic_sizes, means, powers, tip_path
+from .compiled_measures import (
+    REFLECTION_SIGNS,
+    harmonic_sizes,
+    power_means_and_least_stretch,
+    tip_path,
+    write_powers,
+)
 from .orbit import Orbit
 
 
@@ -62,25 +68,25 @@ class CyclePath:
         self._ends = np.ascontiguousarray(orbit.regular_states)
         matrices = tip_matrices(grid)
         self._path = tip_path(self._ends, orbit.period, orbit.semidiscrete, matrices)
-        self.tip_coefficients = self._path.coefficients
-        self.tip_samples = self._path.samples
+        self.tip_coefficients = self._path.tip_coefficients
+        self.tip_samples = self._path.tip_samples
 
     @cached_property
     def strain_coefficients(self) -> Complex:
         """Fourier coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, elements (order +
         1))."""
-        K, size = self._path.strains.shape[2:]
-        values, slopes = self._path.strains.swapaxes(1, 2).reshape(2, K, 3 * size)
-        signs = np.repeat(REFLECTION_SIGNS if self.orbit.symmetric else np.zeros(3), size)
-        c: Complex = hermite_columns(values, slopes, signs)
+        K, size = self._path.strains_and_rates.shape[2:]
+        values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
+        signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)
+        c: Complex = hermite_coefficients_of_columns(values, slopes, signs)
         return c.reshape(len(c), 3, size)
 
     @cached_property
     def bending_harmonics(self) -> Array:
         """Size of each harmonic of the curvature Pi from the first, (count - 1,): square root of the sum of
         squared moduli over the nodes of all elements."""
-        values, slopes = self._path.strains[:, 2]
-        sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.symmetric)
+        values, slopes = self._path.strains_and_rates[:, 2]
+        sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
         return sizes
 
     def resampled_tip(self, count: int) -> Array:
@@ -91,8 +97,8 @@ class CyclePath:
     @cached_property
     def extrema(self) -> dict[str, float]:
         """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `Measures`, by name."""
-        least = self._path.least.tolist()
-        largest = self._path.largest.tolist()
+        least = self._path.least_tip_values.tolist()
+        largest = self._path.largest_tip_values.tolist()
         return {
             "tip_x_min": least[0],
             "tip_x_max": largest[0],
@@ -103,7 +109,9 @@ class CyclePath:
     @property
     def tip_y_min(self) -> float:
         """Smallest y of the tip, in L; for a symmetric orbit minus the largest y."""
-        return -self.extrema["tip_y_max"] if self.orbit.symmetric else float(self._path.least[1])
+        return (
+            -self.extrema["tip_y_max"] if self.orbit.is_symmetric else float(self._path.least_tip_values[1])
+        )
 
     @property
     def time_of_largest_y(self) -> float:
@@ -119,57 +127,61 @@ class CyclePath:
     def tip(self, samples: int) -> Array:
         """(x, y, theta) of the tip at `samples` equidistant times of a period from `start_phase`, (3,
         samples)."""
-        return self._sampled(self.tip_coefficients, samples).T
+        return self._series_from_start_phase(self.tip_coefficients, samples).T
 
-    def energy(self, samples: int) -> Array:
+    def energy_and_powers(self, samples: int) -> Array:
         """(elastic energy U, injected power, dissipated power) at `samples` equidistant times of a period
         from `start_phase`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
         theta = self.tip(samples)[2]
-        dx, dy, _ = self._sampled(times[:, None] * self.tip_coefficients, samples).T
+        dx, dy, _ = self._series_from_start_phase(times[:, None] * self.tip_coefficients, samples).T
         # Power of the follower force: F along -e1 of the tip, times the tip's velocity.
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
-        U = self.orbit.form.energy(self._ends)
+        U = self.orbit.form.elastic_energy(self._ends)
         power = np.empty((2, len(self._ends)))
-        powers(self._ends, power, self.orbit.semidiscrete)
+        write_powers(self._ends, power, self.orbit.semidiscrete)
         rates = (power[0] - power[1]) * period
-        if self.orbit.symmetric:
+        if self.orbit.is_symmetric:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             rates = np.tile(rates, 2)
         c = hermite_coefficients(U, rates)
-        U, change = self._sampled(np.stack([c, times[: len(c)] * c], axis=1), samples).T
+        U, change = self._series_from_start_phase(np.stack([c, times[: len(c)] * c], axis=1), samples).T
         # The energy balance holds to rounding error: dissipation is injection minus dU/dt.
         return np.stack([U, injection, injection - change])
 
     def shapes(self, count: int, nodes: int) -> Array:
         """(x, y, theta) of the rod at `count` equidistant times of a period from `start_phase` and at `nodes`
         Lobatto nodes, (3, count, nodes)."""
-        strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
+        strains = self._series_from_start_phase(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
-        return shape_from_strains(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
+        return shape_from_strains(
+            grid, np.ascontiguousarray(strains), np.zeros(3)
+        ) @ _matrix_to_lobatto_nodes(grid, nodes)
 
-    def _sampled(self, c: Complex, count: int) -> Array:
+    def _series_from_start_phase(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `start_phase`, (count,
         ...). c: Fourier coefficients c_k, (coefficients, ...)."""
         turns = np.exp(2j * np.pi * self.start_phase * np.arange(len(c)))
         return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _at_lobatto(grid: Mesh, nodes: int) -> Array:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _matrix_to_lobatto_nodes(grid: Mesh, nodes: int) -> Array:
     """Matrix, (nodes of `grid`, nodes): values at all nodes of the mesh `grid` times this matrix are the
     values at `nodes` Lobatto nodes of the rod."""
-    return grid.evaluation(lobatto_points(nodes)).T
+    return grid.evaluation_matrix(lobatto_points(nodes)).T
 
 
 def measures_of(path: CyclePath) -> Measures:
     """Scalar measures and harmonics of the orbit of `path`."""
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
-    mean = means(np.ascontiguousarray(orbit.states), orbit.method.weights, orbit.semidiscrete)
+    mean = power_means_and_least_stretch(
+        np.ascontiguousarray(orbit.states), orbit.collocation.weights, orbit.semidiscrete
+    )
     return Measures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,

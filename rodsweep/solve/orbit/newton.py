@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...watch import report
 from ..point import Unsolvable
-from .matrix.linearisation import Linearisation, largest_change
+from .matrix.linearisation import Linearisation, largest_relative_change
 from .matrix.workspace import NewtonWorkspace
 from .orbit import Orbit
 
@@ -48,12 +48,12 @@ class HasMultipliers(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ConvergedOrbit:
-    """Result of Newton's method. matrix: the last Newton matrix. distance: relative distance of `orbit` from
-    the iterate at which `matrix` was assembled."""
+    """Result of Newton's method. matrix: the last Newton matrix. matrix_distance: relative distance of
+    `orbit` from the iterate at which `matrix` was assembled."""
 
     orbit: Orbit
     matrix: HasMultipliers
-    distance: float
+    matrix_distance: float
 
     @property
     def workspace(self) -> NewtonWorkspace:
@@ -111,10 +111,10 @@ def newton(
     )
 
 
-def at_orbit(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
+def with_orbit_matrix(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
     """The orbit `found`, after one more Newton step if its matrix was assembled at a relative distance of
     more than `distance` from the orbit. parameter: as in `newton`."""
-    if found.distance <= distance:
+    if found.matrix_distance <= distance:
         return found
     return newton_step(found, parameter)
 
@@ -157,4 +157,4 @@ def multiplier_change(multipliers: Complex, others: Complex) -> float:
 def relative_change(orbit: Orbit, step: Array) -> float:
     """Largest relative change of n2, m3 and the period in the Newton step `step`, (N,): the largest change of
     each quantity, divided by the largest modulus of this quantity; inf if the step is not finite."""
-    return float(largest_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))
+    return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))

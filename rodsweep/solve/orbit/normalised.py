@@ -4,7 +4,7 @@ point.
 The values that change sign under the reflection grow as the square root of the distance from a Hopf point.
 Divided by the size of the orbit these values are smooth; the squared size grows linearly. The size is the
 norm of the bending moment at t = 0, and its definition contains no parameter. N: number of orbit values. r:
-arrays of the normalisation (`reflected`).
+arrays of the normalisation (`reflection_arrays`).
 """
 
 from functools import lru_cache
@@ -21,43 +21,45 @@ from .orbit import Orbit
 from .symmetry import REFLECTION
 
 
-class Reflected(NamedTuple):
-    """Arrays for the normalisation of orbits. reversed: 1 for components of a state that change sign under
-    the reflection, 0 for all other components, (n,). weights: quadrature weights of m3^2 in the squared size,
-    (n,)."""
+class ReflectionArrays(NamedTuple):
+    """Arrays for the normalisation of orbits. is_reversed: 1 for components of a state that change sign under
+    the reflection, 0 for all other components, (n,). moment_weights: quadrature weights of m3^2 in the
+    squared size, (n,)."""
 
-    reversed: Array
-    weights: Array
+    is_reversed: Array
+    moment_weights: Array
 
 
-def reflected(orbit: Orbit) -> Reflected:
+def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
     """Arrays for the normalisation of `orbit`."""
-    return _reflected(orbit.form.layout, orbit.form.mesh)
+    return _cached_reflection_arrays(orbit.form.layout, orbit.form.mesh)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _reflected(layout: StateLayout, mesh: Mesh) -> Reflected:
-    return Reflected(REFLECTION.reversed(layout), layout.vector({"m3": mesh.quadrature[:-1]}))
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArrays:
+    return ReflectionArrays(
+        REFLECTION.is_reversed(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
+    )
 
 
 def normalised(orbit: Orbit) -> Array:
     """Normalised values of an orbit, (N + 1,): the orbit values, in which all components that change sign
     under the reflection are divided by the size of the orbit; at the end, the squared size."""
-    values: Array = normalised_values(orbit.values, reflected(orbit))
+    values: Array = normalised_values(orbit.values, reflection_arrays(orbit))
     return values
 
 
 def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
     """Derivative of the normalised values of an orbit with respect to a parameter, (N + 1,). tangent:
     derivative of the orbit values, (N,)."""
-    slopes: Array = normalised_slopes(orbit.values, tangent, reflected(orbit))
+    slopes: Array = normalised_slopes(orbit.values, tangent, reflection_arrays(orbit))
     return slopes
 
 
 @compiled_for_vectors
-def normalised_values(values: Array, r: Reflected) -> Array:
+def normalised_values(values: Array, r: ReflectionArrays) -> Array:
     """Compiled `normalised`: normalised values, (N + 1,), of the orbit with the given `values`, (N,)."""
-    squared = squared_size(values, values, r)
+    squared = moment_inner_product(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
     out[-1] = squared
@@ -66,7 +68,7 @@ def normalised_values(values: Array, r: Reflected) -> Array:
 
 
 @compiled_for_vectors
-def values_of(normalised: Array, r: Reflected) -> Array:
+def values_from_normalised(normalised: Array, r: ReflectionArrays) -> Array:
     """Values of an orbit, (N,), from its normalised values, (N + 1,), whose last entry must be positive."""
     out = normalised[:-1].copy()
     _scale_reversed(out, normalised[-1] ** 0.5, r)
@@ -99,7 +101,7 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 
 @compiled_for_vectors
-def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array) -> Array:
+def predicted_normalised_values(values: Array, data: Array, orders: Array, weights: Array) -> Array:
     """Predicted normalised values, (N + 1,): normalised values of the present orbit plus a weighted sum of
     data. A datum is a slope, or the difference of another orbit's normalised values from the present values.
 
@@ -119,39 +121,39 @@ def with_weighted_data(values: Array, data: Array, orders: Array, weights: Array
 
 
 @compiled_for_vectors
-def normalised_slopes(values: Array, tangent: Array, r: Reflected) -> Array:
+def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
     """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
     values and derivative of the orbit values, (N,)."""
-    squared = squared_size(values, values, r)
-    change = 2 * squared_size(values, tangent, r)
+    squared = moment_inner_product(values, values, r)
+    change = 2 * moment_inner_product(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
     share = change / (2 * squared)
     out = np.empty(len(values) + 1)
     for i in range(len(values)):
         out[i] = tangent[i]
-    for first in range(0, len(values) - 1, len(r.reversed)):
-        for i in range(len(r.reversed)):
-            out[first + i] -= share * r.reversed[i] * values[first + i]
+    for first in range(0, len(values) - 1, len(r.is_reversed)):
+        for i in range(len(r.is_reversed)):
+            out[first + i] -= share * r.is_reversed[i] * values[first + i]
     out[-1] = change
     _scale_reversed(out, squared**-0.5, r)
     return out
 
 
 @compiled_for_vectors
-def squared_size(values: Array, others: Array, r: Reflected) -> float:
+def moment_inner_product(values: Array, others: Array, r: ReflectionArrays) -> float:
     """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `others`, (N,).
     With equal arguments this is the squared size."""
     total = 0.0
-    for i in range(len(r.weights)):
-        total += r.weights[i] * values[i] * others[i]
+    for i in range(len(r.moment_weights)):
+        total += r.moment_weights[i] * values[i] * others[i]
     return total
 
 
 @compiled_for_vectors
-def _scale_reversed(values: Array, factor: float, r: Reflected) -> None:
+def _scale_reversed(values: Array, factor: float, r: ReflectionArrays) -> None:
     """Multiplies, in place, the components that change sign under the reflection by `factor`, in all states
     of `values`, (N,) or (N + 1,)."""
-    n = len(r.reversed)
+    n = len(r.is_reversed)
     for first in range(0, len(values) - n + 1, n):
         for i in range(n):
-            values[first + i] *= factor if r.reversed[i] else 1.0
+            values[first + i] *= factor if r.is_reversed[i] else 1.0

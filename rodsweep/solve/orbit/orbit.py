@@ -17,7 +17,7 @@ from ...discretization.elements.collocation import Collocation, radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
-from .semidiscrete import Semidiscrete
+from .semidiscrete import SemidiscreteEquations
 from .symmetry import Symmetry
 
 
@@ -37,7 +37,9 @@ class Orbit:
     values: Array
 
     @classmethod
-    def of(cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int) -> "Orbit":
+    def from_states(
+        cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int
+    ) -> "Orbit":
         """The orbit with the period `period`, in tau2. states: states at t = 0 and at all stages, (1 + K s,
         n)."""
         values = np.append(states.ravel(), period)
@@ -74,28 +76,28 @@ class Orbit:
         return self.states_at_starts[:-1]
 
     @property
-    def method(self) -> Collocation:
+    def collocation(self) -> Collocation:
         return radau_method(self.stages)
 
     @property
     def duration(self) -> float:
         """Duration of the solved part of the period in tau2: half the period or the whole period."""
-        return self.period / self.symmetry.parts
+        return self.period / self.symmetry.period_parts
 
     @property
-    def symmetric(self) -> bool:
+    def is_symmetric(self) -> bool:
         """Whether the solved part is shorter than the period (`symmetry.parts` > 1)."""
-        return self.symmetry.parts > 1
+        return self.symmetry.period_parts > 1
 
     @property
-    def semidiscrete(self) -> Semidiscrete:
+    def semidiscrete(self) -> SemidiscreteEquations:
         return _semidiscrete(self.form, self.symmetry, self.intervals, self.stages)
 
     @property
     def size(self) -> float:
         """Size of the motion: largest energy norm of the states over the period, in units of sqrt(energy)."""
         # The norm is the same in the part of the period that follows by symmetry.
-        return float(self.form.amplitude(self.regular_states).max())
+        return float(self.form.energy_norm(self.regular_states).max())
 
     def plus_change(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit with the values `values` + `share` * `change`; change: (N,)."""
@@ -103,7 +105,7 @@ class Orbit:
 
     def states_at(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
-        at: Array = piecewise((self.intervals, self.stages), times) @ self.points
+        at: Array = time_evaluation_matrix((self.intervals, self.stages), times) @ self.points
         return at
 
     def on_mesh(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
@@ -113,9 +115,9 @@ class Orbit:
         source = self.intervals, self.stages
         target = intervals, stages
         if target != source:
-            points = between_intervals(source, target) @ points
+            points = time_interpolation_matrix(source, target) @ points
         if grid != self.form.mesh:
-            points = self.form.states_on(grid, points)
+            points = self.form.states_on_mesh(grid, points)
         return replace(
             self,
             form=replace(self.form, mesh=grid),
@@ -125,18 +127,18 @@ class Orbit:
         )
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
-def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
+def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> SemidiscreteEquations:
     """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
     cached."""
-    d = radau_method(stages).differentiation
+    d = radau_method(stages).differentiation_matrix
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
-    parts = float(symmetry.parts)
-    return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
+    parts = float(symmetry.period_parts)
+    return SemidiscreteEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def interval_lengths(intervals: int) -> Array:
     """Lengths of the time intervals as fractions of the solved duration, (intervals,): the last two intervals
     are half as long as the other intervals, which have equal lengths.
@@ -160,15 +162,15 @@ def node_times(intervals: int, stages: int) -> Array:
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_mesh_pairs)
-def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
+def time_interpolation_matrix(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. source,
     target: (intervals K, stages s). Shape: (1 + K s of target, 1 + K s of source)."""
     intervals, stages = target
-    return piecewise(source, node_times(intervals, stages))
+    return time_evaluation_matrix(source, node_times(intervals, stages))
 
 
-def piecewise(source: tuple[int, int], times: Array) -> csr_array:
+def time_evaluation_matrix(source: tuple[int, int], times: Array) -> csr_array:
     """Matrix, (m, 1 + K s), that interpolates states from the time nodes of `source` = (K, s) to `times` in
     [0, 1], (m,).
 
@@ -183,7 +185,7 @@ def piecewise(source: tuple[int, int], times: Array) -> csr_array:
     for interval in np.unique(k):
         inside = k == interval
         within = (times[inside] - starts[interval]) / lengths[interval]
-        weights[inside] = radau_method(s).evaluation(within)
+        weights[inside] = radau_method(s).evaluation_matrix(within)
     first = k * s  # the end of the previous interval is the start of this interval
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)

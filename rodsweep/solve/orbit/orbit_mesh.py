@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.elements.elements import halve_elements
-from ...discretization.elements.mesh import Mesh, mesh_on
+from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
@@ -27,7 +27,7 @@ class OrbitMeshSettings:
     """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
     smallest_tail: float = 1e-15
     """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""
-    expected_share: float = 1 / 3
+    accuracy_share: float = 1 / 3
     """The mesh in space and the mesh in time are each chosen for this fraction of the requested accuracy."""
     coarser_order: int = 2
     """Decrease of the element order from a mesh to its `coarser` mesh, whose errors are about ten times
@@ -56,7 +56,7 @@ class OrbitMeshSettings:
     mesh."""
     halved_order: float = 0.6
     """Ratio of the element order after all elements are halved to the order before, for equal errors."""
-    vector: int = 8
+    simd_doubles: int = 8
     """Number of doubles in a vector register. The computing time of matrix products depends on the number of
     unknowns rounded up to a multiple of this number."""
     max_unknowns: int = 400
@@ -90,7 +90,7 @@ class OrbitMesh:
 
     @property
     def grid(self) -> Mesh:
-        return mesh_on(self.edges, self.order)
+        return mesh_with_edges(self.edges, self.order)
 
     @property
     def unknowns(self) -> int:
@@ -138,7 +138,7 @@ class OrbitMesh:
         )
 
     @property
-    def allowed(self) -> bool:
+    def is_allowed(self) -> bool:
         return (
             self.unknowns <= ORBIT_MESH_SETTINGS.max_unknowns
             and self.intervals <= ORBIT_MESH_SETTINGS.max_intervals
@@ -148,10 +148,10 @@ class OrbitMesh:
     def cost(self) -> float:
         """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
         multiple of `ORBIT_MESH_SETTINGS.vector`."""
-        unknowns = ORBIT_MESH_SETTINGS.vector * ceil(self.unknowns / ORBIT_MESH_SETTINGS.vector)
+        unknowns = ORBIT_MESH_SETTINGS.simd_doubles * ceil(self.unknowns / ORBIT_MESH_SETTINGS.simd_doubles)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
-    def interpolate(self, orbit: Orbit) -> Orbit:
+    def interpolated_orbit(self, orbit: Orbit) -> Orbit:
         """The orbit `orbit` interpolated to this mesh."""
         return orbit.on_mesh(self.grid, self.intervals, self.stages)
 
@@ -175,8 +175,8 @@ def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     `max_interval_ratio`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
-    aim_space = (ORBIT_MESH_SETTINGS.expected_share * accuracy / ORBIT_MESH_SETTINGS.space_factor) ** 0.5
-    aim_time = (ORBIT_MESH_SETTINGS.expected_share * accuracy / ORBIT_MESH_SETTINGS.time_factor) ** 0.5
+    aim_space = (ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.space_factor) ** 0.5
+    aim_time = (ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.time_factor) ** 0.5
     # Below `smallest_tail` a tail is rounding error.
     order = present.order + ceil(
         log(max(tails.space, ORBIT_MESH_SETTINGS.smallest_tail) / aim_space) / tails.decay / present.elements

@@ -7,18 +7,18 @@ from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 
 
-class Semidiscrete(NamedTuple):
+class SemidiscreteEquations(NamedTuple):
     """Data of the equations of an orbit: rod and mesh in space, collocation in time, closing condition x(T/p)
     = S x(0).
 
-    mass: diagonal of the mass matrix, (n,). differentiation: differentiation matrix of the collocation, (s, s
-    + 1). lengths: lengths of the time intervals, with sum 1, (K,). symmetry: S, (n, n). parts: p, 1 or 2.
-    """
+    mass: diagonal of the mass matrix, (n,). stage_differentiation: differentiation matrix of the collocation,
+    (s, s + 1). interval_lengths: lengths of the time intervals, with sum 1, (K,). symmetry: S, (n, n).
+    period_parts: p, 1 or 2."""
 
     rod: NodalRod
-    matrices: NodeMatrices
+    node_matrices: NodeMatrices
     mass: Array
-    differentiation: Array
-    lengths: Array
+    stage_differentiation: Array
+    interval_lengths: Array
     symmetry: Array
-    parts: float
+    period_parts: float

@@ -18,23 +18,25 @@ from ...model.balance import Values
 
 @dataclass(frozen=True, eq=False)
 class Symmetry:
-    """Symmetry x(T/p) = S x(0) of an orbit. turn: orthogonal matrix, (d, d), by which S multiplies the d
-    stress components and the d velocity components at every node. parts: p."""
+    """Symmetry x(T/p) = S x(0) of an orbit. component_matrix: orthogonal matrix, (d, d), by which S
+    multiplies the d stress components and the d velocity components at every node. period_parts: p."""
 
-    turn: Array
-    parts: int
+    component_matrix: Array
+    period_parts: int
 
-    def of(self, x: Values, layout: StateLayout) -> Values:
+    def apply(self, x: Values, layout: StateLayout) -> Values:
         """The states S x for the states x, (..., unknowns)."""
         S = layout.stresses(x)
         V = np.zeros((layout.components, *x.shape[:-1], layout.nodes + 1), x.dtype)
         V[list(layout.unknown_velocities)] = layout.velocities(x)
-        return layout.state(np.tensordot(self.turn, S, 1), np.tensordot(self.turn, V, 1))
+        return layout.state(
+            np.tensordot(self.component_matrix, S, 1), np.tensordot(self.component_matrix, V, 1)
+        )
 
     def matrix(self, layout: StateLayout) -> Array:
         """Matrix of the symmetry operation S on a state, (unknowns, unknowns). The matrix is cached; callers
         must not change it."""
-        return _matrix(self, layout)
+        return _cached_matrix(self, layout)
 
     def apply_inverse(self, flow: Array, layout: StateLayout) -> Array:
         """S^-1 `flow`, (unknowns, unknowns). flow: derivative of x(T/p) with respect to x(0), (unknowns,
@@ -43,16 +45,16 @@ class Symmetry:
         returned: Array = self.matrix(layout).T @ flow
         return returned
 
-    def reversed(self, layout: StateLayout) -> Array:
+    def is_reversed(self, layout: StateLayout) -> Array:
         """1 for components of a state that change sign under S, 0 for components that S leaves unchanged,
         (unknowns,)."""
-        return (1 - self.of(np.ones(layout.unknowns), layout)) / 2
+        return (1 - self.apply(np.ones(layout.unknowns), layout)) / 2
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _cached_matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     """The cached matrix that `Symmetry.matrix` returns, (unknowns, unknowns)."""
-    return np.ascontiguousarray(symmetry.of(np.eye(layout.unknowns), layout).T)
+    return np.ascontiguousarray(symmetry.apply(np.eye(layout.unknowns), layout).T)
 
 
 NO_SYMMETRY = Symmetry(np.eye(3), 1)

@@ -16,8 +16,8 @@ from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.at_jumps import stresses_by_element
 from ...discretization.elements.collocation import radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
-from ...discretization.elements.mesh import mesh
-from ...discretization.state_layout import PLANE_COMPONENTS, stress_index
+from ...discretization.elements.mesh import uniform_mesh
+from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ...model.compiled.compilation import compiled_for_vectors
 from ...model.compiled.settings import CompiledSettings
 from .orbit import Orbit
@@ -58,11 +58,11 @@ def tails_of(orbit: Orbit) -> Tails:
     c = _space_coefficients(orbit)
     # Two coefficients, because the last coefficient may vanish by parity.
     last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENT_SETTINGS.least_divisor)
-    return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
+    return Tails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(c))
 
 
 @compiled_for_vectors
-def _decay(c: Array) -> float:
+def _coefficient_decay(c: Array) -> float:
     """Decay of coefficients: minus the slope, per order, of the natural logarithm of their envelope, fitted
     over the upper half of the orders and limited to `COEFFICIENT_TAIL_SETTINGS.min_decay` ...
     `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the coefficients of orders 0 to p, (fields, p + 1)."""
@@ -89,30 +89,30 @@ def _space_coefficients(orbit: Orbit) -> Array:
     grid = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.states[:, -1])
     if not orbit.form.has_continuous_stresses:
-        c = np.abs(_by_elements(orbit, ends) @ _analysis_on_element(grid.order))
+        c = np.abs(_stresses_by_element(orbit, ends) @ _legendre_analysis_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
-    return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
+    return largest_coefficients(ends, grid.elements, _legendre_analysis_on_element(grid.order))
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _analysis_on_element(order: int) -> Array:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _legendre_analysis_on_element(order: int) -> Array:
     """Matrix, (p + 1, p + 1): a row of values at the nodes of an element of order p times this matrix is the
     row of Legendre coefficients."""
-    return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
+    return np.ascontiguousarray(legendre_analysis(2 * uniform_mesh(1, order).positions - 1).T)
 
 
 @compiled_for_vectors
 def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, (3, p + 1), p: order of the
     elements, over all elements and all `states`, (m, n). elements: number of elements. analysis: as returned
-    by `_analysis_on_element`."""
+    by `_legendre_analysis_on_element`."""
     size = len(analysis)
     nodes = elements * (size - 1)
-    largest = np.zeros((PLANE_COMPONENTS, size))
+    largest = np.zeros((PLANE_COMPONENT_COUNT, size))
     c = np.empty(size)
     for k in range(len(states)):
-        for a in range(PLANE_COMPONENTS):
+        for a in range(PLANE_COMPONENT_COUNT):
             for e in range(elements):
                 first = stress_index(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
@@ -132,32 +132,33 @@ def smooth_tails(orbit: Orbit) -> Array:
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
-        fields = _by_elements(orbit, orbit.points)
-        ends = np.linalg.norm(fields @ _lasting_on_element(grid.order), axis=-1).max(axis=(1, 2))
+        fields = _stresses_by_element(orbit, orbit.points)
+        ends = np.linalg.norm(fields @ _last_analysis_columns(grid.order), axis=-1).max(axis=(1, 2))
         largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
         in_space = float((ends / largest).max())
     else:
-        in_space = relative_tail(orbit.points, grid.elements, _lasting_on_element(grid.order))
+        in_space = largest_tail_in_space(orbit.points, grid.elements, _last_analysis_columns(grid.order))
     return np.array([in_space, _tail_in_time(orbit)])
 
 
-def _by_elements(orbit: Orbit, states: Array) -> Array:
+def _stresses_by_element(orbit: Orbit, states: Array) -> Array:
     """n1, n2 and m3 at the nodes of each element, (3, m, elements, p + 1), p: order. states: states of
     `orbit`, (m, n)."""
     form = orbit.form
-    return stresses_by_element(form.nodal, form.mesh, form.stresses(states))
+    return stresses_by_element(form.nodal_rod, form.mesh, form.stresses(states))
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
-def _lasting_on_element(order: int) -> Array:
-    """Last columns of `_analysis_on_element`, (p + 1, `COEFFICIENT_TAIL_SETTINGS.last_coefficients`)."""
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _last_analysis_columns(order: int) -> Array:
+    """Last columns of `_legendre_analysis_on_element`, (p + 1,
+    `COEFFICIENT_TAIL_SETTINGS.last_coefficients`)."""
     return np.ascontiguousarray(
-        _analysis_on_element(order)[:, -COEFFICIENT_TAIL_SETTINGS.last_coefficients :]
+        _legendre_analysis_on_element(order)[:, -COEFFICIENT_TAIL_SETTINGS.last_coefficients :]
     )
 
 
 @compiled_for_vectors
-def relative_tail(points: Array, elements: int, analysis: Array) -> float:
+def largest_tail_in_space(points: Array, elements: int, analysis: Array) -> float:
     """Largest relative tail in space of n1, n2 and m3: 2-norm of the last coefficients of a field in an
     element, divided by the largest modulus of this field.
 
@@ -168,7 +169,7 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
     nodes = elements * (size - 1)
     c = np.empty(count)
     worst = 0.0
-    for a in range(PLANE_COMPONENTS):
+    for a in range(PLANE_COMPONENT_COUNT):
         largest = 0.0
         end = 0.0
         for k in range(len(points)):
@@ -187,12 +188,12 @@ def relative_tail(points: Array, elements: int, analysis: Array) -> float:
 
 
 def _tail_in_time(orbit: Orbit) -> float:
-    """Largest relative tail in time of n1, n2 and m3 (see `largest_tail`)."""
-    return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
+    """Largest relative tail in time of n1, n2 and m3 (see `largest_tail_in_time`)."""
+    return largest_tail_in_time(orbit.points, _last_coefficient_weights(orbit.stages), orbit.form.mesh.nodes)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_pencils)
-def _last_in_interval(stages: int) -> Array:
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
+def _last_coefficient_weights(stages: int) -> Array:
     """Weights, (s + 1,), with which the values at the start and the stages of an interval give its last
     Legendre coefficient."""
     nodes: Array = np.append(0.0, radau_method(stages).nodes)
@@ -201,17 +202,16 @@ def _last_in_interval(stages: int) -> Array:
 
 
 @compiled_for_vectors
-def largest_tail(points: Array, row: Array, nodes: int) -> float:
+def largest_tail_in_time(points: Array, row: Array, nodes: int) -> float:
     """Largest relative tail in time of n1, n2 and m3: last Legendre coefficient of a field in a time
     interval, divided by the largest value of this field. Coefficients and values are measured by their 2-norm
     over all nodes.
 
-    points: states at the start and at all stages, (1 + K s, n). row: as returned by `_last_in_interval`, (s +
-    1,). nodes: number of nodes without the tip.
-    """
+    points: states at the start and at all stages, (1 + K s, n). row: as returned by
+    `_last_coefficient_weights`, (s + 1,). nodes: number of nodes without the tip."""
     s = len(row) - 1
     worst = 0.0
-    for a in range(PLANE_COMPONENTS):
+    for a in range(PLANE_COMPONENT_COUNT):
         largest = 0.0
         tail = 0.0
         for m in range(len(points)):

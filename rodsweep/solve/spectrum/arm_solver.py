@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ...arrays import Complex
 from ...discretization.straight.arm_pencil import ArmPencil
 from ...discretization.straight.arm_resolution import ArmMesh
-from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalues
+from ...discretization.straight.pencil import PencilMatrices, fields_of_vectors, finite_eigenvalue_count
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
 from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
@@ -30,22 +30,22 @@ class ArmSolver(ShiftInvertSolver):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
-        self.B.setValuesCSR(self.line, self.line[:-1], found.B)
+        self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], found.B)
         self.B.assemble()
         values = found.A.copy()
-        values[self.diagonal] -= shift * found.B
+        values[self.is_diagonal_entry] -= shift * found.B
         if self.dense:
             flat = self.A.getDenseArray().T.reshape(-1)  # stored by columns
             flat[:] = 0.0
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift)
+        return LoadedPencil(finite_eigenvalue_count(rod, self.nodes), shift)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was
         solved last, (unknowns, k)."""
-        return fields_of_vectors(vectors, self.matrices.scale)
+        return fields_of_vectors(vectors, self.matrices.displacement_factors)
 
 
 _arm_solvers = LruPool(ArmSolver, KRYLOV_SETTINGS.max_arm_solvers)

@@ -114,7 +114,9 @@ def candidates_on(
     except PETSC_ERRORS as error:
         destroy_pooled_solvers()
         failure = cause_of(error)
-    kept_roots = problem.roots(raw, CANDIDATE_SETTINGS.max_waves_per_node * mesh.elements * mesh.order)
+    kept_roots = problem.refined_roots(
+        raw, CANDIDATE_SETTINGS.max_waves_per_node * mesh.elements * mesh.order
+    )
     kept = kept[:, kept_roots.mesh_indices] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)
 
@@ -128,7 +130,7 @@ def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> 
     w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = found.error.tolist()
     line = line_for_proof(w[modes - 1], errors[modes - 1])
-    complete, evaluations = problem.prove_complete(line, found)
+    complete, evaluations = problem.prove_completeness(line, found)
     if complete:
         here, clear = _count_right_of(line, w, errors)
         return CountComparison(EigenvalueCount(here, evaluations), here, clear)

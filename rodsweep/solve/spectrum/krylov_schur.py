@@ -8,7 +8,12 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.pencil import Pencil, assemble_pencil, fields_of_vectors, finite_eigenvalues
+from ...discretization.straight.pencil import (
+    Pencil,
+    assemble_pencil,
+    fields_of_vectors,
+    finite_eigenvalue_count,
+)
 from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ..backend.solver_pools import LruPool
@@ -16,7 +21,7 @@ from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
 
 
 @compiled
-def _fill(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
+def _write_shifted_matrix(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
     """A = sum_i coefficients[i] terms[i] - diag(shift), written into `A`, the transpose of PETSc's array,
     (n, n). coefficients: (m,). terms: matrices stored by columns, (m, n^2). shift: (n,)."""
     flat = A.reshape(-1)
@@ -33,7 +38,7 @@ class UniformSolver(ShiftInvertSolver):
 
     def __init__(self, resolution: Resolution):
         self.pencil: Pencil = assemble_pencil(resolution.elements, resolution.order)
-        super().__init__(self.pencil, self.pencil.mass)
+        super().__init__(self.pencil, self.pencil.nodal_masses)
         if self.dense:
             self.dense_terms = self.pencil.dense_terms()
         self.gamma3 = -1.0
@@ -42,28 +47,30 @@ class UniformSolver(ShiftInvertSolver):
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
         rod, deflection_ratio = _equivalent_filament(rod)
         shift *= deflection_ratio**2
-        coefficients = self.pencil.coefficients(rod)
+        coefficients = self.pencil.term_coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
         if rod.rotational_drag != self.gamma3:
             self.gamma3 = rod.rotational_drag
-            self.inertia = self.pencil.inertia(rod)
-            self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
+            self.inertia = self.pencil.mass_diagonal(rod)
+            self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], self.inertia)
             self.B.assemble()
         if self.dense:
-            _fill(self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.inertia)
+            _write_shifted_matrix(
+                self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.inertia
+            )
         else:
             values = coefficients @ self.pencil.term_entries
-            values[self.diagonal] -= shift * self.inertia
+            values[self.is_diagonal_entry] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalues(rod, self.nodes), shift, deflection_ratio)
+        return LoadedPencil(finite_eigenvalue_count(rod, self.nodes), shift, deflection_ratio)
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
         (unknowns, k)."""
-        return fields_of_vectors(vectors, self.pencil.scale(rod))
+        return fields_of_vectors(vectors, self.pencil.displacement_factors(rod))
 
 
 def _equivalent_filament(rod: Rod) -> tuple[Rod, float]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.arm.completeness import COMPLETENESS, cheapest_proof, prove_complete
+from ...determinant.arm.completeness import COMPLETENESS_SETTINGS, cheapest_proof, prove_complete
 from ...determinant.arm.count.count import count_right_of as count_of_arm
 from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
@@ -72,7 +72,7 @@ class TransverseProblem(ABC):
         return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
-    def roots(self, raw: Complex, most_waves: float) -> Roots:
+    def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw` of a mesh, (n,).
 
         most_waves: largest wave number |q| that the mesh represents.
@@ -84,7 +84,7 @@ class TransverseProblem(ABC):
         arm faster.
         """
 
-    def prove_complete(self, line: float, found: Roots) -> tuple[bool, int]:
+    def prove_completeness(self, line: float, found: Roots) -> tuple[bool, int]:
         """Returns (proved, evaluations). proved: whether it is proved that `found` contains all eigenvalues
         to the right of `line`. evaluations: number of evaluations of D.
 
@@ -119,8 +119,8 @@ class UniformProblem(TransverseProblem):
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
 
-    def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`."""
+    def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
+        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`."""
         return refined_roots(raw, self.rod.coefficients, self._amplification, most_waves)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
@@ -141,7 +141,7 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
-        self.spare_eigenvalues = COMPLETENESS.spare_eigenvalues if to_prove and self.has_bound else 0
+        self.spare_eigenvalues = COMPLETENESS_SETTINGS.spare_eigenvalues if to_prove and self.has_bound else 0
         growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 
@@ -152,15 +152,15 @@ class ArmProblem(TransverseProblem):
         """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
-    def roots(self, raw: Complex, most_waves: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.roots`; if a proof is
-        requested, only from the eigenvalues that the proof needs."""
-        in_proof, largest = self._of_proof(raw)
+    def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
+        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`; if a
+        proof is requested, only from the eigenvalues that the proof needs."""
+        in_proof, largest = self._eigenvalues_for_proof(raw)
         return roots_of_arm(
             np.where(in_proof, raw, np.inf), self._determinant, self._hull, most_waves, largest
         )
 
-    def _of_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
+    def _eigenvalues_for_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest
         |w| at which the proof needs D; 0 if unknown.
         """
@@ -184,7 +184,7 @@ class ArmProblem(TransverseProblem):
     def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
-    def prove_complete(self, line: float, found: Roots) -> tuple[bool, int]:
+    def prove_completeness(self, line: float, found: Roots) -> tuple[bool, int]:
         return prove_complete(line, found.w, found.error, self._determinant, self._hull)
 
 

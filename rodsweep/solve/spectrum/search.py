@@ -15,7 +15,7 @@ from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import outcome_or_failure
 from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
 from .problem import TransverseProblem, transverse_problem
-from .search_settings import SEARCH
+from .search_settings import SEARCH_SETTINGS
 from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
@@ -46,11 +46,11 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
     if rod.uniform and not rod.standard:
-        return _from_equivalent(rod, request)
+        return _spectrum_by_equivalent_rod(rod, request)
     return outcome_or_failure(lambda: Search(rod, request).outcome(), failed)
 
 
-def _from_equivalent(rod: Rod, request: SpectrumRequest) -> Spectrum:
+def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod, with rescaled
     eigenvalues.
     """
@@ -80,10 +80,10 @@ class Search:
         self.mesh = self.problem.mesh_for(request.modes, self.accuracy)
         self.requested = request.modes + self.problem.spare_eigenvalues if requested is None else requested
         self.best: CheckedCandidates | None = None
-        self.stalled_refinements = self.failures = 0
+        self.stalled_refinements = self.failure_count = 0
         self.disagreement: CountComparison | None = None
         """The comparison of the last count that disagrees with the eigenvalues found."""
-        self.unresolved = False
+        self.is_leader_unresolved = False
         """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
         self.failure_reason = (
             f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns resolves the requested modes"
@@ -91,8 +91,9 @@ class Search:
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
-        for turn in range(SEARCH.max_meshes):
-            if self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns or self.failures > SEARCH.max_failures:
+        for turn in range(SEARCH_SETTINGS.max_meshes):
+            too_fine = self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns
+            if too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
                 break
             tight = self.with_vectors or turn > 0
             found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
@@ -101,40 +102,38 @@ class Search:
                 continue
             self.update_best(judged)
             if (
-                judged.error_over_limit <= SEARCH.max_error_over_limit
-                or self.stalled_refinements >= SEARCH.max_stalled_refinements
+                judged.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
+                or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements
             ):
                 break
-            self.mesh = self.problem.next_mesh_for(
-                found.mesh, found.roots.wave_number[: self.modes], self.accuracy
-            )
-        return self.conclude()
+            waves = found.roots.wave_number[: self.modes]
+            self.mesh = self.problem.next_mesh_for(found.mesh, waves, self.accuracy)
+        return self.best_spectrum()
 
     def checked_or_retry(self, found: Candidates) -> CheckedCandidates | None:
         """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
         more eigenvalues were chosen for the next attempt."""
         if len(found.roots.w) < self.modes:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
-            self.failures += bool(found.failure)
+            self.failure_count += bool(found.failure)
             self.failure_reason = found.failure or self.failure_reason
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
-            if len(found.roots.w) >= SEARCH.min_resolved_fraction * self.modes:
+            if len(found.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
                 self.requested += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
-        if self.needs_beyond_axis(found):
+        if self.needs_eigenvalues_beyond_axis(found):
             self.request_beyond_axis(len(found.roots.w))
             return None
-        comparison = (
-            compare_with_count(self.problem, found.roots, self.modes) if self.request.certify else None
-        )
-        if comparison is not None and comparison.count.number is None and found.roots.unmatched_ahead:
-            self.unresolved = True
+        certify = self.request.certify
+        comparison = compare_with_count(self.problem, found.roots, self.modes) if certify else None
+        if comparison is not None and comparison.count.number is None and found.roots.unmatched_count:
+            self.is_leader_unresolved = True
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if comparison is not None and comparison.count.number is not None and not comparison.agrees:
             self.disagreement = comparison
-            self.request_missing(comparison.count.number, comparison.found_count)
+            self.request_missing_eigenvalues(comparison.count.number, comparison.found_count)
             return None
         return CheckedCandidates(found, comparison, self.error_over_limit(found, comparison))
 
@@ -147,43 +146,44 @@ class Search:
         error = found.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.with_vectors:
             return error
-        allowed = SEARCH.largest_displacement if self.problem.has_bound else SEARCH.unbounded_displacement
+        settings = SEARCH_SETTINGS
+        allowed = settings.largest_displacement if self.problem.has_bound else settings.unbounded_displacement
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
-    def request_missing(self, number: int, here: int) -> None:
+    def request_missing_eigenvalues(self, number: int, here: int) -> None:
         """Requests more eigenvalues or a finer mesh, because a count gives `number` eigenvalues to the right
         of the line, of which `here` were found.
         """
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
-        more = number + SEARCH.spare_modes
+        more = number + SEARCH_SETTINGS.spare_modes
         if more <= self.requested:  # missing eigenvalues are far from the shift or unresolved
-            more = self.requested + number - here + SEARCH.spare_modes
+            more = self.requested + number - here + SEARCH_SETTINGS.spare_modes
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_more(more)
+        self.request_eigenvalues(more)
 
-    def needs_beyond_axis(self, found: Candidates) -> bool:
+    def needs_eigenvalues_beyond_axis(self, found: Candidates) -> bool:
         """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed for a count or, up to
         SEARCH.max_unproved_modes, for a list without a proof."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
-        return len(found.roots.w) < SEARCH.max_unproved_modes or self.problem.is_countable
+        return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
     def request_beyond_axis(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
         decaying modes; refines the mesh if fewer eigenvalues were found than requested.
         """
-        self.unresolved = True
+        self.is_leader_unresolved = True
         if number < self.requested:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_more(max(self.requested, 2 * number + SEARCH.spare_modes))
+        self.request_eigenvalues(max(self.requested, 2 * number + SEARCH_SETTINGS.spare_modes))
 
-    def request_more(self, requested: int) -> None:
+    def request_eigenvalues(self, requested: int) -> None:
         """Requests `requested` eigenvalues, and refines the mesh until it has enough unknowns for them."""
         while (
-            requested > self.mesh.unknowns // SEARCH.min_unknowns_per_mode
+            requested > self.mesh.unknowns // SEARCH_SETTINGS.min_unknowns_per_mode
             and self.mesh.unknowns <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
@@ -192,40 +192,40 @@ class Search:
     def update_best(self, judged: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
-        limit = SEARCH.progress_ratio * best.error_over_limit if best else 0.0
+        limit = SEARCH_SETTINGS.progress_ratio * best.error_over_limit if best else 0.0
         better = best is None or judged.sort_key < (best.sort_key[0], limit)
         self.stalled_refinements = 0 if better else self.stalled_refinements + 1
         if (
             best is None
             or judged.sort_key <= best.sort_key
-            or judged.error_over_limit <= SEARCH.max_error_over_limit
+            or judged.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
         ):
             self.best = judged
 
-    def conclude(self) -> Spectrum:
+    def best_spectrum(self) -> Spectrum:
         """The spectrum of the best candidates; without candidates, a failed spectrum with the reason."""
         if self.best is not None:
-            return _spectrum(self.best, self.problem, self.request)
+            return _best_spectrum(self.best, self.problem, self.request)
         if self.disagreement is not None:
             lost = self.disagreement
             number, found = lost.count.number, lost.found_count
             counted = f"the winding number counts {number} eigenvalues where {found} are found"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
-        if self.unresolved:
+        if self.is_leader_unresolved:
             why = "no mesh resolves all eigenvalues that may lead"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         return failed_spectrum(SpectrumStatus.failed, self.request, self.failure_reason)
 
 
-def _spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
+def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
     found = best.candidates.roots
     comparison = best.comparison
-    accurate = best.error_over_limit <= SEARCH.max_stalled_error_over_limit
+    accurate = best.error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
     status = SpectrumStatus.ok if accurate else SpectrumStatus.accuracy_not_reached
     proved = comparison is not None and comparison.agrees
     w: Any = found.w.tolist()
-    on_the_axis: Any = found.on_the_axis.tolist()
+    on_the_axis: Any = found.is_on_axis.tolist()
     undecided = any(on_the_axis)
     message = ""
     if status == SpectrumStatus.ok and request.certify:

@@ -41,4 +41,4 @@ class SearchSettings:
     is the only evidence that no eigenvalue is missing."""
 
 
-SEARCH = SearchSettings()
+SEARCH_SETTINGS = SearchSettings()

@@ -120,7 +120,7 @@ class ShiftInvertSolver(ABC):
         n = pattern.unknowns
         package = sparse_package()
         self.dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
-        self.diagonal = pattern.rows == pattern.columns
+        self.is_diagonal_entry = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
         self.A = PETSc.Mat()
@@ -130,15 +130,17 @@ class ShiftInvertSolver(ABC):
         else:
             values = np.ones(len(self.indices))
             self.A.createAIJ([n, n], csr=(self.indptr, self.indices, values), comm=PETSc.COMM_SELF)
-        self.line = np.arange(n + 1, dtype=PETSc.IntType)
-        self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
+        self.row_starts = np.arange(n + 1, dtype=PETSc.IntType)
+        self.B.createAIJ(
+            [n, n], csr=(self.row_starts, self.row_starts[:-1], np.ones(n)), comm=PETSc.COMM_SELF
+        )
         first = np.zeros(n)
         distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV_SETTINGS.first_vector_width
         first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
         first[pattern.nodes : 2 * pattern.nodes] = (
             KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.nodes]
         )
-        self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
+        self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.tolerance_option = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
@@ -191,7 +193,7 @@ class ShiftInvertSolver(ABC):
         self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
         krylov = min(krylov, most + KRYLOV_SETTINGS.vectors_for_infinity)
         self.eps.setDimensions(requested, krylov, krylov)
-        self.eps.setInitialSpace(self.start)
+        self.eps.setInitialSpace(self.start_vector)
         self.eps.solve()
         found = self.eps.getConverged()
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
@@ -200,7 +202,7 @@ class ShiftInvertSolver(ABC):
     def vectors(self, found: int) -> Complex:
         """Eigenvectors of the first `found` eigenvalues of the last `solve`, (unknowns, found)."""
         real, imag = self.A.createVecs()
-        X = np.empty((len(self.line) - 1, found), dtype=complex)
+        X = np.empty((len(self.row_starts) - 1, found), dtype=complex)
         for i in range(found):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
@@ -216,7 +218,7 @@ class ShiftInvertSolver(ABC):
         Destroying a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils
         stay in memory.
         """
-        n = len(self.line) - 1
+        n = len(self.row_starts) - 1
         krylov = self.eps.getDimensions()[1] + 1
         matrices = (
             KRYLOV_SETTINGS.stored_dense_matrices * n * n
@@ -227,5 +229,5 @@ class ShiftInvertSolver(ABC):
 
     def destroy(self) -> None:
         """Frees the PETSc and SLEPc objects of the solver."""
-        for held in (self.eps, self.A, self.B, self.start):
+        for held in (self.eps, self.A, self.B, self.start_vector):
             held.destroy()

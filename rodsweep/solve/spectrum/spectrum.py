@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.quadrature import lobatto_points
-from ...discretization.straight.pencil import tip_scale
+from ...discretization.straight.pencil import factors_to_unit_tip
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from .problem import TransverseProblem
@@ -92,14 +92,14 @@ class Spectrum:
 class FollowedPoints:
     """Leading eigenvalues w and their absolute errors, (n, modes), at n successive points of a sweep.
 
-    unstable_count: number of unstable modes, (n,). accepted: whether the point is certified and accurate,
+    unstable_count: number of unstable modes, (n,). is_accepted: whether the point is certified and accurate,
     (n,).
     """
 
     w: Complex
     error: Array
     unstable_count: NDArray[np.int64]
-    accepted: NDArray[np.bool_]
+    is_accepted: NDArray[np.bool_]
 
 
 def vectors_on_nodes(
@@ -114,8 +114,8 @@ def vectors_on_nodes(
         return None
     solver = problem.solver(mesh)
     y, theta = solver.fields(found[:, : request.modes], problem.rod)
-    matrix = solver.pencil.evaluation(lobatto_points(request.vector_nodes))
-    scale = tip_scale(y, theta)
+    matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_nodes))
+    scale = factors_to_unit_tip(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 

@@ -74,7 +74,7 @@ class DiagramCurves:
         """
         self.special.update(starts)
 
-    def items(self, view: View) -> "SpecialBoundaries | None":
+    def work_items(self, view: View) -> "SpecialBoundaries | None":
         """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
         requested, or if fewer than two rows have a finite value.
 
@@ -95,7 +95,7 @@ class DiagramCurves:
 
     def empty_result(self) -> dict[str, np.ndarray]:
         """Result of a half curve without points: arrays of shape (0, ...)."""
-        from ...solve.branch.special.cycle_curves import TracedHalfCurve
+        from ...solve.branch.special.special_curves import TracedHalfCurve
 
         return TracedHalfCurve(None).arrays()
 
@@ -208,7 +208,13 @@ class DiagramCurves:
         values of the third parameter. criticalities: as from `_criticality`.
         """
         from ...determinant.parameter_plane import PlaneAxis
-        from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
+        from ...solve.hopf.bautin_curves import (
+            BautinCurve,
+            BautinSpace,
+            as_curve_point,
+            bautin_curve,
+            lies_on_curve,
+        )
 
         line, row = self.task.config.plane
         values = axis.array()
@@ -217,8 +223,10 @@ class DiagramCurves:
         all_values = np.append(values, value_in_plane)
         space = BautinSpace(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
         curves: list[BautinCurve] = []
-        for start in [on_curve(found, value_in_plane) for curve in criticalities for found in curve.points]:
+        for start in [
+            as_curve_point(found, value_in_plane) for curve in criticalities for found in curve.points
+        ]:
             # A curve may return to the plane: its further points need no curve of their own.
-            if not any(lies_on(space, start, curve) for curve in curves):
+            if not any(lies_on_curve(space, start, curve) for curve in curves):
                 curves.append(bautin_curve(space, start))
         return bautin_curve_record(curves, (line, row), name)

@@ -26,8 +26,8 @@ from ...results.layouts.variables import FilledVariable, Variable, outcome_value
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.boundaries import RowSpecialPoint
-    from ...solve.branch.special.cycle_curves import CycleCurve
+    from ...solve.branch.special.point import RowSpecialPoint
+    from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
@@ -98,7 +98,9 @@ def bautin_curve_record(
     )
 
 
-def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[FilledVariable]:
+def cycle_curve_record(
+    found: "Boundaries[SpecialPointCurve]", plane: tuple[str, str]
+) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
     (parameter along a row, parameter that differs between rows).
     """
@@ -107,11 +109,14 @@ def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) 
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
         for (beside, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
-            named = dict(zip(plane, (point.at, point.row), strict=True)) | beside | reasons
+            named = dict(zip(plane, (point.at, point.row_value), strict=True)) | beside | reasons
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **named), point))
     declared = cycle_curve_variables(*plane)
     values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
-    values |= {"cycle_curve_agreement": found.agreement, "cycle_curves_untraced": found.untraced}
+    values |= {
+        "cycle_curve_agreement": found.agreement,
+        "cycle_curves_untraced": found.untraced,
+    }
     return _filled_variables(declared, values)
 
 
@@ -167,15 +172,15 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
-    from ...solve.branch.special.boundaries import FOLLOWED_KINDS, RowSpecialPoint
-    from ...solve.branch.special.point import SpecialKind
+    from ...solve.branch.special.boundaries import FOLLOWED_KINDS
+    from ...solve.branch.special.point import RowSpecialPoint, SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
     kinds, at, period, height = map(view.by_point, names)
     return [
         RowSpecialPoint(
-            number=int(i),
-            row=float(rows[i]),
+            row_index=int(i),
+            row_value=float(rows[i]),
             kind=SpecialKind(int(kinds[i, j])),
             at=float(at[i, j]),
             period=float(period[i, j]),
@@ -198,16 +203,16 @@ def unstored_special_count(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "Boundaries[CycleCurve]",
+    found: "Boundaries[SpecialPointCurve]",
     plane: "Plane",
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
-) -> "Boundaries[CycleCurve]":
+) -> "Boundaries[SpecialPointCurve]":
     """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced`.
     """
-    from ...solve.branch.special.cycle_curves import with_located_ends
+    from ...solve.branch.special.special_curves import with_located_ends
 
     known = [point for curve in criticalities for point in curve.points]
     curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)

@@ -12,7 +12,7 @@ from benchmarks.auto import auto_program, run_auto, table_lines
 from benchmarks.limit_cycle.auto_cycles import rod_file, start_file
 from benchmarks.limit_cycle.auto_equations import EQUATIONS
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import cycle_at_length, next_point
@@ -49,10 +49,10 @@ def auto(tmp_path_factory):
 def branch_of_auto(program, rod, setting, place):
     """Lines of fort.7 as (kind, F), and the multipliers of the last cycle; by order, intervals, ..."""
     order, intervals, step, most = setting
-    form = StressForm(rod, mesh(1, 16))
+    form = StressForm(rod, uniform_mesh(1, 16))
     memory = NewtonWorkspace()
     near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), 1e-6, memory).orbit
-    first = newton(near.on_mesh(mesh(1, order), 40, 5), 1e-10, memory).orbit
+    first = newton(near.on_mesh(uniform_mesh(1, order), 40, 5), 1e-10, memory).orbit
     (place / "rod").write_bytes(rod_file(first.form))
     (place / "start").write_bytes(start_file(first, 4 * intervals))
     unknowns = first.form.unknowns

@@ -34,7 +34,7 @@ from rodsweep.solve.branch.symmetry import (
     symmetry_breakings_in,
 )
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.orbit.matrix.right_sides import equations
+from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.branch import branch_values
 
@@ -61,7 +61,7 @@ def symmetric(limits):
 @pytest.fixture(scope="module")
 def known(limits, symmetric):
     """The limits with the one symmetry breaking."""
-    (breaking,) = symmetry_breakings_in([symmetric.special])
+    (breaking,) = symmetry_breakings_in([symmetric.special_points])
     return following.replace(limits, breakings=[breaking])
 
 
@@ -71,15 +71,15 @@ def asymmetric(known):
 
 
 def kinds(curve):
-    return [point.kind.name for point in curve.special]
+    return [point.kind.name for point in curve.special_points]
 
 
 def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(symmetric, asymmetric):
     assert kinds(symmetric) == ["hopf", "symmetry_breaking", "end"]
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
-    born, fold, end = asymmetric.special
+    born, fold, end = asymmetric.special_points
     # NaN does not equal NaN, but has the same text.
-    assert repr(born) == repr(following.replace(symmetric.special[1], after=-1))
+    assert repr(born) == repr(following.replace(symmetric.special_points[1], after=-1))
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5
@@ -87,7 +87,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert max(born.error, fold.error) < 1e-3
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
-    turn = symmetric.special[1].after + 1
+    turn = symmetric.special_points[1].after + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
     turn = fold.after + 1
@@ -98,7 +98,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
     """So do largest and smallest y; symmetric cycles have none."""
     assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.points)
-    born = asymmetric.special[0]
+    born = asymmetric.special_points[0]
     (near, F), (far, beyond) = (
         ((point.measures.tip_y_max + point.measures.tip_y_min) ** 2, point.at)
         for point in asymmetric.points[:2]
@@ -115,7 +115,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
     def rate(_, x):
-        equations(x, F, V, G, p)
+        write_rates_of_state(x, F, V, G, p)
         return F / p.mass
 
     times = orbit.period * np.array([0.5, 1.0])
@@ -131,7 +131,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
 def turned_back(here):
     """A cycle of a branch that is followed to its other side."""
     derivatives = replace(here.derivatives, tangent=-here.tangent, unit_tangent=-here.unit_tangent)
-    return replace(here, derivatives=derivatives, before=None)
+    return replace(here, derivatives=derivatives, previous=None)
 
 
 def test_followed_back_the_branch_ends_where_it_was_born(known):
@@ -149,7 +149,7 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
 def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     orbit = known.breakings[0].point.orbit
     whole = extended_to_whole_period(orbit)
-    assert not whole.symmetric
+    assert not whole.is_symmetric
     times = np.linspace(0, 1, 21)
     assert (
         np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max() < 1e-4 * np.abs(orbit.points).max()
@@ -161,8 +161,8 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
-    assert curve.special[-1].reason == EndReason.no_cycle_found
-    assert "no known symmetry breaking is near" in curve.special[-1].message
+    assert curve.special_points[-1].reason == EndReason.no_cycle_found
+    assert "no known symmetry breaking is near" in curve.special_points[-1].message
 
 
 @pytest.mark.parametrize(("has", "kind"), [(True, "symmetry_breaking"), (False, "period_doubling")])
@@ -171,7 +171,7 @@ def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
         SimpleNamespace(
             parameter_rate=1.0,
             partial_multipliers=np.array([h, 0.1, 0.2j, -0.2j]),
-            orbit=SimpleNamespace(symmetric=has),
+            orbit=SimpleNamespace(is_symmetric=has),
         )
         for h in (-0.9, -1.1)
     )

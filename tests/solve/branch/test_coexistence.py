@@ -23,9 +23,14 @@ from rodsweep.solve.branch.bordered.scale import Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
-from rodsweep.solve.branch.special.curves import SpecialCurveProblem
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.special_curves import (
+    CurveEnd,
+    CurvePoint,
+    HalfCurve,
+    SpecialPointCurve,
+)
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import make_job
@@ -134,16 +139,16 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
         points, end = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), side).follow_from(
             fold, 149.9
         )
-        halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
-    curve = CycleCurve.joined(SpecialKind.fold, *halves)
+        halves.append(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end))
+    curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
     last = curve.points[-1]
-    assert last.row == 150.0
+    assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.at
     end = curve.vanishing[0]
     assert abs(end.at - BAUTIN_F) <= end.error
-    assert end.row == pytest.approx(BAUTIN_K1, rel=1e-5)
+    assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
     assert curve.vanishing[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
@@ -152,20 +157,20 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
-    scale = Scale.of(fold.orbit, "F", 0.0)
+    scale = Scale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
     ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
-    truth = FoldFunction(own, border, small=False).value(fold.orbit)
+    truth = FoldFunction(own, border, has_small_cycles=False).value(fold.orbit)
     other = (
         BorderCondition.at_arc_length(scale, border, fold.orbit, 1e-4)
         .solve_cycle(fold.orbit, 1e-10, NewtonWorkspace())
         .orbit
     )
-    function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, small=False)
+    function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, has_small_cycles=False)
     before = abs(function.value(fold.orbit) - truth)
     for _ in range(8):
-        function.correct(fold.orbit)
+        function.correct_vectors(fold.orbit)
     assert abs(function.value(fold.orbit) - truth) < 1e-2 * before
 
 

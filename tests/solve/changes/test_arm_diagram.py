@@ -49,7 +49,7 @@ def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
 def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
     curve = traced(Build(), kind)
     boundaries = [
-        Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.sign)
+        Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.eigenvalue_sign)
         for build in (Build(), ONES)
     ]
     for v in curve.scaled[::6]:
@@ -100,7 +100,7 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
     cone = row("F", [5.0, 20.0, 49.0, 51.0, 60.0], Rod(F=0.0, k1=200.0, **ROD, taper=0.5))
     assert cone.rod_class.tolist()[3:] == [RodClass.crushed] * 2
     assert RodClass.crushed not in cone.rod_class.tolist()[:3]
-    assert cone.changes.end == pytest.approx(50.0, rel=2e-6)
+    assert cone.thresholds.end == pytest.approx(50.0, rel=2e-6)
     along_k1 = row("k1", [20.0, 39.0, 41.0, 200.0], Rod(F=10.0, k1=np.inf, **ROD, taper=0.5))
     assert (along_k1.rod_class == RodClass.crushed).tolist() == [True, True, False, False]
 

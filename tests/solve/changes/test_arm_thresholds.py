@@ -136,7 +136,7 @@ def test_a_search_that_cannot_begin_has_failed(monkeypatch):
 def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_some_force):
     row = solve_row(STEPPED, RowRequest("F", np.linspace(0.0, 60.0, 13), 1e-8, True, 16))
     assert row.status == ThresholdStatus.ended_early
-    known = np.linspace(0.0, 60.0, 13) <= row.changes.end
+    known = np.linspace(0.0, 60.0, 13) <= row.thresholds.end
     assert (row.rod_class[~known] == RodClass.undecided).all()
     assert row.rod_class[known].tolist() == [0] * 3 + [1] * 3 + [2] * int(known.sum() - 6)
 
@@ -145,8 +145,8 @@ def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force)
     """Along k2 the path variable is the compliance: a bound is known for stiff arms only."""
     found = transitions(Path(STEPPED.changed(F=30.0), "k2"), 1e3, 1e5)
     assert found.ended_early
-    assert 1e3 < found.searched[0] < 1e5
-    assert found.searched[1] == 1e5
+    assert 1e3 < found.searched_interval[0] < 1e5
+    assert found.searched_interval[1] == 1e5
     assert (found.unstable_at_start, found.unstable_at_end) == (2, 2)
 
 
@@ -177,13 +177,13 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
     """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
-    counted, whole = [], followed_arms.count_at
+    counted, whole = [], followed_arms.confirmed_count_at
 
     def count(path, hulls, p, modes, here):
         counted.append(p)
         return whole(path, hulls, p, modes, here)
 
-    monkeypatch.setattr(followed_arms, "count_at", count)
+    monkeypatch.setattr(followed_arms, "confirmed_count_at", count)
     rod = STEPPED.changed(k2=100.0)
     found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
     assert found.status == ThresholdStatus.ok
@@ -224,9 +224,9 @@ def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
     at = transitions(path, 0.0, 20.0).crossings[-1].at
     for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
         found = transitions(path, 0.0, end)
-        assert found.proved_to_the_end, found.doubts
+        assert found.proved_to_the_end, found.doubt_text
         assert len(across_the_axis(found)) == number
-        assert found.searched == (0.0, end)
+        assert found.searched_interval == (0.0, end)
     from_there = transitions(path, at * (1 - 1e-7), 20.0)
     assert len(across_the_axis(from_there)) == 1
     assert from_there.proved_to_the_end

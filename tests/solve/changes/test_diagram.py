@@ -36,7 +36,9 @@ def rows(plane_axes, rod, count):
         row = solve_row(replace(rod, **{across.name: value}), request)
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
-        seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings]
+        seeds += [
+            seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings
+        ]
     return found, seeds
 
 
@@ -49,9 +51,12 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     row = solve_row(
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
-    hopf = next(c for c in row.changes.crossings if c.kind == ChangeKind.hopf)
+    hopf = next(c for c in row.thresholds.crossings if c.kind == ChangeKind.hopf)
     curve = trace_boundary(
-        0.0, plane, (plane.axes[0].coordinate(hopf.at), plane.axes[1].coordinate(300.0)), hopf.frequency
+        0.0,
+        plane,
+        (plane.axes[0].coordinate(hopf.at), plane.axes[1].coordinate(300.0)),
+        hopf.frequency,
     )
     (fold,) = [f for f in curve.folds if f.axis == 1]
     assert fold.values[1] == pytest.approx(k1, rel=1e-12)
@@ -161,10 +166,10 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
     plane = Plane(rod, axes)
     _, seeds = rows(axes, rod, 2)
     for seed in seeds:
-        boundary = Boundary(plane, seed.sign)
+        boundary = Boundary(plane, seed.eigenvalue_sign)
         scaled = [axis.coordinate(value) for axis, value in zip(axes, seed.values, strict=True)]
         start = boundary.point_near(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
-        assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
+        assert boundary.eigenvalue(start.v[2])[int(seed.eigenvalue_sign == 0)] == pytest.approx(
             seed.eigenvalue, rel=1e-6
         )
         tangent = start.tangent
@@ -221,7 +226,9 @@ def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     seeds = []
     for value in k1:
         row = solve_row(replace(rod, k1=value), RowRequest("F", np.linspace(0.0, top, 13), 1e-9, True, 50))
-        seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings]
+        seeds += [
+            seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings
+        ]
     curves = curves_through(Plane(rod, axes), seeds).curves
     found = [fold for curve in curves for fold in curve.folds]
     assert len(found) == folds

@@ -143,10 +143,10 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
 def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine():
     above = np.nextafter(1.0, 2.0)
     straight, back = (StepResult(None, 0.0, cosine) for cosine in (above, -above))
-    assert STEPS.accepted(straight) is straight
+    assert STEPS.require_small_errors(straight) is straight
     assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_ratio
     with pytest.raises(Unsolvable, match="too large an angle"):
-        STEPS.accepted(back)
+        STEPS.require_small_errors(back)
 
 
 def test_every_step_is_reported_with_the_solutions_before_it():

@@ -12,8 +12,8 @@ from surveyed import survey_only
 
 from rodsweep.discretization.at_jumps import interpolate_stress, stresses_beside_jumps
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh_on
-from rodsweep.discretization.plane import balance, balance_change
+from rodsweep.discretization.elements.mesh import mesh_with_edges
+from rodsweep.discretization.plane import write_balance, write_balance_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import STANDARD, Build
@@ -60,14 +60,14 @@ def on_mesh(name, **changed):
     """An arm of `ARMS` in its stresses on a coarse mesh."""
     build, taper, edges = ARMS[name]
     values = {"F": 20.0, "k1": 200.0, "k2": 150.0, "gamma3": 0.02, "gamma1": 0.7, "taper": taper} | changed
-    return StressForm(Rod(**values, build=build), mesh_on(edges, 7))
+    return StressForm(Rod(**values, build=build), mesh_with_edges(edges, 7))
 
 
 def moving(form, size, seed=0):
     """(state, V, G) of a random state."""
     x = size * np.random.default_rng(seed).standard_normal(form.unknowns)
     V, G = np.empty((2, 3, form.mesh.nodes + 1))
-    balance(x, V, G, form.nodal, form.mesh.matrices)
+    write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
     return x, V, G
 
 
@@ -91,7 +91,9 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
     form = on_mesh(name)
     x, V, _ = moving(form, 1.0)
     change = np.empty((3, *V.shape))
-    balance_change(x, V, change, form.parameter_derivative(parameter), form.nodal, form.mesh.matrices)
+    write_balance_derivative(
+        x, V, change, form.parameter_derivative(parameter), form.nodal_rod, form.mesh.matrices
+    )
     at = form.rod.coordinate(parameter)
     h = 1e-6 * max(abs(at), 1e-3)
     ends = []
@@ -106,13 +108,13 @@ def test_the_balance_changes_with_every_parameter_as_its_differences_say(name, p
 def test_the_energy_grows_by_what_the_force_gives_and_the_fluid_takes(name):
     form = on_mesh(name)
     x, V, G = moving(form, 0.3)
-    weighted = form.nodal.compliance * form.mesh.quadrature
+    weighted = form.nodal_rod.compliance * form.mesh.quadrature
     rates = form.layout.state(G / weighted, V)
     h = 1e-4 / np.abs(rates).max()
-    steps = [form.energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
+    steps = [form.elastic_energy(x + k * h * rates) for k in (-2, -1, 1, 2)]
     growth = (steps[0] - 8 * steps[1] + 8 * steps[2] - steps[3]) / (12 * h)
-    lost = np.sum(form.mesh.quadrature * form.nodal.drag * V**2)
-    power = -form.nodal.tip_stress @ G[:, -1] - lost
+    lost = np.sum(form.mesh.quadrature * form.nodal_rod.drag * V**2)
+    power = -form.nodal_rod.tip_stress @ G[:, -1] - lost
     assert growth == pytest.approx(power, abs=1e-7 * lost)
 
 
@@ -126,9 +128,9 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
         x, V, G = moving(form, size)
         X = mixed.state(form.stresses(x), V)
         cubic = mixed.trilinear(X, X, X) / 6
-        S, _ = mixed.fields(mixed_rate(mixed, X) + cubic)
+        S, _ = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
-        balanced = mixed.fields(mixed_rate(mixed, X) + cubic)[1]
+        balanced = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)[1]
         errors[-1] = max(errors[-1], np.abs(balanced).max() / np.abs(V).max())
     if form.rod.build.law == "linear":
         assert max(errors) < 1e-12
@@ -182,7 +184,7 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
         lambda u: (rod.gamma1, 1.0, rod.gamma3 * radius(u) ** 2),
         Law(build.law, build.section),
     )
-    strains = orbit.form.mesh.evaluation(arm.u[:-1]) @ orbit.form.strains(orbit.start).T
+    strains = orbit.form.mesh.evaluation_matrix(arm.u[:-1]) @ orbit.form.strains(orbit.start).T
     period, y = arm.cycle(strains.T.ravel(), found.measures.period)
     assert period == pytest.approx(found.measures.period, rel=2e-8)
     assert y == pytest.approx(found.measures.tip_y_max, rel=2e-7)
@@ -212,7 +214,7 @@ def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(se
     segments = Segments(
         rod.F, (0.0, 0.4, 1.0), (stiffness, outer[0]), (drag, outer[1]), Law(build.law, section), order=14
     )
-    shape = orbit.form.mesh.evaluation(segments.u) @ orbit.form.shape(orbit.start).T
+    shape = orbit.form.mesh.evaluation_matrix(segments.u) @ orbit.form.shape(orbit.start).T
     period, y = segments.cycle(shape.T, found.measures.period, turns=1)
     assert period == pytest.approx(found.measures.period, rel=1e-7)
     assert y == pytest.approx(found.measures.tip_y_max, rel=3e-7)
@@ -247,7 +249,7 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     form = StressForm(rod, coarse_mesh(rod))
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
     orbit = found.orbit
-    finer = mesh_on(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
+    finer = mesh_with_edges(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
     start = orbit.on_mesh(finer, 2 * orbit.intervals, orbit.stages + 1)
     exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
@@ -256,28 +258,30 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
 def test_a_jump_of_factor_one_is_none():
     """Of the balance to rounding, although the stress at the jump is solved for."""
     values = {"F": 30.0, "k1": 200.0, "k2": 150.0, "gamma3": 0.02, "taper": 0.7}
-    grid = mesh_on((0.0, 0.4, 1.0), 7)
+    grid = mesh_with_edges((0.0, 0.4, 1.0), 7)
     builds = (Build("neo_hookean", "swelling", profile) for profile in (None, JUMP_OF_ONE))
     plain, jumping = (StressForm(Rod(**values, build=build), grid) for build in builds)
-    assert (len(plain.nodal.jumps), len(jumping.nodal.jumps)) == (0, 1)
+    assert (len(plain.nodal_rod.jumps), len(jumping.nodal_rod.jumps)) == (0, 1)
     (x, V, G), (_, V_jumping, G_jumping) = (moving(form, 5.0) for form in (plain, jumping))
     assert np.abs(V_jumping - V).max() < 1e-13 * np.abs(V).max()
     assert np.abs(G_jumping - G).max() < 1e-13 * np.abs(G).max()
-    assert jumping.energy(x) == pytest.approx(plain.energy(x), rel=1e-14)
+    assert jumping.elastic_energy(x) == pytest.approx(plain.elastic_energy(x), rel=1e-14)
 
 
 def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     form = on_mesh("swelling segments", F=40.0)
     x = 20.0 * np.random.default_rng(3).standard_normal(form.unknowns)
     S = form.stresses(x)
-    ((before, behind),) = stresses_beside_jumps(form.nodal, S)
-    (node,), (sides,) = form.nodal.jumps, form.nodal.sides
+    ((before, behind),) = stresses_beside_jumps(form.nodal_rod, S)
+    (node,), (sides,) = form.nodal_rod.jumps, form.nodal_rod.jump_sides
     both = list(zip(sides, (before, behind), strict=True))
     stresses = [stress_beyond_rest(2, LocalSection(*side[:3]), *q) for side, q in both]
     assert stresses[0] == pytest.approx(stresses[1], rel=1e-12)
     for component, place, own in ((0, 1, 0), (2, 2, 1)):
         mean = sum(side[5] * side[place] * q[own] for side, q in both)
-        assert mean == pytest.approx(form.nodal.compliance[component, node] * S[component, node], rel=1e-12)
+        assert mean == pytest.approx(
+            form.nodal_rod.compliance[component, node] * S[component, node], rel=1e-12
+        )
     assert before[0] != pytest.approx(behind[0], rel=1e-3)
 
 
@@ -287,13 +291,13 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
     errors = []
     for order in (7, 13):
         source, target = (
-            StressForm(rod, mesh_on(edges, each))
+            StressForm(rod, mesh_with_edges(edges, each))
             for edges, each in (((0.0, 0.4, 1.0), order), ((0.0, 0.2, 0.4, 0.7, 1.0), order - 2))
         )
         before, behind = (lambda u: np.cos(5 * u), lambda u: 2 + np.sin(4 * u))
         fields = []
         for form in (source, target):
-            u, (node,), (sides,) = form.mesh.positions, form.nodal.jumps, form.nodal.sides
+            u, (node,), (sides,) = form.mesh.positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
             S = np.array([np.where(u < u[node], before(u), behind(u)), np.cos(3 * u), 0 * u])
             S[2] = S[0]
             for component, share in ((0, 3), (2, 4)):

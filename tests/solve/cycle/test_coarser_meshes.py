@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION
+from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.accuracy.refinement import refined_at_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -34,7 +34,9 @@ RODS = {
 def near(request):
     """An orbit near the rod's cycle."""
     rod, gamma1 = request.param
-    return orbit_from_hopf(StressForm(rod.changed(gamma1=gamma1), mesh(1, 16)), hopf_point_below(rod), MEMORY)
+    return orbit_from_hopf(
+        StressForm(rod.changed(gamma1=gamma1), uniform_mesh(1, 16)), hopf_point_below(rod), MEMORY
+    )
 
 
 def off(orbit, exact):
@@ -45,9 +47,13 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
     coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY, MEMORY)
     orbit, _ = coarser.predicted(FINE)
     exact = newton(orbit, 1e-13, MEMORY).orbit
-    between = [replace(coarser.mesh, order=FINE.order), replace(coarser.mesh, intervals=FINE.intervals)]
+    between = [
+        replace(coarser.coarse_mesh, order=FINE.order),
+        replace(coarser.coarse_mesh, intervals=FINE.intervals),
+    ]
     errors = [
-        off(FINE.interpolate(newton(m.interpolate(exact), 1e-13, MEMORY).orbit), exact) for m in between
+        off(FINE.interpolated_orbit(newton(m.interpolated_orbit(exact), 1e-13, MEMORY).orbit), exact)
+        for m in between
     ]
     assert off(orbit, exact) < 0.1 * min(errors)
 
@@ -58,10 +64,10 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
     for field, parts in (("order", known.space), ("intervals", known.time)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(
-            CyclePath(found), CyclePath(newton(finer.interpolate(found), 1e-12, MEMORY).orbit)
+            CyclePath(found), CyclePath(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
         )
         for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
-            assert true[which] <= CALIBRATION.safety_factor * parts[which] + 1e-12
+            assert true[which] <= CALIBRATION_SETTINGS.safety_factor * parts[which] + 1e-12
 
 
 def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
@@ -95,7 +101,7 @@ def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
     assert alone.converged.matrix.tangent is None and first.converged.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
     assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
-    assert alone.errors.largest <= ACCURACY and alone.converged.distance <= ACCURACY
+    assert alone.errors.largest_error <= ACCURACY and alone.converged.matrix_distance <= ACCURACY
 
 
 def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
@@ -106,5 +112,5 @@ def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     found = refined_at_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
     finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
-    exact = newton(finer.interpolate(found.orbit), 1e-10, MEMORY).orbit
+    exact = newton(finer.interpolated_orbit(found.orbit), 1e-10, MEMORY).orbit
     assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= accuracy

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.periodic import interpolate_samples, time_derivative
 from rodsweep.discretization.elements.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentIncomplete
@@ -26,10 +26,10 @@ from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cy
 from rodsweep.solve.cycle.reference_rod import warm_up
 from rodsweep.solve.cycle.transient import schemes, transient
 from rodsweep.solve.motion.integrator import forget_integrators
-from rodsweep.solve.orbit.compiled_measures import powers
+from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
-from rodsweep.solve.orbit.newton import at_orbit, newton
+from rodsweep.solve.orbit.newton import newton, with_orbit_matrix
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
@@ -189,7 +189,7 @@ def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
     handed = c.neighbour
     assert handed.predictor.orbit.period == c.measures.period
-    assert handed.predictor.orbit.form.tip(handed.predictor.orbit.start)[1] == pytest.approx(
+    assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start)[1] == pytest.approx(
         c.measures.tip_y_max
     )
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
@@ -333,33 +333,35 @@ def repeated(half, times):
     number = np.floor(at + 1e-9)
     states = half.states_at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
-    states[later] = REFLECTION.of(states[later], half.form.layout)
-    return Orbit.of(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
+    states[later] = REFLECTION.apply(states[later], half.form.layout)
+    return Orbit.from_states(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
-    half = newton(orbit_at_fifty().on_mesh(mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    half = newton(orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
     assert over_minimal_period(half) is half
-    once = at_orbit(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
+    once = with_orbit_matrix(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 
 
 @cache
 def orbit_on(elements, order):
-    return newton(orbit_at_fifty().on_mesh(mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()).orbit
+    return newton(
+        orbit_at_fifty().on_mesh(uniform_mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()
+    ).orbit
 
 
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])
 def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
     path, form = CyclePath(half), half.form
-    states = np.concatenate((half.regular_states, REFLECTION.of(half.regular_states, form.layout)))
-    tip = form.tip(states).T
+    states = np.concatenate((half.regular_states, REFLECTION.apply(half.regular_states, form.layout)))
+    tip = form.tip_coordinates(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
     strains = form.element_strains(states)
     series = path.strain_coefficients
@@ -383,8 +385,11 @@ def test_extrema_are_those_of_a_dense_path():
 def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
     m, stages = measures_of(CyclePath(half)), half.states.reshape(-1, half.form.unknowns)
-    power, weights = np.empty((2, len(stages))), np.outer(interval_lengths(12), half.method.weights).ravel()
-    powers(stages, power, half.semidiscrete)
+    power, weights = (
+        np.empty((2, len(stages))),
+        np.outer(interval_lengths(12), half.collocation.weights).ravel(),
+    )
+    write_powers(stages, power, half.semidiscrete)
     mean = power @ weights
     rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)
     assert (m.injection_mean, m.dissipation_mean) == pytest.approx(tuple(mean), rel=1e-13)
@@ -396,7 +401,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
     stresses = half.form.stresses(half.states[:, -1])
-    analysis = legendre_analysis(2 * mesh(1, order).positions - 1)
+    analysis = legendre_analysis(2 * uniform_mesh(1, order).positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]
@@ -474,7 +479,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     half = orbit_at_fifty()
     monkeypatch.setattr(refinement, "newton", fails)
     points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
-    orbit = Orbit.of(half.form, half.symmetry, repeats * half.period, points, half.stages)
+    orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stages)
     with pytest.raises(Unsolvable):
         refinement.refined_at_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes

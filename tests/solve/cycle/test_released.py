@@ -54,7 +54,9 @@ def test_the_motion_is_that_of_another_time_scheme():
     for frame in (8, 20, 40):
         run = integrator(beam.mesh, TimeScheme("bdf", "4", 1e-7)).run(beam, z, frame * motion.step, 1e-8)
         # 1e-4 is the tolerance of the first run of a motion; errors add up over some 40 steps.
-        assert motion.shapes[:, frame, -1] == pytest.approx(beam.tip(run.states[-1])[:2], abs=3e-3)
+        assert motion.shapes[:, frame, -1] == pytest.approx(
+            beam.tip_coordinates(run.states[-1])[:2], abs=3e-3
+        )
 
 
 def test_a_motion_that_settles_slowly_is_stored_up_to_its_limit():

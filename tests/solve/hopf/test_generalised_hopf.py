@@ -17,7 +17,13 @@ from rodsweep.post.figures.stability.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.hopf import bautin_curves, generalised
-from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
+from rodsweep.solve.hopf.bautin_curves import (
+    BautinCurvePoint,
+    BautinEnd,
+    BautinSpace,
+    bautin_curve,
+    lies_on_curve,
+)
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.point import Unsolvable
 from rodsweep.tasks.running.job import make_job
@@ -317,7 +323,7 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     assert z.max() == pytest.approx(0.8, abs=0.02)
     assert sum(abs(z - 0.6) < 1e-9) == 2
     beyond = on_parabola(space, np.array([0.7, 0.5, 0.6, 0.0]), 2)
-    assert lies_on(space, beyond.point, curve)
+    assert lies_on_curve(space, beyond.point, curve)
 
 
 def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):

@@ -12,7 +12,7 @@ from mixed_motion import mixed_form
 from rods import rod_of
 
 from rodsweep.determinant.roots.newton import eigenvalue_newton
-from rodsweep.determinant.value import newton_correction
+from rodsweep.determinant.value import newton_correction_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
@@ -62,9 +62,9 @@ def test_modes_are_those_of_the_eigenvalue(rod, w):
 @EACH
 def test_right_mode_deflects_the_tip_by_a_half(rod, w):
     form, q = form_of(rod), normal_of(rod, w).q
-    assert form.tip_y @ q == pytest.approx(0.5, rel=1e-14)
+    assert form.tip_y_row @ q == pytest.approx(0.5, rel=1e-14)
     assert -mixed.reaction(form, q)[1] / w == pytest.approx(0.5, rel=1e-9)
-    v2 = form.fields(q)[1][1]
+    v2 = form.stresses_and_velocities(q)[1][1]
     assert v2[-1] / w == pytest.approx(0.5, rel=1e-9)
 
 
@@ -101,8 +101,8 @@ def test_second_order_fields_satisfy_their_equations(rod, w):
         (-form.A, normal.h11, form.bilinear(q, q.conj())),
     ):
         assert np.abs(matrix @ field - source).max() <= 1e-12 * (np.abs(matrix) @ np.abs(field)).max()
-        assert np.all(form.parity * field == field)
-    assert np.all(form.parity * q == -q)
+        assert np.all(form.reflection_signs * field == field)
+    assert np.all(form.reflection_signs * q == -q)
     assert normal.h11.dtype == float
 
 
@@ -136,7 +136,7 @@ def hopf_points():
             if event["kind"].startswith("hopf"):
                 numbers = event["F"], row["k1"], row["k2"], row["gamma3"]
                 rod, w = rod_of(*map(float, numbers)), 1j * float(event["frequency"])
-                if newton_correction(w, rod.coefficients)[2] < 10 * np.pi:
+                if newton_correction_and_scales(w, rod.coefficients)[2] < 10 * np.pi:
                     yield rod, w
 
 
@@ -162,7 +162,7 @@ def test_filament_is_the_limit_of_rods():
 def test_axial_drag_changes_the_cycles_and_not_the_linear_problem():
     one, other = (normal_of(*SOFT, gamma1) for gamma1 in (1.0, 0.5))
     assert other.slope == pytest.approx(one.slope, rel=1e-9)
-    assert abs(other.amplitude) > 1.2 * abs(one.amplitude)
+    assert abs(other.amplitude_coefficient) > 1.2 * abs(one.amplitude_coefficient)
 
 
 # --- cycles -----------------------------------------------------------------------------------------------
@@ -175,8 +175,8 @@ def test_motion_solves_the_equations_to_second_order(rod, w):
     phases = 2 * np.pi * np.arange(9) / 9
     left = []
     for amplitude in (1e-3, 1e-4):
-        X = normal.motion(amplitude, phases)
-        assert form.tip_y @ X.T == pytest.approx(amplitude * np.cos(phases), abs=1e-12 * amplitude)
+        X = normal.cycle_states(amplitude, phases)
+        assert form.tip_y_row @ X.T == pytest.approx(amplitude * np.cos(phases), abs=1e-12 * amplitude)
         left.append(np.abs(w.imag * form.M * (harmonic_derivative(9) @ X) - mixed.rate(form, X)).max())
     assert left[0] / left[1] == pytest.approx(1000, rel=0.01)
 
@@ -204,12 +204,12 @@ def solved_cycle(form, X, frequency):
         blocks[:, np.arange(unknowns), :, np.arange(unknowns)] = frequency * form.M[:, None, None] * D
         blocks[each, :, each, :] -= np.array([mixed.jacobian(form, x) for x in X])
         J[:-1, -1] = (form.M * dX).ravel()
-        J[-1, :-1] = np.outer(D[0], form.tip_y).ravel()
-        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y)
+        J[-1, :-1] = np.outer(D[0], form.tip_y_row).ravel()
+        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y_row)
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(n, unknowns), frequency + step[-1]
-        tip = X @ form.tip_y
-        if np.abs(step[:-1].reshape(n, unknowns) @ form.tip_y).max() <= 1e-8 * np.abs(tip).max():
+        tip = X @ form.tip_y_row
+        if np.abs(step[:-1].reshape(n, unknowns) @ form.tip_y_row).max() <= 1e-8 * np.abs(tip).max():
             return 2 * abs(np.fft.fft(tip)[1]) / n, frequency
     raise AssertionError("no cycle")
 
@@ -218,8 +218,8 @@ def near_by(point, part, gamma1, order=14, phases=9):
     """(squared amplitude, frequency less that of the Hopf point), both over F - F_H, of a cycle near by."""
     normal, rod = normal_of(*point, gamma1, order=order), beyond(point, part)
     form, step = mixed_form(rod.changed(gamma1=gamma1), 1, order), part * point[0].F
-    squared, frequency = normal.cycle(rod.F)
-    start = normal.motion(squared**0.5, 2 * np.pi * np.arange(phases) / phases)
+    squared, frequency = normal.squared_y_and_frequency(rod.F)
+    start = normal.cycle_states(squared**0.5, 2 * np.pi * np.arange(phases) / phases)
     amplitude, frequency = solved_cycle(form, start, frequency)
     return np.array([amplitude**2, frequency - point[1].imag]) / step
 
@@ -241,10 +241,10 @@ def test_cycles_by_fourier_collocation_are_born_as_the_normal_form_says(point, g
     near, far = near_by(point, part / 2, gamma1), near_by(point, part, gamma1)
     squared, slope = 2 * near - far  # at the Hopf point, but for the square of the part
     normal = normal_of(*point, gamma1)
-    assert np.sign(normal.amplitude) == side
-    assert squared * point[0].F * side == pytest.approx(normal.amplitude**2, rel=accuracy)
+    assert np.sign(normal.amplitude_coefficient) == side
+    assert squared * point[0].F * side == pytest.approx(normal.amplitude_coefficient**2, rel=accuracy)
     assert slope == pytest.approx(normal.frequency_slope, rel=accuracy)
-    assert normal.supercritical == (side * normal.slope.real > 0)
+    assert normal.is_supercritical == (side * normal.slope.real > 0)
 
 
 def test_cycle_of_a_neighbouring_eigenvalue_is_the_same_in_the_limit():
@@ -252,7 +252,7 @@ def test_cycle_of_a_neighbouring_eigenvalue_is_the_same_in_the_limit():
     off = []
     for part in (4e-3, 2e-3):
         rod = beyond(SOFT, part)
-        squared, frequency = normal_form(form_of(rod), SOFT[1]).cycle(rod.F)
+        squared, frequency = normal_form(form_of(rod), SOFT[1]).squared_y_and_frequency(rod.F)
         exact = near_by(SOFT, part, 1.0) * (part * SOFT[0].F) + [0, SOFT[1].imag]
         off.append(np.abs([squared, frequency] / exact - 1))
     assert off[1][0] <= 0.01
@@ -265,12 +265,12 @@ def test_cycles_that_a_motion_in_time_reaches_are_born_as_the_normal_form_says()
     found = []
     for part in (2e-3, 4e-3):
         rod = beyond(SOFT, part)
-        y = normal_of(*SOFT).cycle(rod.F)[0] ** 0.5
+        y = normal_of(*SOFT).squared_y_and_frequency(rod.F)[0] ** 0.5
         point = Rod(F=rod.F, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3, gamma1=1.0)
         cycle = solve_cycle(point, CycleRequest(1e-8, y, 1, 0, 0, 0, 300))
         assert cycle.status == CycleStatus.cycle
         change = [cycle.measures.tip_y_max**2, cycle.measures.frequency - SOFT[1].imag]
         found.append(np.array(change) / (part * SOFT[0].F))
     squared, slope = 2 * found[0] - found[1]
-    assert squared * SOFT[0].F == pytest.approx(normal_of(*SOFT).amplitude ** 2, rel=1e-4)
+    assert squared * SOFT[0].F == pytest.approx(normal_of(*SOFT).amplitude_coefficient ** 2, rel=1e-4)
     assert slope == pytest.approx(normal_of(*SOFT).frequency_slope, rel=1e-4)

@@ -12,11 +12,16 @@ from scipy.linalg import expm
 from surveyed import few
 
 from rodsweep.determinant.value import distance_to_next_root
-from rodsweep.discretization.elements.basis import differentiation
-from rodsweep.discretization.elements.quadrature import gauss_lobatto, lobatto_points
+from rodsweep.discretization.elements.basis import differentiation_matrix
+from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.dense_form import dense_form
-from rodsweep.discretization.straight.pencil import assemble_pencil, fields_of_vectors, shear_force, tip_scale
+from rodsweep.discretization.straight.pencil import (
+    assemble_pencil,
+    factors_to_unit_tip,
+    fields_of_vectors,
+    shear_force,
+)
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
 from rodsweep.solve.modes import inverse_iteration as inverse_module
@@ -24,9 +29,9 @@ from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
 from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, largest_norm
+from rodsweep.solve.modes.norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
-from rodsweep.solve.modes.propagator import Propagator, exponential
+from rodsweep.solve.modes.propagator import Propagator, matrix_exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -35,8 +40,8 @@ NODES = 65
 TIGHT = ModesRequest(modes=4, accuracy=1e-10, nodes=NODES, growth=True)
 SHAPES = ModesRequest(modes=4, accuracy=1e-10, nodes=NODES, growth=False)
 POINTS = lobatto_points(NODES)
-WEIGHTS = gauss_lobatto(NODES - 1)[1] / 2
-SLOPE = 2 * differentiation(gauss_lobatto(NODES - 1)[0])
+WEIGHTS = gauss_lobatto_rule(NODES - 1)[1] / 2
+SLOPE = 2 * differentiation_matrix(gauss_lobatto_rule(NODES - 1)[0])
 ONSET = 20.0080206921031
 """F* of (1e4, 1e4, 1e-4), where the first two eigenvalues meet (docs/method.md, reference values)."""
 
@@ -480,7 +485,7 @@ def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters
 def toy(generator):
     """exp(L t) of a small matrix L, all modes kept."""
     propagator = Propagator(np.linalg.inv(np.array(generator, dtype=float)))
-    assert propagator.truncate(len(generator)) == len(generator)
+    assert propagator.use_leading_modes(len(generator)) == len(generator)
     return propagator
 
 
@@ -496,8 +501,10 @@ def test_a_peak_later_than_the_decay_time_is_found():
     """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
     propagator = toy(np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1))
     end, tail = growth_module._end_of_growth(propagator, 1e-3, 20.0)
-    (largest, time), bound = largest_norm(propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6)
-    assert propagator.norm(end)[0] < 1
+    (largest, time), bound = largest_propagator_norm(
+        propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6
+    )
+    assert propagator.norm_and_log_slope(end)[0] < 1
     assert tail == 0
     assert time == pytest.approx(2, rel=1e-2)
     assert largest == pytest.approx(4 * 1800 * np.exp(-2), rel=1e-2)
@@ -507,7 +514,7 @@ def test_a_peak_later_than_the_decay_time_is_found():
 
 def test_no_pair_is_cut():
     propagator = toy([[-1.0, 5.0, 0.3], [-5.0, -1.0, 0.2], [0.0, 0.0, -2.0]])
-    assert [propagator.truncate(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
+    assert [propagator.use_leading_modes(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
 
 
 def test_all_modes_of_a_mesh_say_the_same_as_few():
@@ -515,9 +522,9 @@ def test_all_modes_of_a_mesh_say_the_same_as_few():
     propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble_pencil(1, 32))
     norms = []
     for k in (12, 18, 32):
-        assert propagator.truncate(k) == k
+        assert propagator.use_leading_modes(k) == k
         assert (np.tril(propagator.generator, -2) == 0).all()
-        norms.append(propagator.norm(4.3e-5)[0])
+        norms.append(propagator.norm_and_log_slope(4.3e-5)[0])
     assert norms == pytest.approx([norms[0]] * 3, rel=5e-14)
 
 
@@ -544,9 +551,9 @@ def test_fast_modes_cost_the_slow_ones_no_digits(fast):
     L = np.array([[-0.3, 2.0, 0.7], [-1.0, -0.2, 0.4], [0.0, 0.0, -1.0]]) * [1.0, 1.0, fast**0.5]
     L[2, 2] = -fast
     exact = np.array(mp.expm(mp.matrix(L.tolist())).tolist(), dtype=float)
-    assert abs(exponential(L) - exact)[:2].max() < 1e-14 * abs(exact).max()
-    many = exponential(L * np.array([0.5, 1.0])[:, None, None])
-    assert many[1] == pytest.approx(exponential(L), abs=1e-14)
+    assert abs(matrix_exponential(L) - exact)[:2].max() < 1e-14 * abs(exact).max()
+    many = matrix_exponential(L * np.array([0.5, 1.0])[:, None, None])
+    assert many[1] == pytest.approx(matrix_exponential(L), abs=1e-14)
     assert many[0] @ many[0] == pytest.approx(many[1], abs=1e-13)
 
 
@@ -554,7 +561,9 @@ def test_fast_modes_cost_the_slow_ones_no_digits(fast):
 def test_a_peak_between_two_times_is_found(frequency):
     """A damped pair with |exp(L t)| up to 9 twice a turn: the times to start with see few of the peaks."""
     propagator = toy([[-0.05, 9 * frequency], [-frequency / 9, -0.05]])
-    (largest, time), bound = largest_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    (largest, time), bound = largest_propagator_norm(
+        propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8
+    )
     first = (np.ceil(frequency / np.pi - 0.5) + 0.5) * np.pi / frequency
     assert time == pytest.approx(first, rel=1e-2)
     assert largest == pytest.approx(9 * np.exp(-0.05 * first), rel=1e-3)
@@ -572,7 +581,7 @@ def test_no_time_within_an_interval_exceeds_its_bound(seed):
     propagator = toy(generator)
     abscissa = abscissa_of(propagator)
     for t, h in ((0.1, 1e-3), (0.1, 0.03), (0.4, 0.2), (1.0, 1.0)):
-        squares, bends = propagator.squares(np.array([t, t + h]))
+        squares, bends = propagator.squared_norms_and_bounds(np.array([t, t + h]))
         inside = brute_force(propagator, np.linspace(t, t + h, 60)) ** 2
         assert squares == pytest.approx(inside[[0, -1]], rel=1e-9)
         for bend in (bends[0], INF):  # both orders together, and the first alone
@@ -587,7 +596,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
     propagator = toy([[0.0, 9.0], [-1 / 9, 0.0]])
     h = 1e-4
     ends = np.pi / 2 + np.array([-h / 2, h / 2])
-    squares, bends = propagator.squares(ends)
+    squares, bends = propagator.squared_norms_and_bounds(ends)
     bound = peak_module._squared_norm_bound(
         np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator)
     )
@@ -598,7 +607,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
 def test_a_search_that_is_given_up_leaves_the_bound_where_it_is(monkeypatch):
     monkeypatch.setattr(peak_module, "NORM_MAXIMUM_SETTINGS", replace(NORM_MAXIMUM_SETTINGS, max_halvings=1))
     propagator = toy([[-0.05, 9 * 155.0], [-155.0 / 9, -0.05]])
-    (largest, _), bound = largest_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    (largest, _), bound = largest_propagator_norm(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
     scan = brute_force(propagator, np.linspace(1, 8, 4000)).max()
     assert scan < bound
     assert bound > 1.01 * largest
@@ -611,10 +620,10 @@ def test_the_bend_is_that_of_the_most_concave_square():
     matrices = [expm(propagator.generator * x) for x in (t - h, t, t + h)]
     low, middle, high = (E.T @ E for E in matrices)
     exact = -np.linalg.eigvalsh((low - 2 * middle + high) / h**2)[0]
-    assert propagator.squares(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
+    assert propagator.squared_norms_and_bounds(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
     assert exact > 1
     symmetric = toy(np.diag([-1.0, -2.0]) + 0.1 * np.ones((2, 2)))
-    assert symmetric.squares(np.array([t]))[1][0] == 0
+    assert symmetric.squared_norms_and_bounds(np.array([t]))[1][0] == 0
 
 
 def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only():
@@ -750,9 +759,11 @@ def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     vectors = np.ones((pencil.unknowns, 3), complex)
     vectors[pencil.nodes - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
-        scale = tip_scale(*fields_of_vectors(vectors, pencil.scale(rod)))
+        scale = factors_to_unit_tip(*fields_of_vectors(vectors, pencil.displacement_factors(rod)))
     assert np.isnan(scale[:2]).all()
-    assert scale[2] * fields_of_vectors(vectors, pencil.scale(rod))[0][-1, 2] == pytest.approx(1)
+    assert scale[2] * fields_of_vectors(vectors, pencil.displacement_factors(rod))[0][-1, 2] == pytest.approx(
+        1
+    )
 
 
 def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypatch):

@@ -39,9 +39,9 @@ def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
 def moved_energy(beam, z, pull, moment):
     """The energy of the state z with other stretching and bending of its fourth node."""
     state = z.copy()
-    beam.layout.field(state, "n1")[3] += pull
-    beam.layout.field(state, "m3")[3] += moment
-    return float(beam.energy(state))
+    beam.layout.stress_field(state, "n1")[3] += pull
+    beam.layout.stress_field(state, "m3")[3] += moment
+    return float(beam.elastic_energy(state))
 
 
 def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_positive():
@@ -50,13 +50,13 @@ def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_posit
     h, verdicts = 1e-3, []
     for bending in (1.0, 10.0, 14.0, 17.0, 20.0, 30.0):
         z = np.zeros(beam.unknowns)
-        beam.layout.field(z, "m3")[3] = bending
+        beam.layout.stress_field(z, "m3")[3] = bending
         U = {(i, j): moved_energy(beam, z, i * h, j * h) for i in (-1, 0, 1) for j in (-1, 0, 1)}
         a = U[1, 0] - 2 * U[0, 0] + U[-1, 0]
         b = U[0, 1] - 2 * U[0, 0] + U[0, -1]
         c = (U[1, 1] - U[1, -1] - U[-1, 1] + U[-1, -1]) / 4
-        assert beam.is_convex(z) == (a > 0 and a * b > c * c)
-        verdicts.append(beam.is_convex(z))
+        assert beam.has_convex_energy(z) == (a > 0 and a * b > c * c)
+        verdicts.append(beam.has_convex_energy(z))
     assert verdicts[0] and not verdicts[-1]
 
 

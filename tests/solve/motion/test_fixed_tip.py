@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, equilibrium_at_tip
@@ -21,14 +21,14 @@ PLACES = [(0.6, 0.2), (0.6, -0.2), (0.3, 0.0), (0.0, 0.55), (-0.3, 0.2), (0.0, 0
 
 
 def beam_of(rod: Rod) -> Beam:
-    return Beam(rod, mesh(3, 8))
+    return Beam(rod, uniform_mesh(3, 8))
 
 
 @EACH_ROD
 @pytest.mark.parametrize("place", PLACES)
 def test_the_tip_is_at_its_place(rod, place):
     beam = beam_of(rod)
-    assert beam.tip(equilibrium_at_tip(beam, *place))[:2] == pytest.approx(place, abs=1e-8)
+    assert beam.tip_coordinates(equilibrium_at_tip(beam, *place))[:2] == pytest.approx(place, abs=1e-8)
 
 
 @EACH_ROD
@@ -60,8 +60,12 @@ def test_a_mirrored_place_gives_the_mirrored_shape():
 @EACH_ROD
 def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     beam = beam_of(rod)
-    length = beam.tip(np.zeros(beam.unknowns))[0]
-    x, y = beam.tip(equilibrium_at_tip(beam, 3.0, 4.0))[:2]
+    length = beam.tip_coordinates(np.zeros(beam.unknowns))[0]
+    x, y = beam.tip_coordinates(equilibrium_at_tip(beam, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
-        (0.6 * FIXED_TIP_SETTINGS.reach * length, 0.8 * FIXED_TIP_SETTINGS.reach * length), abs=1e-8
+        (
+            0.6 * FIXED_TIP_SETTINGS.max_tip_distance * length,
+            0.8 * FIXED_TIP_SETTINGS.max_tip_distance * length,
+        ),
+        abs=1e-8,
     )

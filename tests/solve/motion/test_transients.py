@@ -62,7 +62,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
         lambda _, z: beam.state_derivative(z), (0.0, time[-1]), z, "LSODA", time, rtol=1e-7, atol=atol,
         jac=lambda _, z: beam.jacobian(z),
     )  # fmt: skip
-    assert np.abs(beam.tip(found.y.T) - tip).max() < 1e-5
+    assert np.abs(beam.tip_coordinates(found.y.T) - tip).max() < 1e-5
 
 
 @pytest.mark.parametrize(

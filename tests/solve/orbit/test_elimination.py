@@ -5,19 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.mesh import mesh
-from rodsweep.discretization.plane import jacobian
+from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.plane import write_jacobian
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import Scale
-from rodsweep.solve.orbit.matrix.elimination import eliminate
-from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert
-from rodsweep.solve.orbit.matrix.linearisation import change_along, jump_of
-from rodsweep.solve.orbit.matrix.phase import phase, phase_change, phase_row
-from rodsweep.solve.orbit.matrix.right_sides import equations, residuals, right_sides
-from rodsweep.solve.orbit.matrix.substitution import substitute
+from rodsweep.solve.orbit.matrix.elimination import eliminate_newton_matrix
+from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert_matrix
+from rodsweep.solve.orbit.matrix.linearisation import closing_residual, parameter_derivatives
+from rodsweep.solve.orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
+from rodsweep.solve.orbit.matrix.right_sides import (
+    write_rates_of_state,
+    write_right_sides,
+    write_stage_residuals,
+)
+from rodsweep.solve.orbit.matrix.substitution import substitute_stages
 from rodsweep.solve.orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
@@ -32,16 +36,16 @@ RODS = {
 
 def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
-    form = StressForm(rod.changed(gamma1=0.7), mesh(1, 8))
+    form = StressForm(rod.changed(gamma1=0.7), uniform_mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
-    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
+    return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
 
 def velocities(orbit):
     """V of all stages, (K, s, 3, 9)."""
     V, (n, G) = np.empty((*orbit.states.shape[:2], 3, 9)), (orbit.form.unknowns, np.empty((3, 9)))
     for place in np.ndindex(V.shape[:2]):
-        equations(orbit.states[place], np.empty(n), V[place], G, orbit.semidiscrete)
+        write_rates_of_state(orbit.states[place], np.empty(n), V[place], G, orbit.semidiscrete)
     return V
 
 
@@ -49,12 +53,12 @@ def dense_matrix(orbit, k):
     """Of all stages of an interval, (s n, s n)."""
     p, (s, n) = orbit.semidiscrete, orbit.states.shape[1:]
     V, G, tip = np.empty((3, 9)), np.empty((3, 9)), np.empty((3, n))
-    A = np.kron(p.differentiation[:, 1:], np.diag(p.mass))
+    A = np.kron(p.stage_differentiation[:, 1:], np.diag(p.mass))
     for i in range(s):
         F, J = np.empty(n), np.zeros((n, n))
-        equations(orbit.states[k, i], F, V, G, p)
-        jacobian(orbit.states[k, i], V, J, tip, p.rod, p.matrices)
-        A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.duration * p.lengths[k] * J
+        write_rates_of_state(orbit.states[k, i], F, V, G, p)
+        write_jacobian(orbit.states[k, i], V, J, tip, p.rod, p.node_matrices)
+        A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.duration * p.interval_lengths[k] * J
     return A
 
 
@@ -69,13 +73,13 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
     start = random.normal(size=(COLUMNS, n))
     reduced, out = columns.copy(), np.empty_like(columns)
-    ends = eliminate(orbit.points, velocities(orbit), orbit.duration, p, factors, reduced)
-    substitute(start, reduced, p, factors, out)
+    ends = eliminate_newton_matrix(orbit.points, velocities(orbit), orbit.duration, p, factors, reduced)
+    substitute_stages(start, reduced, p, factors, out)
 
     flow, first, still = np.eye(n), start, np.zeros_like(start)
     for k in range(INTERVALS):
         A = dense_matrix(orbit, k)
-        by_start = np.kron(p.differentiation[:, :1], np.diag(p.mass))
+        by_start = np.kron(p.stage_differentiation[:, :1], np.diag(p.mass))
         sides = columns[k].transpose(0, 2, 1).reshape(stages * n, COLUMNS)
         changes = np.linalg.solve(A, sides - by_start @ first.T)
         expected = changes.reshape(stages, n, COLUMNS).transpose(0, 2, 1)
@@ -88,13 +92,13 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
 
 
 @pytest.mark.kernel
-@pytest.mark.parametrize("n", [5, INVERSION_SETTINGS.panel, 54])
+@pytest.mark.parametrize("n", [5, INVERSION_SETTINGS.panel_width, 54])
 @pytest.mark.parametrize("unit", [1e-8, 1.0, 1e8])
 def test_an_inverse_is_as_accurate_in_any_unit(n, unit):
     random = np.random.default_rng(n)
     A = unit * (random.normal(size=(n, n)) + np.diag(random.uniform(5, 50, n)))
     inverse = A.copy()
-    invert(inverse, np.empty(n, np.int64), np.empty((n, INVERSION_SETTINGS.panel)))
+    invert_matrix(inverse, np.empty(n, np.int64), np.empty((n, INVERSION_SETTINGS.panel_width)))
     assert np.abs(inverse @ A - np.eye(n)).max() < 1e-13
 
 
@@ -103,19 +107,19 @@ def balances(orbit, name, change):
     form = orbit.form
     moved = replace(orbit, form=form.with_coordinate(name, form.rod.coordinate(name) + change))
     p, out = moved.semidiscrete, np.empty_like(orbit.states)
-    residuals(orbit.points, orbit.duration, p, out)
-    return np.append(out, -phase(orbit.start, p.rod, p.matrices))
+    write_stage_residuals(orbit.points, orbit.duration, p, out)
+    return np.append(out, -phase_residual(orbit.start, p.rod, p.node_matrices))
 
 
 @pytest.mark.parametrize("name", NONLINEAR_PARAMETERS)
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     orbit = orbit_with(rod, 4)
-    along, columns = change_along(orbit.form, name), np.empty((INTERVALS, 4, 3, orbit.form.unknowns))
+    along, columns = parameter_derivatives(orbit.form, name), np.empty((INTERVALS, 4, 3, orbit.form.unknowns))
     p, V = orbit.semidiscrete, np.empty((INTERVALS, 4, 3, 9))
-    right_sides(orbit.points, orbit.duration, p, along, V, columns)
+    write_right_sides(orbit.points, orbit.duration, p, along, V, columns)
     right = columns[:, :, 2]
-    shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
+    shift = phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
     step = 1e-4 * orbit.form.rod.coordinate(name) or 1e-6  # to one side: a limit has no other
     there = np.array([balances(orbit, name, k * step) for k in range(3)])
     limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step
@@ -128,29 +132,31 @@ def whole_matrix(matrix):
     """Newton's matrix without its last row, of all states, period and parameter, (N, N + 1)."""
     orbit = matrix.orbit
     p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
-    along, columns = change_along(orbit.form, matrix.scale.name), np.empty((K, s, 3, n))
-    right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
+    along, columns = parameter_derivatives(orbit.form, matrix.scale.parameter), np.empty((K, s, 3, n))
+    write_right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
     A = np.zeros((len(orbit.values), len(orbit.values) + 1))
     A[:n, :n] -= p.symmetry
     A[:n, -2 - n : -2] += np.eye(n)
     for k in range(K):
         rows, start = slice(n + k * s * n, n + (k + 1) * s * n), slice(k * s * n, k * s * n + n)
         A[rows, rows] = dense_matrix(orbit, k)
-        A[rows, start] += np.kron(p.differentiation[:, :1], np.diag(p.mass))
+        A[rows, start] += np.kron(p.stage_differentiation[:, :1], np.diag(p.mass))
         A[rows, -2:] = -columns[k][:, [0, 2]].transpose(0, 2, 1).reshape(s * n, 2)
-    phase_row(orbit.start, p.rod, p.matrices, A[-1, :n])
-    A[-1, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
-    jump, shift = jump_of(orbit.points, p), phase(orbit.start, p.rod, p.matrices)
+    write_phase_row(orbit.start, p.rod, p.node_matrices, A[-1, :n])
+    A[-1, -1] = -phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
+    jump, shift = closing_residual(orbit.points, p), phase_residual(orbit.start, p.rod, p.node_matrices)
     return A, np.array([*jump, *columns[:, :, 1].ravel(), -shift])
 
 
 @pytest.mark.parametrize("period, growth", [(0.03, 1e5), (0.05, 1e12)])
 def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth):
-    form = StressForm(RODS["soft"].changed(F=150.0, gamma1=0.7), mesh(1, 8))
+    form = StressForm(RODS["soft"].changed(F=150.0, gamma1=0.7), uniform_mesh(1, 8))
     states = 0.3 * np.random.default_rng(3).normal(size=(61, form.unknowns))
-    states -= 150 * form.layout.vector({"n1": np.ones(8)})  # beside the straight rod, which is unstable
-    orbit, border = Orbit.of(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
-    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 0.1), NewtonWorkspace())
+    states -= 150 * form.layout.state_with_stresses(
+        {"n1": np.ones(8)}
+    )  # beside the straight rod, which is unstable
+    orbit, border = Orbit.from_states(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
+    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
     assert np.linalg.norm(matrix.propagator) > growth
     A, right = whole_matrix(matrix)
     tangent = matrix.direction(border)

@@ -6,7 +6,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
@@ -23,9 +23,9 @@ MOMENT = np.array([1.0, 0.0, 0.0])
 
 def orbit_with(stages):
     """Any states: what is tested holds for orbits and for what is none."""
-    form = StressForm(ROD, mesh(1, 8))
+    form = StressForm(ROD, uniform_mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
-    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
+    return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
 
 def matrix_of_a_cycle(orbit, workspace):
@@ -36,7 +36,7 @@ def matrix_of_a_cycle(orbit, workspace):
 
 def matrix_of_a_branch(orbit, workspace):
     """The same with the force as a further unknown."""
-    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 1.0), workspace)
+    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 1.0), workspace)
     return matrix, lambda: matrix.correction(orbit, MOMENT, 0.0)
 
 
@@ -121,9 +121,9 @@ def test_a_released_workspace_keeps_what_most_rods_need():
         (WORKSPACE_SETTINGS.kept_numbers + 1, False),
     ):
         memory = MatrixMemory(workspace, numbers, 1, 1)
-        buffer = memory.factors.blocks.base
+        buffer = memory.factors.eliminated_blocks.base
         workspace.release()
         with pytest.raises(RuntimeError, match="its workspace was used again"):
             memory.factors  # noqa: B018 - raises
-        again = MatrixMemory(workspace, 1, 1, 1).factors.blocks.base
+        again = MatrixMemory(workspace, 1, 1, 1).factors.eliminated_blocks.base
         assert np.shares_memory(again, buffer) == kept

@@ -11,7 +11,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_count
-from rodsweep.solve.spectrum.path.arm_count import count_at
+from rodsweep.solve.spectrum.path.arm_count import confirmed_count_at
 from rodsweep.solve.spectrum.path.arm_spectra import follow_stretch_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.stretch import Stretch
@@ -46,7 +46,7 @@ def test_followed_spectra_are_those_of_single_points(name):
     stretch = Stretch(Path(Rod(**{**CONE, name: float(values[0])}), name), values)
     found = solve_stretch(stretch, REQUEST)
     for i in np.linspace(0, len(values) - 1, COMPARED).astype(int):
-        agrees(found, i, stretch.rod(int(i)))
+        agrees(found, i, stretch.rod_at(int(i)))
 
 
 def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
@@ -55,7 +55,7 @@ def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
     found = solve_stretch(stretch, REQUEST)
     assert found.certified.all()
     for i in (0, 9):
-        linear, rate = stretch.rod(i).equivalent_linear_rod
+        linear, rate = stretch.rod_at(i).equivalent_linear_rod
         w = rate * solve_spectrum(linear, REQUEST).eigenvalues
         np.testing.assert_array_equal(found.eigenvalues[i], w)
 
@@ -63,8 +63,8 @@ def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
 def test_a_cone_is_followed_and_proved_without_single_points():
     path = Path(Rod(**CONE), "F")
     reached = follow_stretch_of_arms(path, np.linspace(5, 14, 32), REQUEST)
-    assert len(reached.accepted) == 32
-    assert reached.accepted.all()
+    assert len(reached.is_accepted) == 32
+    assert reached.is_accepted.all()
 
 
 def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
@@ -75,7 +75,8 @@ def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
     path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(20, 60, 160)
     followed = [follow_stretch_of_arms(path, part, REQUEST) for part in np.split(values, 2)]
     accepted, unstable = (
-        np.concatenate([getattr(part, name) for part in followed]) for name in ("accepted", "unstable_count")
+        np.concatenate([getattr(part, name) for part in followed])
+        for name in ("is_accepted", "unstable_count")
     )
     assert accepted.all()
     assert len(counted) < len(values) / 8
@@ -94,9 +95,13 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
         lambda path, found, p, *rest: None if p > 40.5 else confirmed(path, found, p, *rest),
     )
     single = []
-    monkeypatch.setattr(arm_spectra, "count_at", lambda *words: single.append(words[2]) or count_at(*words))
+    monkeypatch.setattr(
+        arm_spectra,
+        "confirmed_count_at",
+        lambda *words: single.append(words[2]) or confirmed_count_at(*words),
+    )
     followed = follow_stretch_of_arms(path, values, REQUEST)
-    assert followed.accepted.all()
+    assert followed.is_accepted.all()
     assert len(single) == len(values)
 
 
@@ -110,7 +115,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
         reached = follow_stretch_of_arms(path, values, REQUEST)
         if reached is None:
             continue
-        for i in np.flatnonzero(reached.accepted)[::8]:
+        for i in np.flatnonzero(reached.is_accepted)[::8]:
             dense = eigenvalues(path.rod_at(float(values[i])))
             assert reached.unstable_count[i] == int((dense.real > 0).sum()), (rod, rod.build, values[i])
             for w in dense[:4]:

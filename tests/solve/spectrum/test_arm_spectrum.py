@@ -153,7 +153,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
         return whole(rod_problem, mesh, number, vectors, tight)
 
     monkeypatch.setattr(search, "candidates_on", attempt)
-    monkeypatch.setattr(search, "SEARCH", replace(search.SEARCH, max_unproved_modes=2))
+    monkeypatch.setattr(search, "SEARCH_SETTINGS", replace(search.SEARCH_SETTINGS, max_unproved_modes=2))
     if not countable:
         monkeypatch.setattr(problem, "hull_of", lambda rod: UNBOUNDED_HULL)
     found = solve_spectrum(rod, SpectrumRequest(2, 1e-6, certify=True))

@@ -11,7 +11,7 @@ from surveyed import RODS
 
 from rodsweep.determinant import moving_line
 from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change_by_nodes
-from rodsweep.determinant.moving_line import IntervalEnd, is_free_of_zeros, proves_no_crossing
+from rodsweep.determinant.moving_line import IntervalEnd, examine_rectangle, proves_no_crossing
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import stretch as stretch_of
@@ -74,7 +74,7 @@ def random_strips(count: int):
         i, j = sorted(rng.choice(len(whole), 2, replace=False))
         ends, counts = [], []
         for at, gap in zip((i, j), rng.integers(2, 6, 2), strict=True):
-            rod = whole.rod(int(at))
+            rod = whole.rod_at(int(at))
             w = eigenvalues(rod)
             at_line = float(w[gap - 1].real + w[gap].real) / 2
             ends.append(IntervalEnd(float(whole.path_variables[at]), rod.coefficients, at_line))
@@ -107,17 +107,17 @@ def holds_always(*words):
 
 def no_width_in_p(at, y, direction, half, tilt):
     """The proof for the rod in the middle alone, which is what negative half-widths make of it."""
-    return is_free_of_zeros(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
+    return examine_rectangle(at, y, direction, (half[0], 1e-12 * half[1]), 0.0)
 
 
 @pytest.mark.parametrize(
     ("name", "broken"),
-    [("is_remainder_below", holds_always), ("is_free_of_zeros", no_width_in_p)],
+    [("is_remainder_below", holds_always), ("examine_rectangle", no_width_in_p)],
     ids=["bound", "width"],
 )
 def test_a_broken_proof_is_noticed(monkeypatch, name, broken):
     """Without the remainder, or the width of a rectangle in p, strips are proved that counts refute."""
-    monkeypatch.setattr(moving_line, "is_free_of_zeros", is_free_of_zeros.py_func)
+    monkeypatch.setattr(moving_line, "examine_rectangle", examine_rectangle.py_func)
     monkeypatch.setattr(moving_line, name, broken)
     _, wrong = wrong_proofs(proves_no_crossing.py_func, random_strips(20))
     assert wrong >= 3
@@ -128,7 +128,7 @@ def test_rectangles_without_an_inside_are_refused(half):
     rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     at = IntervalEnd(30.0, rod.coefficients, -20.0)
     with pytest.raises(ValueError, match="half-widths of a rectangle must be above 0"):
-        is_free_of_zeros(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
+        examine_rectangle(at, 5.0, Coefficients(1.0, -1e-4, 0.0, 0.0), half, 0.0)
 
 
 def test_what_is_proved_has_no_zero_inside():
@@ -140,7 +140,7 @@ def test_what_is_proved_has_no_zero_inside():
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))
         tilt = rng.normal() * at_line / 10
         at = IntervalEnd(p, path.rod_at(p).coefficients, at_line)
-        if is_free_of_zeros(at, y, path.direction, half, tilt)[0]:
+        if examine_rectangle(at, y, path.direction, half, tilt)[0]:
             proved += 1
             for share in (-1, -0.3, 0.6, 1):
                 rod = path.rod_at(p + share * half[1]).coefficients
@@ -164,7 +164,7 @@ def test_cubics_are_extrapolated_exactly():
 
 def test_coefficients_of_a_line_are_those_of_its_rods():
     for whole in LINES.values():
-        rods = np.array([whole.rod(i).coefficients for i in range(len(whole))])
+        rods = np.array([whole.rod_at(i).coefficients for i in range(len(whole))])
         assert np.array_equal(whole.coefficients, rods)
 
 
@@ -172,7 +172,7 @@ def test_a_double_eigenvalue_is_left_to_the_solver_of_single_points():
     onset = 20.0080206921031
     whole = line("F", onset + np.arange(-10, 10) * 0.01, k1=1e4, k2=1e4, gamma3=1e-4)
     found = solve_stretch(whole, REQUEST)
-    alone = solve_spectrum(whole.rod(10), REQUEST)
+    alone = solve_spectrum(whole.rod_at(10), REQUEST)
     assert found.status[10] == alone.status == SpectrumStatus.accuracy_not_reached
     assert found.elements[10] == alone.elements > 0
     assert found.message[10] == alone.message
@@ -187,7 +187,7 @@ def test_where_no_bound_applies_every_point_is_solved_alone():
     found = solve_stretch(whole, REQUEST)
     assert not found.certified.any()
     for i in range(20):
-        alone = solve_spectrum(whole.rod(i), REQUEST)
+        alone = solve_spectrum(whole.rod_at(i), REQUEST)
         assert found.status[i] == alone.status
         assert np.array_equal(found.eigenvalues[i], alone.eigenvalues, equal_nan=True)
 

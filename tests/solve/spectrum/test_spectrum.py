@@ -391,7 +391,7 @@ def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     assert uniform_solver(Resolution(1, 6)) is solvers[0]
     uniform_solver(Resolution(2, 6))
     first, longest_unused, *others = solvers
-    assert not any((longest_unused.eps, longest_unused.A, longest_unused.B, longest_unused.start))
+    assert not any((longest_unused.eps, longest_unused.A, longest_unused.B, longest_unused.start_vector))
     assert all(solver.eps and solver.A for solver in (first, *others))
 
 

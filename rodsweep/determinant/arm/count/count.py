@@ -17,14 +17,19 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ...certificate.winding_number import NO_INTEGER, PHASE_LOST, WINDING_SETTINGS, EigenvalueCount
+from ...certificate.winding_number import (
+    NO_INTEGER_MESSAGE,
+    PHASE_LOST_MESSAGE,
+    WINDING_SETTINGS,
+    EigenvalueCount,
+)
 from ..completeness import has_conjugate
-from ..determinant import ArmDeterminant, BoundedPropagators
-from ..elements.settings import ARM_ELEMENTS
-from ..hull.region import Hull
+from ..determinant import ArmDeterminant, PropagatorsUpToW
+from ..elements.settings import ARM_ELEMENT_SETTINGS
+from ..hull.region import EigenvalueHull
 from ..local_waves import ArmSamples, wave_number_and_length_at
 from .phase_node import PhaseNode, phase_node, tangent_of_log
-from .settings import ARM_COUNT
+from .settings import CONTOUR_SETTINGS
 
 NO_KNOWN_EIGENVALUES: Complex = np.empty(0, complex)
 """No known eigenvalues, (0,)."""
@@ -34,7 +39,7 @@ class PhaseLost(ArithmeticError):
     """The change of arg D along the contour could not be determined; node_count: number of nodes used."""
 
     def __init__(self, nodes: int):
-        super().__init__(PHASE_LOST)
+        super().__init__(PHASE_LOST_MESSAGE)
         self.node_count = nodes
 
 
@@ -61,7 +66,7 @@ class BoundaryTraversal(NamedTuple):
 def count_right_of(
     line: float,
     determinant: ArmDeterminant,
-    hull: Hull,
+    hull: EigenvalueHull,
     known: Complex = NO_KNOWN_EIGENVALUES,
     error: Array | float = 0.0,
 ) -> EigenvalueCount:
@@ -74,10 +79,10 @@ def count_right_of(
         return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
     if line >= hull.box(max(-line, 0.0))[0]:
         return EigenvalueCount(0, 0)
-    known = known[error < ARM_COUNT.max_known_error * np.abs(known.real - line)]
+    known = known[error < CONTOUR_SETTINGS.max_known_error * np.abs(known.real - line)]
     known = known[has_conjugate(known)]
     height = np.maximum(np.abs(known.imag), abs(line))
-    known = known[np.abs(known.real - line) < ARM_COUNT.max_known_distance * height]
+    known = known[np.abs(known.real - line) < CONTOUR_SETTINGS.max_known_distance * height]
     try:
         total, nodes = _phase_change(line, determinant, hull, known)
     except PhaseLost as lost:
@@ -86,41 +91,43 @@ def count_right_of(
         return EigenvalueCount(None, 0, str(unresolved))
     number = round(total / math.pi)
     if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
-        return EigenvalueCount(None, nodes, NO_INTEGER)
+        return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
     return EigenvalueCount(number + int((known.real > line).sum()), nodes)
 
 
-def is_countable(determinant: ArmDeterminant, hull: Hull) -> bool:
+def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     """Whether eigenvalues right of a line at Re w <= 0 can be counted: the hull is bounded, and elements
     resolve D.
     """
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.level(abs(_upper_box_corner(0.0, hull)), ARM_COUNT.max_level_ratio)
+        determinant.propagators_for(abs(_upper_box_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
     except FloatingPointError:
         return False
     return True
 
 
-def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: Hull) -> float:
+def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
     corner = _upper_box_corner(line, hull)
-    return abs(corner) + ARM_COUNT.first_radius * determinant.length(corner)
+    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.phase_change_length(corner)
 
 
-def _upper_box_corner(line: float, hull: Hull) -> complex:
+def _upper_box_corner(line: float, hull: EigenvalueHull) -> complex:
     """The corner in the upper half plane, with the largest |w|, of the box about all eigenvalues right of the
     line.
     """
     real, imag = hull.box(max(-line, 0.0))
     return complex(
-        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.width_added,
+        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,
         max(imag, WINDING_SETTINGS.min_height * abs(line)),
     )
 
 
-def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: Complex) -> tuple[float, int]:
+def _phase_change(
+    line: float, determinant: ArmDeterminant, hull: EigenvalueHull, known: Complex
+) -> tuple[float, int]:
     """Returns (change along the upper half of the box of arg D with `known` divided out; number of nodes).
 
     Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
@@ -129,10 +136,10 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest = largest_w_of_count(line, determinant, hull)
-    level = determinant.level(largest, ARM_COUNT.max_level_ratio)
+    level = determinant.propagators_for(largest, CONTOUR_SETTINGS.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
-    unit = determinant.length(corners[0])
-    trial = unit, min(ARM_COUNT.first_radius * unit, level[0] - abs(corners[0]))
+    unit = determinant.phase_change_length(corners[0])
+    trial = unit, min(CONTOUR_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
@@ -141,7 +148,7 @@ def _phase_change(line: float, determinant: ArmDeterminant, hull: Hull, known: C
             break
         if walk.needed_largest_w == math.inf:
             raise PhaseLost(walk.node_count)
-        level = determinant.level(walk.needed_largest_w, ARM_COUNT.max_level_ratio)
+        level = determinant.propagators_for(walk.needed_largest_w, CONTOUR_SETTINGS.max_level_ratio)
     return walk.phase_change, walk.node_count
 
 
@@ -150,9 +157,9 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     walk: BoundaryTraversal,
     box: tuple[Complex, float],
     known: Complex,
-    hull: Hull,
+    hull: EigenvalueHull,
     samples: tuple[ArmSamples, ArmSamples],
-    level: BoundedPropagators,
+    level: PropagatorsUpToW,
 ) -> BoundaryTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 
@@ -167,18 +174,18 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if not here.reach > ARM_COUNT.min_reach * abs(here.w) or nodes > ARM_COUNT.max_nodes:
+        if not here.reach > CONTOUR_SETTINGS.min_reach * abs(here.w) or nodes > CONTOUR_SETTINGS.max_nodes:
             return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_overlapping_distance(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
         unit = wave_number_and_length_at(w, samples[0])[1]
-        first = ARM_COUNT.first_radius * unit
-        radius = min(2 * here.radius, ARM_COUNT.largest_radius * unit) if here.radius > 0 else first
-        radius = max(radius, ARM_COUNT.max_wave_radius * w.imag)
-        enough = max(first, min(ARM_COUNT.max_wave_radius * w.imag, largest - abs(w)))
+        first = CONTOUR_SETTINGS.first_radius * unit
+        radius = min(2 * here.radius, CONTOUR_SETTINGS.largest_radius * unit) if here.radius > 0 else first
+        radius = max(radius, CONTOUR_SETTINGS.max_wave_radius * w.imag)
+        enough = max(first, min(CONTOUR_SETTINGS.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
-        if not needed <= level[0] <= ARM_COUNT.max_level_ratio * max(needed, ARM_ELEMENTS.min_largest_w):
+        if not _serves_efficiently(level[0], needed):
             return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
@@ -194,12 +201,18 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 
 
 @compiled
+def _serves_efficiently(W: float, needed: float) -> bool:
+    """Whether propagators for |w| <= W are valid at |w| = `needed`, with W not much larger than necessary."""
+    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_largest_w)
+
+
+@compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance to the next node at which the reaches of both nodes just overlap, if the reach changes by
     `growth` per distance.
     """
-    overlap = ARM_COUNT.reach_overlap
-    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), ARM_COUNT.largest_growth))
+    overlap = CONTOUR_SETTINGS.reach_overlap
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.largest_growth))
 
 
 @compiled
@@ -207,8 +220,8 @@ def _shortened_distance(reach: float, growth: float, ahead: float) -> float:
     """A distance to the next node below `ahead`; repeated calls give a distance within the reach of the
     present node.
     """
-    nearer = min(_overlapping_distance(reach, growth), ARM_COUNT.max_step_ratio * ahead)
-    return nearer if nearer > reach else min(ARM_COUNT.safe_step * reach, ahead / 2)
+    nearer = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * ahead)
+    return nearer if nearer > reach else min(CONTOUR_SETTINGS.safe_step * reach, ahead / 2)
 
 
 @compiled

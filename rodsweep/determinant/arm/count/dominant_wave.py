@@ -14,7 +14,7 @@ from ..local_waves import ArmSamples, sqrt_in_upper_half_plane
 
 
 @compiled_for_vectors
-def dominant_wave(w: complex, samples: ArmSamples) -> complex:
+def dominant_exponent(w: complex, samples: ArmSamples) -> complex:
     """Phi(w) = int sqrt(z+) du of an arm, by quadrature over its samples; Im w > 0."""
     root = cmath.sqrt(w)
     a = root.real
@@ -33,7 +33,7 @@ def dominant_wave(w: complex, samples: ArmSamples) -> complex:
 
 
 @compiled
-def slope_of_wave(w: complex, samples: ArmSamples) -> complex:
+def dominant_exponent_slope(w: complex, samples: ArmSamples) -> complex:
     """dPhi/dw of the dominant wave at w, Im w > 0."""
     root = cmath.sqrt(w)
     slope = 0j

@@ -14,11 +14,11 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
-from ..determinant import ArmDeterminant, BoundedPropagators
+from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain
-from .dominant_wave import slope_of_wave
-from .settings import ARM_COUNT
+from .dominant_wave import dominant_exponent_slope
+from .settings import CONTOUR_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,8 +53,8 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
     found = known[: NEAR_AXIS_SETTINGS.max_modes]
     height = NEAR_AXIS_SETTINGS.first_height
     while height < top:
-        W, propagators = determinant.level(
-            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, ARM_COUNT.max_level_ratio
+        W, propagators = determinant.propagators_for(
+            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, CONTOUR_SETTINGS.max_level_ratio
         )
         heights = [height]
         while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
@@ -67,7 +67,7 @@ def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> 
 
 
 @compiled
-def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> Complex:
+def _modes_from(heights: Array, known: Complex, level: PropagatorsUpToW, samples: ArmSamples) -> Complex:
     """The known eigenvalues, (n,), followed by the eigenvalues that Newton's method finds from w = i height,
     for each of `heights`, (k,). level: (W, propagators)."""
     found = np.empty(NEAR_AXIS_SETTINGS.max_modes, np.complex128)
@@ -84,14 +84,14 @@ def _modes_from(heights: Array, known: Complex, level: BoundedPropagators, sampl
 
 
 @compiled
-def _mode_near(start: complex, known: Complex, level: BoundedPropagators, samples: ArmSamples) -> complex:
+def _mode_near(start: complex, known: Complex, level: PropagatorsUpToW, samples: ArmSamples) -> complex:
     """The eigenvalue close to `start` that is not in `known`, (n,); nan if no further eigenvalue is close."""
     w = start
     for _ in range(NEAR_AXIS_SETTINGS.max_steps):
         value = determinant_along_chain(w, level[0], level[1])
         if value.D == 0:
             return w
-        slope = value.D_w / value.D - slope_of_wave(w, samples)
+        slope = value.D_w / value.D - dominant_exponent_slope(w, samples)
         for k in range(len(known)):
             slope -= 1 / (w - known[k]) if w != known[k] else 0j
         if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance * start.imag > 1:

@@ -11,7 +11,7 @@ divided out,
 
 h as in `rodsweep.determinant.arm.count.phase_node`, but with Phi(v, p) of each arm, is compared with f(w0, q)
 of the middle arm q. If |f(v, p) - f(w0, q)| < |f(w0, q)| on the circle, f has no zero in the disc, by the
-maximum principle. This is an estimate: f is evaluated at `ARM_COUNT.circle_points` points of the
+maximum principle. This is an estimate: f is evaluated at `CONTOUR_SETTINGS.circle_points` points of the
 circle and at a few arms, with one safety factor for values between the points and one for the arms between
 these arms."""
 
@@ -28,12 +28,12 @@ from ....model.rod import Rod
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
-from ..family import ArmFamily, propagators_in_family
-from ..hull.region import Hull, PathHulls
+from ..family import ArmFamily, propagators_at
+from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ArmSamples, wave_number_and_length_at
 from ..value import chain_value, determinant_along_chain
-from .dominant_wave import dominant_wave, slope_of_wave
-from .settings import ARM_COUNT, NO_CROSSING_SETTINGS
+from .dominant_wave import dominant_exponent, dominant_exponent_slope
+from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 
 
 class ArmsOfInterval(NamedTuple):
@@ -48,7 +48,7 @@ class ArmsOfInterval(NamedTuple):
     known_errors: Array
     squares: Array
     weights: Array
-    W: float
+    largest_w: float
     propagators: Array
 
 
@@ -56,15 +56,15 @@ class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm.
 
     D: times exp(-S). L: D'/D, with the eigenvalues divided out. divided_indices: indices of the known
-    eigenvalues that are divided out, (k,). wave: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0).
-    """
+    eigenvalues that are divided out, (k,). exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant
+    wave, else (0, 0)."""
 
     w: complex
     D: complex
     S: float
     L: complex
     divided_indices: NDArray[np.int64]
-    wave: tuple[complex, complex]
+    exponent_and_slope: tuple[complex, complex]
 
 
 def sampled_points(first: int, last: int) -> list[int]:
@@ -91,11 +91,11 @@ def proves_no_crossing(
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
     squares = np.array([one.squares for one in samples])
-    levels = [propagators_in_family(family, here)[1] for here in p.tolist()]
-    arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.W, np.array(levels))
+    levels = [propagators_at(family, here)[1] for here in p.tolist()]
+    arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(levels))
     unit = wave_number_and_length_at(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
-        line, 0.0, top, (ARM_COUNT.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
+        line, 0.0, top, (CONTOUR_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
     )
     if height < top and radius > 0:
         try:
@@ -112,14 +112,14 @@ def _height_of_hulls(line: float, p: Array, hulls: PathHulls) -> float:
     """Largest |Im w| at Re w >= `line` in the hulls of all arms between the smallest and the largest p."""
     inside = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
     pieces = zip(hulls.a[inside].tolist(), hulls.c[inside].tolist(), strict=True)
-    return max(Hull(a, c).box(max(-line, 0.0))[1] for a, c in pieces)
+    return max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in pieces)
 
 
 def _arms_with_larger_w(arms: ArmsOfInterval, rods: list[Rod], W: float) -> ArmsOfInterval:
     """The arms with propagators for |w| <= W."""
     found = elements_for(rods, coefficient_samples(rods), W)
     propagators = element_propagators([rod.F for rod in rods], found.local, found.lengths, W)
-    return arms._replace(W=W, propagators=propagators)
+    return arms._replace(largest_w=W, propagators=propagators)
 
 
 @compiled
@@ -135,7 +135,7 @@ def covered_height(
     height = start
     radius, smallest = radii
     while height < top:
-        fitting = (arms.W - abs(complex(line, height))) / 2
+        fitting = (arms.largest_w - abs(complex(line, height))) / 2
         if fitting < NO_CROSSING_SETTINGS.min_fitting_fraction * radius:
             return height, radius
         radius = min(radius, fitting)
@@ -154,8 +154,8 @@ def covered_height(
 def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
     the module docstring."""
-    value = determinant_along_chain(w0, arms.W, arms.propagators[0])
-    if not abs(value.D) > ARM_COUNT.rounding_over_noise * value.noise:
+    value = determinant_along_chain(w0, arms.largest_w, arms.propagators[0])
+    if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
         return False
     divided = np.flatnonzero(
         np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius
@@ -166,9 +166,9 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
             return False
         L -= 1 / (w0 - arms.known_eigenvalues[0, n])
     wave = (0j, 0j)
-    if radius <= ARM_COUNT.max_wave_radius * w0.imag:
+    if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
         samples = ArmSamples(arms.squares[0], arms.weights)
-        wave = (dominant_wave(w0, samples), slope_of_wave(w0, samples))
+        wave = (dominant_exponent(w0, samples), dominant_exponent_slope(w0, samples))
     node = LineNode(w0, value.D, value.S, L, divided, wave)
     number = len(arms.known_eigenvalues)
     is_free = True
@@ -191,17 +191,17 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
     and for arm number `arm`; False if a point is too close to a known eigenvalue."""
     samples = ArmSamples(arms.squares[arm], arms.weights)
     growth = 0.0
-    if node.wave[0] == 0:
+    if node.exponent_and_slope[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
-        above = complex(node.w.real, radius / ARM_COUNT.max_wave_radius)
-        of_middle = dominant_wave(above, ArmSamples(arms.squares[0], arms.weights))
-        growth = (dominant_wave(above, samples) - of_middle).real
-    for direction in ARM_COUNT.directions:
+        above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
+        of_middle = dominant_exponent(above, ArmSamples(arms.squares[0], arms.weights))
+        growth = (dominant_exponent(above, samples) - of_middle).real
+    for direction in CONTOUR_SETTINGS.directions:
         v = node.w + radius * direction
-        D, S = chain_value(v, arms.W, arms.propagators[arm])
-        h = (node.L - node.wave[1]) * (v - node.w) + growth
-        if node.wave[0] != 0:
-            h += dominant_wave(v, samples) - node.wave[0]
+        D, S = chain_value(v, arms.largest_w, arms.propagators[arm])
+        h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth
+        if node.exponent_and_slope[0] != 0:
+            h += dominant_exponent(v, samples) - node.exponent_and_slope[0]
         ratio = D / node.D * cmath.exp(S - node.S - h)
         for n in node.divided_indices:
             if _is_too_close_to_divide(v, arms.known_eigenvalues[arm, n], arms.known_errors[arm, n]):

@@ -14,7 +14,7 @@ Inside the hull, f(v) = D(v) exp(-h(v)) has f'(w) = 0 with
     h(v) = L (v - w)   or   h(v) = Phi(v) - Phi(w) + (L - Phi'(w)) (v - w),
 
 Phi the dominant wave (`rodsweep.determinant.arm.count.dominant_wave`). Cauchy's estimate with the maximum of
-|f| on a circle bounds the change of f. The maximum is estimated from `ARM_COUNT.circle_points`
+|f| on a circle bounds the change of f. The maximum is estimated from `CONTOUR_SETTINGS.circle_points`
 points and a safety factor. Inside the hull the count is therefore an estimate; the rounding errors of D and
 the errors of its elements are estimates everywhere."""
 
@@ -25,26 +25,26 @@ from ....arrays import Complex
 from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENT_SETTINGS
 from ...value import DeterminantValue
-from ..determinant import BoundedPropagators
-from ..hull.region import Hull, distance_and_normal
+from ..determinant import PropagatorsUpToW
+from ..hull.region import EigenvalueHull, distance_and_normal
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain, log_modulus_by_chain
-from .dominant_wave import dominant_wave, slope_of_wave
-from .settings import ARM_COUNT
+from .dominant_wave import dominant_exponent, dominant_exponent_slope
+from .settings import CONTOUR_SETTINGS
 
 
 class PhaseNode(NamedTuple):
     """A point w on the contour with a tangent h of log D.
 
-    direction, L: D/|D| and D'/D, with the known eigenvalues divided out of D. wave: (Phi, dPhi/dw) if h
-    contains the dominant wave, else (0, 0). reach: distance from w within which the error of h is below pi/2.
-    radius: radius of the circle from which the reach follows; 0 if the reach follows from the hull.
-    """
+    direction, L: D/|D| and D'/D, with the known eigenvalues divided out of D. exponent_and_slope: (Phi,
+    dPhi/dw) if h contains the dominant wave, else (0, 0). reach: distance from w within which the error of h
+    is below pi/2. radius: radius of the circle from which the reach follows; 0 if the reach follows from the
+    hull."""
 
     w: complex
     direction: complex
     L: complex
-    wave: tuple[complex, complex]
+    exponent_and_slope: tuple[complex, complex]
     reach: float
     radius: float
 
@@ -52,9 +52,9 @@ class PhaseNode(NamedTuple):
 @compiled
 def tangent_of_log(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
-    Phi, slope = node.wave
+    Phi, slope = node.exponent_and_slope
     ahead = (node.L - slope) * (v - node.w)
-    return ahead + dominant_wave(v, samples) - Phi if Phi != 0 else ahead
+    return ahead + dominant_exponent(v, samples) - Phi if Phi != 0 else ahead
 
 
 @compiled
@@ -62,8 +62,8 @@ def phase_node(
     w: complex,
     known: Complex,
     trial: tuple[float, float],
-    hull: Hull,
-    arm: tuple[ArmSamples, BoundedPropagators],
+    hull: EigenvalueHull,
+    arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w, inside or outside the hull.
 
@@ -71,7 +71,7 @@ def phase_node(
     circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = determinant_along_chain(w, arm[1][0], arm[1][1])
-    if not abs(value.D) > ARM_COUNT.rounding_over_noise * value.noise:
+    if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
@@ -83,7 +83,7 @@ def phase_node(
     reach = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
-        reach = 1 / (1 / distance + math.sqrt(S / (2 * ARM_COUNT.max_tangent_error)))
+        reach = 1 / (1 / distance + math.sqrt(S / (2 * CONTOUR_SETTINGS.max_tangent_error)))
     node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
     return node if reach > trial[0] else _node_inside(node, value, known, trial, arm)
 
@@ -94,7 +94,7 @@ def _node_inside(
     value: DeterminantValue,
     known: Complex,
     trial: tuple[float, float],
-    arm: tuple[ArmSamples, BoundedPropagators],
+    arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest reach.
 
@@ -102,28 +102,28 @@ def _node_inside(
     """
     w = node.w
     samples, (W, propagators) = arm
-    unit = min(trial[0], ARM_COUNT.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
-    smallest = ARM_COUNT.smallest_radius * unit
-    room = ARM_COUNT.max_change - ARM_COUNT.rounding_over_noise * value.noise / abs(value.D)
+    unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
+    least = CONTOUR_SETTINGS.smallest_radius * unit
+    room = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known)
     best = node
-    rho = max(trial[1], smallest)
-    while rho >= smallest:
+    rho = max(trial[1], least)
+    while rho >= least:
         wave = (0j, 0j)
-        if rho <= ARM_COUNT.max_wave_radius * w.imag:
-            wave = (dominant_wave(w, samples), slope_of_wave(w, samples))
+        if rho <= CONTOUR_SETTINGS.max_wave_radius * w.imag:
+            wave = (dominant_exponent(w, samples), dominant_exponent_slope(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # Smaller circles give at most this reach.
-        enough = max(best.reach, _reach_of_circle(rho / 2, ARM_COUNT.between_points_factor, room))
+        enough = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.between_points_factor, room))
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
-        for direction in ARM_COUNT.directions:
+        for direction in CONTOUR_SETTINGS.directions:
             v = w + rho * direction
             log = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known)
             size = max(size, log - tangent_of_log(tried, v, samples).real)
-            M = ARM_COUNT.between_points_factor * math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
-            reach = _reach_of_circle(rho, M, room)
-            if reach <= best.reach or (reach < ARM_COUNT.min_reach_fraction * rho and rho / 2 >= smallest):
+            growth = math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
+            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.between_points_factor * growth, room)
+            if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= least):
                 reach = 0.0
                 break
         if reach > best.reach:

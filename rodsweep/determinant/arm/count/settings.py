@@ -10,7 +10,7 @@ from ....model.compiled.settings import CompiledSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmCountSettings(CompiledSettings):
+class ContourSettings(CompiledSettings):
     """Settings for the nodes on the contour of a count, and for the circles about nodes inside the hull."""
 
     max_tangent_error: float = 1.5
@@ -45,7 +45,7 @@ class ArmCountSettings(CompiledSettings):
     """Distance to the next node divided by the sum of the expected reaches of both nodes."""
     largest_growth: float = 0.5
     """Largest expected growth of the reach per distance; the next node is then at most 3.6 reaches away."""
-    min_reach_fraction: float = 0.2
+    min_reach_ratio: float = 0.2
     """If the reach is below this fraction of a circle's radius, the next smaller circle is tried at once."""
     first_radius: float = 12.0
     """Radius of the first circle at a node without a previous circle, in units of the length over which D
@@ -83,7 +83,7 @@ class ArmCountSettings(CompiledSettings):
         return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_points).tolist())
 
 
-ARM_COUNT = ArmCountSettings()
+CONTOUR_SETTINGS = ContourSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,7 +127,9 @@ class NoCrossingSettings(CompiledSettings):
     @property
     def max_change(self) -> float:
         """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
-        return ARM_COUNT.max_change / (ARM_COUNT.between_points_factor * self.between_arms_factor)
+        return CONTOUR_SETTINGS.max_change / (
+            CONTOUR_SETTINGS.between_points_factor * self.between_arms_factor
+        )
 
 
 NO_CROSSING_SETTINGS = NoCrossingSettings()

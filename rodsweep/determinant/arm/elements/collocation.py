@@ -19,10 +19,9 @@ from s^m = 1 at the clamp, all other minors 0, to D = s^m at the tip. Integratin
 would lose the second solution in the rounding errors of the growing exponential; the minors do not.
 
 Elements are solved by collocation at their Gauss points, for one power of w after another: the terms of the
-propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENTS.lane_count` elements are solved together. The
-last axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops over it are
-vector instructions. STAGES, LANES and MAX_TERMS are the settings of these names.
-"""
+propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENT_SETTINGS.lane_count` elements are solved
+together. The last axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops
+over it are vector instructions. STAGES, LANES and MAX_TERMS are the settings of these names."""
 
 from typing import NamedTuple
 
@@ -49,7 +48,7 @@ from .minor_rates import (
     fill_theta_m_rates,
     fill_y_theta_rates,
 )
-from .settings import ARM_ELEMENTS, MINORS
+from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 
 class IntegrationMatrices(NamedTuple):
@@ -70,25 +69,25 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
     of the elements, in L, (elements,).
     """
     n, elements = local.shape[1:3]
-    batches = -(-elements // ARM_ELEMENTS.lane_count)
-    coefficients = np.empty((n, batches, 6, ARM_ELEMENTS.stages, ARM_ELEMENTS.lane_count))
-    for arm in range(n):
-        for b in range(batches):
-            for lane in range(ARM_ELEMENTS.lane_count):
-                # The last batch is filled up with the last element.
-                e = min(b * ARM_ELEMENTS.lane_count + lane, elements - 1)
-                for q in range(6):
-                    for i in range(ARM_ELEMENTS.stages):
-                        coefficients[arm, b, q, i, lane] = local[q, arm, e, i] * lengths[e]
-    terms = np.zeros((n, batches * ARM_ELEMENTS.lane_count, ARM_ELEMENTS.max_terms, PADDED))
-    most = fill_terms(F, W, coefficients, method, terms)
-    if most > ARM_ELEMENTS.max_terms:
+    batches = -(-elements // ARM_ELEMENT_SETTINGS.lane_count)
+    coefficients = np.empty((n, batches, 6, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.lane_count))
+    for b in range(batches):
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            # The last batch is filled up with the last element.
+            e = min(b * ARM_ELEMENT_SETTINGS.lane_count + lane, elements - 1)
+            for arm in range(n):
+                coefficients[arm, b, :, :, lane] = local[:, arm, e] * lengths[e]
+    terms = np.zeros((n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED))
+    most = fill_propagator_terms(F, W, coefficients, method, terms)
+    if most > ARM_ELEMENT_SETTINGS.max_terms:
         return terms[:, :, :0].copy()
     return terms[:, :elements, :most].copy()
 
 
 @compiled
-def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array) -> int:
+def fill_propagator_terms(
+    F: Array, W: float, coefficients: Array, method: IntegrationMatrices, terms: Array
+) -> int:
     """Fills `terms`, the coefficients of propagators; returns the number of terms needed, or MAX_TERMS + 1 if
     MAX_TERMS do not suffice.
 
@@ -97,19 +96,20 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
     PADDED), all 0 at first.
     """
     most = 1
-    values = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
-    rates = np.empty((MINORS, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
-    local = np.empty((6, ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
-    turning = np.empty((ARM_ELEMENTS.stages, 1 + ARM_ELEMENTS.stages, ARM_ELEMENTS.width))
+    shape = (ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width)
+    values = np.empty((MINORS, *shape))
+    rates = np.empty((MINORS, *shape))
+    local = np.empty((6, *shape))
+    turning = np.empty((shape[0], 1 + shape[0], shape[1]))
     for arm in range(len(F)):
         for b in range(coefficients.shape[1]):
             _repeat_per_initial_value(coefficients[arm, b], local)
-            for lane in range(ARM_ELEMENTS.lane_count):
+            for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
                 own = coefficients[arm, b, :, :, lane]
                 eliminated = elimination_matrix(F[arm], own[C3], own[G], method.integrals)
                 _copy_to_simd_lane(eliminated, lane, turning)
-            here = terms[arm, b * ARM_ELEMENTS.lane_count : (b + 1) * ARM_ELEMENTS.lane_count]
-            most = max(most, _fill_batch((F[arm], W), local, (method, turning), (values, rates), here))
+            here = terms[arm, b * ARM_ELEMENT_SETTINGS.lane_count : (b + 1) * ARM_ELEMENT_SETTINGS.lane_count]
+            most = max(most, _fill_batch_terms((F[arm], W), local, (method, turning), (values, rates), here))
     return most
 
 
@@ -117,10 +117,10 @@ def fill_terms(F: Array, W: float, coefficients: Array, method: IntegrationMatri
 def _repeat_per_initial_value(coefficients: Array, local: Array) -> None:
     """Writes coefficients, (6, STAGES, LANES), once for each initial value into local, (6, STAGES, WIDTH)."""
     for q in range(6):
-        for i in range(ARM_ELEMENTS.stages):
+        for i in range(ARM_ELEMENT_SETTINGS.stages):
             for k in range(MINORS):
-                for lane in range(ARM_ELEMENTS.lane_count):
-                    local[q, i, k * ARM_ELEMENTS.lane_count + lane] = coefficients[q, i, lane]
+                for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+                    local[q, i, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = coefficients[q, i, lane]
 
 
 @compiled_for_vectors
@@ -128,14 +128,14 @@ def _copy_to_simd_lane(eliminated: Array, lane: int, turning: Array) -> None:
     """Copies `eliminated`, the `elimination_matrix` of one element, into the columns of lane number `lane` of
     `turning`, (STAGES, 1 + STAGES, WIDTH).
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for j in range(1 + ARM_ELEMENTS.stages):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for j in range(1 + ARM_ELEMENT_SETTINGS.stages):
             for k in range(MINORS):
-                turning[i, j, k * ARM_ELEMENTS.lane_count + lane] = eliminated[i, j]
+                turning[i, j, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = eliminated[i, j]
 
 
 @compiled
-def _fill_batch(
+def _fill_batch_terms(
     load: tuple[float, float],
     local: Array,
     method: tuple[IntegrationMatrices, Array],
@@ -183,15 +183,15 @@ def _fill_batch(
 @compiled_for_vectors
 def _integrate(Q: Array, rates: Array, out: Array) -> None:
     """out = the integrals of rates, both (STAGES, WIDTH), to each stage; Q: integrals, (STAGES, STAGES)."""
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             out[i, c] = 0.0
-        for j in range(0, ARM_ELEMENTS.stages, 4):  # four products at a time save passes over `out`
+        for j in range(0, ARM_ELEMENT_SETTINGS.stages, 4):  # four products at a time save passes over `out`
             p = Q[i, j]
             q = Q[i, j + 1]
             r = Q[i, j + 2]
             s = Q[i, j + 3]
-            for c in range(ARM_ELEMENTS.width):
+            for c in range(ARM_ELEMENT_SETTINGS.width):
                 out[i, c] += p * rates[j, c] + q * rates[j + 1, c] + r * rates[j + 2, c] + s * rates[j + 3, c]
 
 
@@ -201,11 +201,11 @@ def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
 
     turning: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH).
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             out[i, c] = 0.0
-        for j in range(0, ARM_ELEMENTS.stages, 4):
-            for c in range(ARM_ELEMENTS.width):
+        for j in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
+            for c in range(ARM_ELEMENT_SETTINGS.width):
                 out[i, c] += turning[i, j + 1, c] * rates[j, c] + turning[i, j + 2, c] * rates[j + 1, c]
                 out[i, c] += turning[i, j + 3, c] * rates[j + 2, c] + turning[i, j + 4, c] * rates[j + 3, c]
 
@@ -217,19 +217,20 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
 
     terms: (LANES, MAX_TERMS, PADDED). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
     """
-    end = np.zeros((MINORS, ARM_ELEMENTS.width))
+    end = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
     _add_end_integrals(weights, rates, end)
     done = True
-    for lane in range(ARM_ELEMENTS.lane_count):
+    for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
         size = 0.0
         first = 0.0
         for row in range(MINORS):
             for k in range(MINORS):
-                entry = end[row, k * ARM_ELEMENTS.lane_count + lane] + (1.0 if n == 0 and k == row else 0.0)
+                entry = end[row, k * ARM_ELEMENT_SETTINGS.lane_count + lane]
+                entry += 1.0 if n == 0 and k == row else 0.0
                 terms[lane, n, MINORS * k + row] = entry
                 size = max(size, abs(entry))
                 first = max(first, abs(terms[lane, 0, MINORS * k + row]))
-        done = done and size <= ARM_ELEMENTS.negligible_term * first
+        done = done and size <= ARM_ELEMENT_SETTINGS.negligible_term * first
     return done
 
 
@@ -239,11 +240,11 @@ def _add_end_integrals(weights: Array, rates: Array, end: Array) -> None:
     weights: Gauss weights, (STAGES,).
     """
     for row in range(MINORS):
-        for i in range(0, ARM_ELEMENTS.stages, 4):
+        for i in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
             p = weights[i]
             q = weights[i + 1]
             r = weights[i + 2]
             s = weights[i + 3]
-            for c in range(ARM_ELEMENTS.width):
+            for c in range(ARM_ELEMENT_SETTINGS.width):
                 end[row, c] += p * rates[row, i, c] + q * rates[row, i + 1, c]
                 end[row, c] += r * rates[row, i + 2, c] + s * rates[row, i + 3, c]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ...exponents import EXPONENT_SETTINGS
-from .settings import ARM_ELEMENTS
+from .settings import ARM_ELEMENT_SETTINGS
 
 
 @compiled
@@ -32,8 +32,10 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
         part = (breaks[piece + 1] - start) / parts
         own = density[piece * parts : (piece + 1) * parts]
         mass = own.sum() * part
-        if not (math.inf > W and mass <= ARM_ELEMENTS.max_elements):  # a count of inf or nan is undefined
-            return np.zeros(ARM_ELEMENTS.max_elements + 1)
+        if not (
+            math.inf > W and mass <= ARM_ELEMENT_SETTINGS.max_elements
+        ):  # a count of inf or nan is undefined
+            return np.zeros(ARM_ELEMENT_SETTINGS.max_elements + 1)
         count = max(1, math.ceil(mass))
         below = 0.0
         k = 0
@@ -61,12 +63,13 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
         for arm in range(squares.shape[1]):
             drag, load, rate, bend = squares[:, arm, i]
             waves = max(waves, drag * W + abs(load) + 2 * math.sqrt(W * (abs(rate) + bend * W)))
-        density[i] = math.sqrt(waves) / ARM_ELEMENTS.max_exponent
+        density[i] = math.sqrt(waves) / ARM_ELEMENT_SETTINGS.max_exponent
         for taper in (tapers.min(), tapers.max()):
             if taper != 1:
                 apex = 1 / (1 - taper)
                 density[i] = max(
-                    density[i], 1 / (ARM_ELEMENTS.max_length_over_apex_distance * abs(apex - points[i]))
+                    density[i],
+                    1 / (ARM_ELEMENT_SETTINGS.max_length_over_apex_distance * abs(apex - points[i])),
                 )
     return density
 
@@ -77,7 +80,7 @@ def halved_where_coarse(edges: Array, local: Array) -> Array:
 
     local: coefficients of n arms at the Gauss points, (6, n, elements, stages).
     """
-    coarse = _is_coarse(local, _last_legendre_matrix(ARM_ELEMENTS.stages))
+    coarse = _is_coarse(local, _last_legendre_matrix(ARM_ELEMENT_SETTINGS.stages))
     if not coarse.any():
         return edges
     middles = (edges[:-1] + edges[1:])[coarse] / 2
@@ -113,5 +116,5 @@ def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
                     size = max(size, abs(value))
                     first += value * last_terms[0, i]
                     second += value * last_terms[1, i]
-                coarse[e] |= not max(abs(first), abs(second)) <= ARM_ELEMENTS.largest_tail * size
+                coarse[e] |= not max(abs(first), abs(second)) <= ARM_ELEMENT_SETTINGS.largest_tail * size
     return coarse

@@ -4,7 +4,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_for_vectors
-from .settings import ARM_ELEMENTS
+from .settings import ARM_ELEMENT_SETTINGS
 
 
 @compiled
@@ -15,9 +15,9 @@ def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
     a start value of 1. Q: matrix of integrals from 0 to each Gauss point, (STAGES, STAGES). c3, g:
     coefficients at the Gauss points times the length of the element, (STAGES,).
     """
-    stages = ARM_ELEMENTS.stages
+    stages = ARM_ELEMENT_SETTINGS.stages
     # The matrix, the right-hand sides 1 and Q, and columns of zeros: rows are whole vector instructions.
-    system = np.zeros((stages, 2 * stages + ARM_ELEMENTS.lane_count))
+    system = np.zeros((stages, 2 * stages + ARM_ELEMENT_SETTINGS.lane_count))
     row = np.empty(system.shape[1])
     row[:stages] = g
     _add_twice_integrated(F, c3, row, Q, system)
@@ -49,16 +49,16 @@ def _solve_linear_system(system: Array, row: Array) -> None:
     row: (columns,), overwritten.
     """
     columns = system.shape[1]
-    for column in range(ARM_ELEMENTS.stages):
+    for column in range(ARM_ELEMENT_SETTINGS.stages):
         pivot = column
-        for i in range(column + 1, ARM_ELEMENTS.stages):
+        for i in range(column + 1, ARM_ELEMENT_SETTINGS.stages):
             if abs(system[i, column]) > abs(system[pivot, column]):
                 pivot = i
         scale = 1 / system[pivot, column]
         for j in range(columns):
             row[j] = system[pivot, j] * scale
             system[pivot, j] = system[column, j]
-        for i in range(ARM_ELEMENTS.stages):
+        for i in range(ARM_ELEMENT_SETTINGS.stages):
             factor = system[i, column]
             for j in range(columns):
                 system[i, j] -= factor * row[j]

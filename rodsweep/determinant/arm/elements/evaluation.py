@@ -13,17 +13,17 @@ import numpy as np
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_for_vectors
 from .minor_rates import PADDED, SM
-from .settings import ARM_ELEMENTS, MINORS
+from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 """Rows of powers and of propagators: real and imaginary parts of the value and of its derivative by z."""
 
 
 @compiled
-def _needed_terms(size: float, terms: int) -> int:
+def _needed_power_count(size: float, terms: int) -> int:
     """Number of powers of z that are not negligible in C and dC/dz at |z| = size, at most `terms`."""
     needed = terms
-    while needed > 2 and size <= ARM_ELEMENTS.largest_z_by_term_count[needed - 1]:
+    while needed > 2 and size <= ARM_ELEMENT_SETTINGS.largest_z_by_term_count[needed - 1]:
         needed -= 1
     return needed
 
@@ -35,7 +35,7 @@ def powers_and_derivatives(z: complex, terms: int) -> Array:
 
     terms: number of powers in the polynomials.
     """
-    powers = np.zeros((_needed_terms(abs(z), terms), 4))
+    powers = np.zeros((_needed_power_count(abs(z), terms), 4))
     powers[0, RE] = 1.0
     for n in range(1, len(powers)):
         # Multiplying two halves accumulates fewer rounding errors than n - 1 multiplications by z.
@@ -72,7 +72,7 @@ def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def fill_value(polynomial: Array, powers: Array, out: Array) -> None:
+def fill_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
     """Writes a propagator C, without dC/dz, into out, (2, PADDED). polynomial, powers: see the module
     docstring."""
     _fill_rows(polynomial, powers, (RE, IM), out)
@@ -114,7 +114,7 @@ def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Arr
 
 
 @compiled_for_vectors
-def fill_real_value(polynomial: Array, powers: Array, out: Array) -> None:
+def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
     """Writes a propagator C at real z, without dC/dz, into out, (PADDED,). polynomial, powers: see the module
     docstring.
     """
@@ -126,7 +126,7 @@ def fill_real_value(polynomial: Array, powers: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def multiply(C: Array, x: Array, out: Array) -> None:
+def apply_propagator(C: Array, x: Array, out: Array) -> None:
     """out = C x for a propagator C, (2 or more, PADDED), and minors x and out, (2, MINORS)."""
     for i in range(MINORS):
         out[0, i] = out[1, i] = 0.0
@@ -139,7 +139,7 @@ def multiply(C: Array, x: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def multiply_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+def apply_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
     (2, MINORS).
     """
@@ -157,7 +157,7 @@ def multiply_with_change(C: Array, t: Array, change: Array, x: Array, out: Array
 
 
 @compiled_for_vectors
-def multiply_real(C: Array, x: Array, out: Array) -> None:
+def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
     """out = C x for a real propagator C, (PADDED,), and real minors x and out, (MINORS,)."""
     for i in range(MINORS):
         out[i] = 0.0
@@ -168,7 +168,7 @@ def multiply_real(C: Array, x: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def multiply_real_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
+def apply_real_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for real propagators C and change, (PADDED,), and real minors t, x, out,
     (MINORS,).
     """

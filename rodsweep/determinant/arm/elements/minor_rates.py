@@ -8,7 +8,7 @@ turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). star
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
-from .settings import ARM_ELEMENTS, MINORS
+from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 SM, TS, TM, YT, YM = range(MINORS)
 """Row indices of the minors s^m, theta^s, theta^m, y^theta and y^m."""
@@ -26,9 +26,9 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
     """Adds `start` to the values, (MINORS, STAGES, WIDTH), of the minor with row index `minor`, in the lanes
     of the solution whose start value is 1 for this minor and 0 for all other minors.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for lane in range(ARM_ELEMENTS.lane_count):
-            values[minor, i, minor * ARM_ELEMENTS.lane_count + lane] += start
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            values[minor, i, minor * ARM_ELEMENT_SETTINGS.lane_count + lane] += start
 
 
 @compiled_for_vectors
@@ -36,9 +36,9 @@ def add_eliminated_start_value(minor: int, start: float, turning: Array, values:
     """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
     values: (MINORS, STAGES, WIDTH). turning: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for lane in range(ARM_ELEMENTS.lane_count):
-            c = minor * ARM_ELEMENTS.lane_count + lane
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            c = minor * ARM_ELEMENT_SETTINGS.lane_count + lane
             values[minor, i, c] += start * turning[i, 0, c]
 
 
@@ -49,8 +49,8 @@ def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None
 
     values, rates: (MINORS, STAGES, WIDTH). local: coefficients, (6, STAGES, WIDTH). W: unit of w.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             push = W * local[GAMMA2, i, c]
             turn = W * local[GAMMA3, i, c]
             rates[SM, i, c] = push * values[YM, i, c] - turn * values[TS, i, c]
@@ -63,11 +63,11 @@ def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates
     """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
     theta^m. local, values: see the module docstring.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENTS.lane_count):
-            c = TM * ARM_ELEMENTS.lane_count + lane
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
             rates[TS, i, c] += F * start * local[C3, i, c]
 
 
@@ -76,8 +76,8 @@ def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
     """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). local, values: see the module
     docstring.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
 
 
@@ -87,14 +87,14 @@ def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, ra
     y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted. local, values:
     see the module docstring.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             turn = values[TM, i, c]
             rates[TS, i, c] += F * local[C3, i, c] * turn
             rates[YM, i, c] += (local[G, i, c] + local[NU, i, c]) * turn
             rates[YM, i, c] += local[C2, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENTS.lane_count):
-            c = TM * ARM_ELEMENTS.lane_count + lane
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
             rates[TS, i, c] -= F * start * local[C3, i, c]  # contained in `add_theta_s_rates`
 
 
@@ -103,8 +103,8 @@ def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
     """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). local, values: see the
     module docstring.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
 
 
@@ -113,6 +113,6 @@ def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) ->
     """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. local, values: see the module
     docstring.
     """
-    for i in range(ARM_ELEMENTS.stages):
-        for c in range(ARM_ELEMENTS.width):
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]

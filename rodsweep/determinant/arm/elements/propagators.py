@@ -12,7 +12,7 @@ import numpy as np
 
 from ....arrays import Array
 from .collocation import IntegrationMatrices, propagator_terms
-from .settings import ARM_ELEMENTS
+from .settings import ARM_ELEMENT_SETTINGS
 
 
 @cache
@@ -33,8 +33,8 @@ def gauss_method(stages: int) -> tuple[Array, Array, Array]:
 
 @cache
 def _collocation_method() -> IntegrationMatrices:
-    """The collocation method of `ARM_ELEMENTS.stages` Gauss points, as arrays for compiled code."""
-    _, integrals, weights = gauss_method(ARM_ELEMENTS.stages)
+    """The collocation method of `ARM_ELEMENT_SETTINGS.stages` Gauss points, as arrays for compiled code."""
+    _, integrals, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
     return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 
 
@@ -48,6 +48,7 @@ def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: flo
     terms = propagator_terms(np.array(F, float), W, local, lengths, _collocation_method())
     if not terms.size:
         raise FloatingPointError(
-            f"{ARM_ELEMENTS.max_terms} powers of w do not resolve the elements of this arm at |w| = {W:g}"
+            f"{ARM_ELEMENT_SETTINGS.max_terms} powers of w do not resolve the elements of this arm "
+            f"at |w| = {W:g}"
         )
     return terms

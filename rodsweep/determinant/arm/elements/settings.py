@@ -81,4 +81,4 @@ class ArmElementSettings(CompiledSettings):
             raise ValueError(f"{self.stages} stages are not a multiple of 4")
 
 
-ARM_ELEMENTS = ArmElementSettings()
+ARM_ELEMENT_SETTINGS = ArmElementSettings()

@@ -49,8 +49,8 @@ AVERAGED_WEIGHT_SETTINGS = AveragedWeightSettings()
 class GridPositions(NamedTuple):
     """Positions of n points in a grid: index of the grid interval, (n,), and fraction of its length, (n,)."""
 
-    interval: NDArray[np.int64]
-    share: Array
+    interval_index: NDArray[np.int64]
+    fraction: Array
 
 
 @compiled
@@ -112,10 +112,10 @@ def _grid_positions(x: Array, grid: Array) -> GridPositions:
 @compiled
 def _interpolate_at_positions(places: GridPositions, values: Array) -> Array:
     """Values at positions in a grid, (n,), interpolated linearly from `values` at the grid points."""
-    out = np.empty(len(places.share))
+    out = np.empty(len(places.fraction))
     for n in range(len(out)):
-        i = places.interval[n]
-        out[n] = values[i] + places.share[n] * (values[i + 1] - values[i])
+        i = places.interval_index[n]
+        out[n] = values[i] + places.fraction[n] * (values[i + 1] - values[i])
     return out
 
 
@@ -154,8 +154,8 @@ def _write_regions_of_trial(
         t = math.exp(log_t[i])
         A2 = ((ahead[i] - behind[i]) / (2 * h)) ** 2 / (gamma2 * c2)
         B2 = F * F * alpha * c3 / gamma2
-        split = max(split, squared_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
-        whole = max(whole, squared_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
+        split = max(split, squared_block_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
+        whole = max(whole, squared_block_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
         if i > 0:
             # As theta(0) = 0, |theta(u)|^2 is at most int_0^u c3 du times int c3 |m|^2 du.
             bend += (u[i] - u[i - 1]) * (c3 + local[2, i - 1]) / 2
@@ -185,7 +185,7 @@ def _averaged_log_weight(
 
 
 @compiled
-def squared_norm(A2: float, B2: float, e: float, drag: float) -> float:
+def squared_block_norm(A2: float, B2: float, e: float, drag: float) -> float:
     """Squared norm of the matrix [[A, B], [e/sqrt(drag), 0]]; A2 = A^2, B2 = B^2; inf if drag = 0 and e !=
     0."""
     if e == 0:

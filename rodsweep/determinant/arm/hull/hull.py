@@ -34,11 +34,11 @@ from ....model.compiled.compilation import compiled
 from ....model.material.build import Build
 from ....model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
-from .region import HULL_SETTINGS, UNBOUNDED_HULL, Hull, PathHulls
+from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
 from .weights import clamp_integrals, constant_weights, least_squared_norm, varying_weight_norms
 
 
-def hull_of(rod: Rod) -> Hull:
+def hull_of(rod: Rod) -> EigenvalueHull:
     """The smallest hull found for the spectrum of an arm; `UNBOUNDED_HULL` if no bound is found."""
     return _hull_of_sampled_arms(_sample_arms([rod]))
 
@@ -53,12 +53,12 @@ def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
-def _hull_of_sampled_arms(arms: "SampledArms") -> Hull:
+def _hull_of_sampled_arms(arms: "SampledArms") -> EigenvalueHull:
     largest = 1 - HULL_SETTINGS.min_remainder
     a, c = _smallest_region(
         arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), largest
     )
-    return Hull((1 + HULL_SETTINGS.enlargement) * a, c) if isfinite(a) else UNBOUNDED_HULL
+    return EigenvalueHull((1 + HULL_SETTINGS.enlargement) * a, c) if isfinite(a) else UNBOUNDED_HULL
 
 
 class SampledArms(NamedTuple):

@@ -44,7 +44,7 @@ class HullSettings(CompiledSettings):
 HULL_SETTINGS = HullSettings()
 
 
-class Hull(NamedTuple):
+class EigenvalueHull(NamedTuple):
     """Region that contains all eigenvalues: Re w <= a n - (1 - c) n^2 and |Im w| <= a n + c n^2 for some n >=
     0.
 
@@ -68,7 +68,7 @@ class Hull(NamedTuple):
         return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
 
 
-UNBOUNDED_HULL = Hull(inf, 0.0)
+UNBOUNDED_HULL = EigenvalueHull(inf, 0.0)
 """The whole plane of w, for an arm whose eigenvalues have no a-priori bound."""
 
 
@@ -99,7 +99,7 @@ def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]
 class PathHulls(NamedTuple):
     """Hulls of all arms of a path: hull number i is valid for every p between p[i] and p[i + 1].
 
-    p: increasing values of the path variable, (k,). a, c: constants of `Hull`, (k - 1,).
+    p: increasing values of the path variable, (k,). a, c: constants of `EigenvalueHull`, (k - 1,).
     """
 
     p: Array
@@ -108,9 +108,9 @@ class PathHulls(NamedTuple):
 
 
 @compiled
-def hull_at(hulls: PathHulls, p: float) -> Hull:
+def hull_at(hulls: PathHulls, p: float) -> EigenvalueHull:
     """The hull of the arm at p, which lies between the first and the last of `hulls.p`."""
     i = 0
     while i < len(hulls.a) - 1 and p > hulls.p[i + 1]:
         i += 1
-    return Hull(hulls.a[i], hulls.c[i])
+    return EigenvalueHull(hulls.a[i], hulls.c[i])

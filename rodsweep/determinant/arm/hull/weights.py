@@ -8,7 +8,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from .averaged_weight import squared_norm
+from .averaged_weight import squared_block_norm
 from .region import HULL_SETTINGS
 
 
@@ -76,7 +76,7 @@ def varying_weight_norms(F: Array, lengths: Array, local: Array, derivative: Arr
                     A2 = slope * slope / (gamma2 * c2)
                     B2 = F[arm] * F[arm] * alpha * c3 / gamma2
                     e = alpha * level[i]  # g - alpha nu
-                    found[m] = max(found[m], squared_norm(A2, B2, e, gamma3 * alpha * c2))
+                    found[m] = max(found[m], squared_block_norm(A2, B2, e, gamma3 * alpha * c2))
     return found
 
 

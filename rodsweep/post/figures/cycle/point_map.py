@@ -65,7 +65,7 @@ def point_map(view: View) -> PointMap:
     return PointMap((varied[0], varied[1]), x[finite[0]], y[finite[1]], at, shared, left_out)
 
 
-def is_map(view: View) -> bool:
+def varies_two_parameters_on_grid(view: View) -> bool:
     """Whether the points of a file form a grid over two parameters."""
     try:
         point_map(view)

@@ -58,7 +58,7 @@ class BorderCondition:
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
                 raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
-            orbit = moved_orbit(orbit, self.scale.name, step)
+            orbit = moved_orbit(orbit, self.scale.parameter, step)
             off = off + change
             rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.
@@ -84,7 +84,7 @@ class BorderCondition:
     ) -> ConvergedOrbit:
         """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.
         tolerance, distance: as in `solve_cycle`."""
-        return self.solve_cycle(mesh.interpolate(found.orbit), tolerance, found.workspace, distance)
+        return self.solve_cycle(mesh.interpolated_orbit(found.orbit), tolerance, found.workspace, distance)
 
 
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
@@ -98,7 +98,7 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
     # Where gamma3 passes the least eliminated drag, the unknowns of the states change: states cannot be
     # compared.
-    if form.omega_unknown != orbit.form.omega_unknown:
+    if form.is_omega_unknown != orbit.form.is_omega_unknown:
         raise Unsolvable(
             f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
             "or is eliminated"

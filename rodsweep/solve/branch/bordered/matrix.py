@@ -8,19 +8,18 @@ from functools import cached_property
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...orbit.matrix.elimination import eliminate
+from ...orbit.matrix.elimination import eliminate_newton_matrix
 from ...orbit.matrix.linearisation import (
-    change_along,
-    jump_of,
-    over_period,
-    partial_multipliers,
+    closing_residual,
+    parameter_derivatives,
     reduced_residuals,
     reduced_variations,
 )
-from ...orbit.matrix.phase import phase, phase_change, phase_row
-from ...orbit.matrix.right_sides import right_sides
+from ...orbit.matrix.multipliers import multipliers_over_period, partial_multipliers
+from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
+from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
-from ...orbit.matrix.substitution import substitute
+from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
@@ -41,20 +40,22 @@ class BorderedMatrix:
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
         p = orbit.semidiscrete
-        along = change_along(orbit.form, scale.name)
+        along = parameter_derivatives(orbit.form, scale.parameter)
         K, s, n = orbit.states.shape
-        V = np.empty((K, s, 3, len(p.matrices.weights)))
+        V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
-        right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
-        ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
+        write_right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        ends = eliminate_newton_matrix(
+            orbit.points, V, orbit.duration, p, self._memory.factors, self._columns
+        )
         self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
-        m = len(self._shooting_intervals.maps)
+        m = len(self._shooting_intervals.flow_maps)
         self._matrix = np.zeros((m * n + 2, m * n + 2))
         for j in range(m):
             rows = slice(j * n, (j + 1) * n)
-            self._matrix[rows, rows] = self._shooting_intervals.maps[j]
+            self._matrix[rows, rows] = self._shooting_intervals.flow_maps[j]
             # The last shooting interval ends at the symmetric image of the first interval's start.
 
             if j < m - 1:
@@ -65,10 +66,11 @@ class BorderedMatrix:
             own = slice(c, c + 1)
             self._matrix[:-2, place] = -self.closing_sides(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
-        phase_row(orbit.start, p.rod, p.matrices, row)
+        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
         self._matrix[-2, :n] = row
-        # `phase_change` is a right-hand side, with a minus sign; in a column of the matrix the sign is plus.
-        self._matrix[-2, -1] = -phase_change(orbit.start, along.change, p.rod, p.matrices)
+        # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
+        # plus.
+        self._matrix[-2, -1] = -phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
         self._closing_sides = self._closing_and_phase_sides(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
@@ -98,7 +100,7 @@ class BorderedMatrix:
 
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
-        along = change_along(orbit.form, self.scale.name)
+        along = parameter_derivatives(orbit.form, self.scale.parameter)
         equations = orbit.semidiscrete
         p = self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
@@ -110,7 +112,7 @@ class BorderedMatrix:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
         state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
-        substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
+        substitute_stages(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
@@ -124,14 +126,14 @@ class BorderedMatrix:
     def partial_multipliers(self) -> Complex:
         """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
         the reflection for a symmetric orbit."""
-        if len(self._shooting_intervals.maps) == 1:
+        if len(self._shooting_intervals.flow_maps) == 1:
             return partial_multipliers(self.propagator, self.orbit)
         return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return over_period(self.partial_multipliers, self.orbit)
+        return multipliers_over_period(self.partial_multipliers, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Right singular vector of the matrix with the parameter fixed, for the smallest singular value, (N +
@@ -153,7 +155,7 @@ class BorderedMatrix:
         fixed start, (1, n).
         """
         p = self.orbit.semidiscrete
-        sides = -self._shooting_intervals.ends(self._memory.factors, columns, ends, p)[:, 0]
+        sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
@@ -163,8 +165,8 @@ class BorderedMatrix:
         n). ends: change of the end of the last shooting interval caused by `columns` for a fixed start, (1,
         n)."""
         p = orbit.semidiscrete
-        right = self.closing_sides(jump_of(orbit.points, p), columns, ends)
-        return np.append(right, -phase(orbit.start, p.rod, p.matrices))
+        right = self.closing_sides(closing_residual(orbit.points, p), columns, ends)
+        return np.append(right, -phase_residual(orbit.start, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
@@ -189,7 +191,7 @@ class BorderedMatrix:
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._shooting_intervals.substituted(factors, starts, columns, self.orbit.semidiscrete)
+        out = self._shooting_intervals.stage_changes(factors, starts, columns, self.orbit.semidiscrete)
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 

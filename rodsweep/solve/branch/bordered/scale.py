@@ -21,7 +21,7 @@ from functools import lru_cache
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.arm_on_mesh import profile_compliance_on
+from ....discretization.arm_on_mesh import profile_compliance_at_nodes
 from ....discretization.elements.elements import ELEMENT_SETTINGS
 from ....discretization.elements.mesh import Mesh
 from ....discretization.state_layout import StateLayout
@@ -32,15 +32,16 @@ from ...orbit.orbit import Orbit
 @dataclass(frozen=True, slots=True)
 class Scale:
     """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
-    `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter `name`."""
+    `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter
+    `parameter`."""
 
-    name: str
+    parameter: str
     deflection_unit: float
     coordinate_unit: float
     min_deflection_unit: float
 
     @classmethod
-    def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
+    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "Scale":
         """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
         the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
         deflection, in L."""
@@ -52,7 +53,7 @@ class Scale:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of
         the scale."""
         deflection = deflection_of(orbit) / self.deflection_unit
-        at = orbit.form.rod.coordinate(self.name) / self.coordinate_unit
+        at = orbit.form.rod.coordinate(self.parameter) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), at])
 
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
@@ -73,10 +74,10 @@ def deflection_row(orbit: Orbit) -> Array:
     return _deflection_row(form.layout, form.mesh, form.rod.build)
 
 
-@lru_cache(maxsize=ELEMENT_SETTINGS.max_meshes)
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """Cached `deflection_row`, (n,); callers share the array and must not change it."""
     # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
     # 0.
-    weights = mesh.quadrature * profile_compliance_on(build, mesh)
-    return layout.vector({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
+    weights = mesh.quadrature * profile_compliance_at_nodes(build, mesh)
+    return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.positions[:-1])})

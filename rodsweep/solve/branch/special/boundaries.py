@@ -12,26 +12,21 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curves import END_SETTINGS, SpecialCurveProblem
-from .cycle_curves import CURVE_IDENTITY, Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalfCurve
+from .curve_problem import END_SETTINGS, SpecialCurveProblem
 from .on_curve import SolvedPoint
-from .point import SpecialKind, SpecialPoint
+from .point import RowSpecialPoint, SpecialKind, SpecialPoint
+from .special_curves import (
+    CURVE_IDENTITY_SETTINGS,
+    Arrays,
+    CurveEnd,
+    CurvePoint,
+    HalfCurve,
+    SpecialPointCurve,
+    TracedHalfCurve,
+)
 
 FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 """Kinds of special points that are followed as curves, with the plural noun for messages."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RowSpecialPoint:
-    """A special point as the result file stores it. number: index of the row. row: value of the row
-    parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
-
-    number: int
-    row: float
-    kind: SpecialKind
-    at: float
-    period: float
-    tip_y_max: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +52,7 @@ class SpecialBoundaries:
             likely += curves.possible_items(search)
         return needed + likely if needed else []
 
-    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
+    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
@@ -70,7 +65,7 @@ class SpecialBoundaries:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY.max_distance)
+            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_distance)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -81,25 +76,25 @@ class SpecialBoundaries:
         index, behind = divmod(item, 2)
         one = self.special[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _trace_half_curve(limits, one, located(one.number), self.special).arrays()
+        return _trace_half_curve(limits, one, located(one.row_index), self.special).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
-        return self.special[item // 2].number
+        return self.special[item // 2].row_index
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
         index, behind = divmod(item, 2)
         one = self.special[index]
         way = "down" if behind else "up"
-        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row:.5g} {way}"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row_value:.5g} {way}"
 
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
     """Curve of two halves. distances: distances of nearby special points in row lengths, by point index."""
 
-    curve: CycleCurve
+    curve: SpecialPointCurve
     distances: Mapping[int, float]
 
 
@@ -124,7 +119,7 @@ class _CurvesOfKind:
         behind = 2 * seed + 1
         if ahead not in self.results:
             return [item for item in (ahead, behind) if item not in self.results]
-        half = TracedHalfCurve.of(self.results[ahead]).half
+        half = TracedHalfCurve.from_arrays(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
         on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
@@ -132,20 +127,22 @@ class _CurvesOfKind:
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Numbers of the half curves that may be needed later: from all special points on the rows on which
         the needed half curves start."""
-        rows = {self.special[item // 2].row for item in search.missing_items}
-        beside = sorted((i for i in search.open_seeds if self.special[i].row in rows), key=self._position)
+        rows = {self.special[item // 2].row_value for item in search.missing_items}
+        beside = sorted(
+            (i for i in search.open_seeds if self.special[i].row_value in rows), key=self._position
+        )
         return [item for i in beside for item in self.missing_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through special point `seed`, joined from two halves; None if a half was not followed."""
-        ahead = TracedHalfCurve.of(self.results[2 * seed])
+        ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if ahead.half is None:
             return None
         closed = ahead.half.end is CurveEnd.closed
-        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.of(self.results[2 * seed + 1])
+        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
-        curve = CycleCurve.joined(self.kind, ahead.half, behind.half)
+        curve = SpecialPointCurve.joined(self.kind, ahead.half, behind.half)
         near = dict(ahead.distances)
         for i, distance in behind.distances.items():
             near[i] = min(distance, near.get(i, math.inf))
@@ -155,7 +152,7 @@ class _CurvesOfKind:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
         near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY.max_distance
+        lies_off = near > CURVE_IDENTITY_SETTINGS.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return 0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special[seed]) else near
 
@@ -163,18 +160,18 @@ class _CurvesOfKind:
         """Whether two curves are identical: their ends coincide within a tolerance."""
         pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return all(distance <= CURVE_IDENTITY.max_end_distance for distance in distances)
+        return all(distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances)
 
     def _position(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.special[i].row, self.special[i].at
+        return self.special[i].row_value, self.special[i].at
 
-    def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
+    def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
         ends = curve.points[0], curve.points[-1]
         return sorted((p.row_coordinate, self.line.coordinate(p.at)) for p in ends)
 
-    def _lies_on_extrapolation(self, curve: CycleCurve, one: RowSpecialPoint) -> bool:
+    def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
@@ -182,14 +179,12 @@ class _CurvesOfKind:
             if end is None:
                 continue
             x = self.line.coordinate(end.at)
-            y = self.rows.coordinate(end.row)
+            y = self.rows.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.coordinate(one.row) - y) / (last.row_coordinate - y)
+            share = (self.rows.coordinate(one.row_value) - y) / (last.row_coordinate - y)
             chord = x + share * (self.line.coordinate(last.at) - x)
-            if (
-                0 <= share <= 1
-                and abs(chord - self.line.coordinate(one.at)) <= CURVE_IDENTITY.max_last_chord_distance
-            ):
+            distance = abs(chord - self.line.coordinate(one.at))
+            if 0 <= share <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
 
@@ -207,36 +202,39 @@ def _trace_half_curve(
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY.max_distance * width
-        and abs(point.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference
+        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_distance * width
+        and abs(point.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not same:
         return TracedHalfCurve(None)
     try:
-        points, end = limits.follow_from(same[0], one.row)
+        points, end = limits.follow_from(same[0], one.row_value)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: distance for i, distance in distances.items() if distance <= CURVE_IDENTITY.max_distance}
-    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.of, points)), end), near)
+    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_distance}
+    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 
 
 def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
     """Distance along the row of special point `one` from a curve, in row lengths; inf if not near."""
     if limits.kind != one.kind:
         return math.inf
-    row_coordinate = limits.rows.coordinate(one.row)
+    row_coordinate = limits.rows.coordinate(one.row_value)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
         if not low <= row_coordinate <= high or not _near_chord(limits, a, b, one):
             continue
         try:
-            crossing = limits.on_row(a, b, row_coordinate)
+            crossing = limits.point_on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
-        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY.max_period_difference:
-            best = min(best, abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)))
+        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
+            best = min(
+                best,
+                abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)),
+            )
     return best
 
 
@@ -245,6 +243,7 @@ def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one
     x = limits.line.coordinate(one.at)
     ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
-    on_line = ends[0] - CURVE_IDENTITY.max_chord_distance <= x <= ends[1] + CURVE_IDENTITY.max_chord_distance
-    ratio = 1 + CURVE_IDENTITY.max_period_change
+    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
+    on_line = ends[0] - margin <= x <= ends[1] + margin
+    ratio = 1 + CURVE_IDENTITY_SETTINGS.max_period_change
     return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio

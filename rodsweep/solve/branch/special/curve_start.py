@@ -53,19 +53,19 @@ def first_point_of_curve(
         intervals=ceil(CURVE_START_SETTINGS.interval_share * mesh.intervals),
         stages=stages_for(CURVE_SECANT_SETTINGS.accuracy),
     )
-    orbit = rough.interpolate(orbit)
+    orbit = rough.interpolated_orbit(orbit)
     least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
-    scale = Scale.of(orbit, line, least)
+    scale = Scale.at_orbit(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     row_coordinate = rows.coordinate(row)
     start = SolvedPoint(
         orbit=orbit,
         scale=scale,
-        ahead=ahead / np.linalg.norm(ahead),
+        branch_direction=ahead / np.linalg.norm(ahead),
         row_coordinate=row_coordinate,
         parameter=special.at,
         row_parameter=row,
     )
     family = CycleFamily.near_point(special.kind, rows, start, workspace)
-    return family.correct_with_error(orbit, row_coordinate, ALONG_BRANCH)
+    return family.corrected_point_with_error(orbit, row_coordinate, ALONG_BRANCH)

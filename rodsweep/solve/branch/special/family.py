@@ -36,15 +36,15 @@ class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
     kind: fold or torus. rows: axis of the row parameter. scale: units of arc length. border: direction of the
-    branch in components (deflection, log period, parameter), (3,). small: whether the fold test function is
-    divided by the deflection, because a Hopf point is near. workspace: memory of Newton's matrices.
-    """
+    branch in components (deflection, log period, parameter), (3,). has_small_cycles: whether the fold test
+    function is divided by the deflection, because a Hopf point is near. workspace: memory of Newton's
+    matrices."""
 
     kind: SpecialKind
     rows: PlaneAxis
     scale: Scale
     border: Array
-    small: bool
+    has_small_cycles: bool
     workspace: NewtonWorkspace
 
     @classmethod
@@ -53,19 +53,19 @@ class CycleFamily:
     ) -> "CycleFamily":
         """The family of the cycles near `point` of a curve of special points; the rest as in the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
-        return cls(kind, rows, point.scale, point.ahead, small, workspace)
+        return cls(kind, rows, point.scale, point.branch_direction, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
         """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
         return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
 
-    def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
+    def test_function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
         """The test function of this kind of special points, for cycles near the orbit of `matrix`."""
         if self.kind == SpecialKind.fold:
-            return FoldFunction(matrix, self.border, self.small)
+            return FoldFunction(matrix, self.border, self.has_small_cycles)
         return TorusFunction(matrix)
 
-    def correct(
+    def corrected_point(
         self,
         start: Orbit,
         row_coordinate: float,
@@ -85,12 +85,12 @@ class CycleFamily:
         known = derivatives if usable else None
         search = SecantSearch(self, start, row_coordinate, line, known, is_other_mesh)
         for _ in range(CURVE_SECANT_SETTINGS.max_secants):
-            found = search.next()
+            found = search.make_step()
             if found is not None:
                 return found
         raise Unsolvable("the secant method across the curve does not converge")
 
-    def correct_with_error(
+    def corrected_point_with_error(
         self,
         start: Orbit,
         row_coordinate: float,
@@ -102,20 +102,20 @@ class CycleFamily:
         Unsolvable.
 
         previous: previous point of the curve, whose measured error is used if it still applies. Other
-        arguments as in `correct`.
+        arguments as in `corrected_point`.
         """
-        last = self.correct(start, row_coordinate, line, derivatives)
+        last = self.corrected_point(start, row_coordinate, line, derivatives)
         if previous and previous.errors and previous.errors.apply_at(last):
             return replace(last, errors=previous.errors.for_next_point)
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(last.orbit)
             longer = ceil(CURVE_SECANT_SETTINGS.more_intervals * mesh.intervals)
             finer = replace(mesh, order=mesh.order + CURVE_SECANT_SETTINGS.more_orders, intervals=longer)
-            if not finer.allowed:
+            if not finer.is_allowed:
                 break
             known = last.normal_derivatives
-            start = finer.interpolate(last.orbit)
-            fine = self.correct(start, last.row_coordinate, line, known, is_other_mesh=True)
+            start = finer.interpolated_orbit(last.orbit)
+            fine = self.corrected_point(start, last.row_coordinate, line, known, is_other_mesh=True)
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
             along = line.slope * (fine.row_coordinate - last.row_coordinate)

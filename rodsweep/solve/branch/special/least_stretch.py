@@ -7,7 +7,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....discretization.element_strains import index_before_jump
-from ....discretization.elements.periodic import maxima, series_samples
+from ....discretization.elements.periodic import series_maxima, series_samples
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
 from ..arc import ArcPoint
@@ -65,12 +65,12 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     def least_of(coefficients: Complex) -> Array:
         at = -np.ascontiguousarray(coefficients)
-        return -maxima(at, series_samples(at, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c)))
+        return -series_maxima(at, series_samples(at, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c)))
 
     def least(u: Array) -> Array:
-        return least_of(c @ grid.evaluation_by_element(u).T)
+        return least_of(c @ grid.element_evaluation_matrix(u).T)
 
-    before = [index_before_jump(int(node), grid.order) for node in form.nodal.jumps]
+    before = [index_before_jump(int(node), grid.order) for node in form.nodal_rod.jumps]
     at_jumps = float(least_of(c[:, before + [index + 1 for index in before]]).min(initial=inf))
     places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(grid.positions))
     values = least(places)

@@ -22,7 +22,7 @@ from ..arc import ArcPoint
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import Scale
-from .augmented.functions import TorusFunction, correct_fully
+from .augmented.functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .segment import BranchSegment
@@ -31,7 +31,7 @@ from .segment import BranchSegment
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
     """Kind of the special point at which a multiplier of `orbit`, over the solved time interval, passes
     -1."""
-    return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
+    return SpecialKind.symmetry_breaking if orbit.is_symmetric else SpecialKind.period_doubling
 
 
 def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
@@ -43,7 +43,7 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
         return least_stretch(CyclePath(found.orbit))
     if kind == SpecialKind.torus:
         function = TorusFunction(bordered_matrix_of(found))
-        correct_fully(function, found.orbit)
+        correct_until_converged(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
     return multiplier_test_function(kind, matrix.partial_multipliers)
@@ -83,17 +83,17 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
     aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
-        segment.start_on(mesh_of(end.orbit))
+        segment.set_mesh(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
         mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
-            segment.start_on(mesh)
+            segment.set_mesh(mesh)
             length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
             last = point
-            point = _special_point_at(kind, orbit, start.scale.name)
+            point = _special_point_at(kind, orbit, start.scale.parameter)
             if last is not None:
                 point = _with_mesh_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
@@ -101,7 +101,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
             # Every second mesh is chosen from the measured error; the next mesh is only slightly finer, for
             # comparison.
             mesh = _finer_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
-            if not mesh.allowed:
+            if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
             raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
@@ -141,7 +141,7 @@ def _with_mesh_errors(
     share = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
-        name = start.scale.name
+        name = start.scale.parameter
         length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
         moved = SPECIAL_POINT_SETTINGS.slope_factor * error / length if length else 1.0
         share = SPECIAL_POINT_SETTINGS.secant_error + min(moved, 1.0)
@@ -175,7 +175,7 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
 def _unlocated_point(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
     """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
     the differences between the two cycles as errors. message: cause of the failure."""
-    name = start.scale.name
+    name = start.scale.parameter
     measures = end.cycle.measures
     before = start.cycle.measures
     at, other = (getattr(point.orbit.form.rod, name) for point in (end, start))
@@ -244,7 +244,7 @@ def _zero_by_secants(
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
-            return at + step, moved_orbit(orbit, segment.start.scale.name, change), slope
+            return at + step, moved_orbit(orbit, segment.start.scale.parameter, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method for the special point does not converge")

@@ -89,13 +89,13 @@ class NormalDerivatives:
 
     direction: Array
     """Unit direction across the curve, (2,), in components (along the branch, row coordinate)."""
-    test: float
+    test_slope: float
     """Derivative of the test function, which is 0 on the curve."""
-    orbit: Array
+    orbit_derivative: Array
     """Derivative of the orbit values and of the coordinate of the parameter along a row, (N + 1,)."""
     mesh: OrbitMesh
-    """Mesh of the derivative `orbit`."""
-    span: float
+    """Mesh of the derivative `orbit_derivative`."""
+    cycle_distance: float
     """Distance between the two cycles of the difference quotient."""
     contraction: float = inf
     """Contraction rate of corrections, as in `NearbyCycleSolver`; inf if unknown."""
@@ -103,12 +103,12 @@ class NormalDerivatives:
     """Modulus of the second derivative of the test function, divided by the first; inf if unknown."""
 
     def on_mesh_of(self, orbit: Orbit) -> Array:
-        """The derivative in the field `orbit`, (N + 1,), interpolated to the mesh of the argument `orbit`."""
+        """The derivative `orbit_derivative`, (N + 1,), interpolated to the mesh of `orbit`."""
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
-            return self.orbit
-        derivative = replace(self.mesh.interpolate(orbit), values=self.orbit[:-1])
-        return np.append(mesh.interpolate(derivative).values, self.orbit[-1])
+            return self.orbit_derivative
+        derivative = replace(self.mesh.interpolated_orbit(orbit), values=self.orbit_derivative[:-1])
+        return np.append(mesh.interpolated_orbit(derivative).values, self.orbit_derivative[-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,33 +116,33 @@ class CurveErrors:
     """Measured error of a point of a curve. At the next points the error is used again, scaled with the
     squared coefficient tails.
 
-    measured: relative error of the parameter along a row at the measured point. tails, mesh: coefficient
-    tails in space and time, (2,), and mesh of the orbit at the measured point. age: number of points since
-    the measurement.
-    """
+    measured_error: relative error of the parameter along a row at the measured point. tails, mesh:
+    coefficient tails in space and time, (2,), and mesh of the orbit at the measured point.
+    reuse_count: number of points since the measurement."""
 
-    measured: float
+    measured_error: float
     tails: Array
     mesh: OrbitMesh
-    age: int = 0
+    reuse_count: int = 0
 
     def error_at(self, point: "SolvedPoint") -> float:
         """Absolute error of the parameter along a row at a neighbouring point with the same mesh: the
         measured relative error, increased by the squared growth of the tails, times the parameter."""
         # Errors are of second order in the tails.
         growth = float((smooth_tails(point.orbit) / self.tails).max()) ** 2
-        return max(growth, 1.0) * self.measured * abs(point.parameter)
+        return max(growth, 1.0) * self.measured_error * abs(point.parameter)
 
     def apply_at(self, point: "SolvedPoint") -> bool:
         """Whether the measured error may be used at the later point `point` of the curve: the measurement is
         recent, the mesh is the same, and the scaled error is within the accuracy."""
-        recent = self.age < CURVE_SECANT_SETTINGS.max_unmeasured - 1 and mesh_of(point.orbit) == self.mesh
+        max_reuses = CURVE_SECANT_SETTINGS.max_unmeasured - 1
+        recent = self.reuse_count < max_reuses and mesh_of(point.orbit) == self.mesh
         return recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)
 
     @property
     def for_next_point(self) -> "CurveErrors":
-        """The same measured error for the next point of the curve, with `age` increased by 1."""
-        return replace(self, age=self.age + 1)
+        """The same measured error for the next point of the curve, with `reuse_count` increased by 1."""
+        return replace(self, reuse_count=self.reuse_count + 1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -151,7 +151,7 @@ class SolvedPoint:
 
     orbit: Orbit
     scale: Scale
-    ahead: Array
+    branch_direction: Array
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
     row_coordinate: float
@@ -172,7 +172,7 @@ class SolvedPoint:
     @property
     def tip_y_max(self) -> float:
         """Largest tip y of the cycle, in L: the modulus of the tip's y at t = 0."""
-        return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
+        return abs(float(self.orbit.form.tip_coordinates(self.orbit.start)[1]))
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
@@ -183,7 +183,7 @@ class SolvedPoint:
     def normal(self, step: Array) -> Array:
         """Unit normal of the curve, (2,), in components (along the branch, row coordinate); perpendicular to
         `step`, (4,), a step along the curve."""
-        way = np.array([float(self.ahead @ step[:3]), step[3]])
+        way = np.array([float(self.branch_direction @ step[:3]), step[3]])
         # Rotated by a right angle, so that the correction does not move along the curve.
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
@@ -203,7 +203,7 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
         if point.errors is None:
             raise ValueError("the point has no error estimate")
         candidates = [point.errors]
-        if point.errors.age == 0:
+        if point.errors.reuse_count == 0:
             behind = point.errors
         elif behind and behind.mesh == mesh_of(point.orbit):
             candidates.append(behind)
@@ -219,7 +219,7 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
         form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
-    if form.omega_unknown != orbit.form.omega_unknown:
+    if form.is_omega_unknown != orbit.form.is_omega_unknown:
         raise Unsolvable(
             f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
             "or is eliminated"

@@ -16,7 +16,7 @@ from ..arc import ArcPoint, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
-Step = Callable[[ArcPoint, float], ArcPoint]
+CycleStep = Callable[[ArcPoint, float], ArcPoint]
 """Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises
 Unsolvable."""
 
@@ -37,9 +37,9 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
         found.append(kind_at_minus_one(start.orbit))
     change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
-    slack = 1 if _near_one(start) or _near_one(end) else 0
+    slack = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
     if not found and change - slack > 1:
-        return [SpecialKind.torus], change == 2 and all(map(_has_pair, (start, end)))
+        return [SpecialKind.torus], change == 2 and all(map(_has_complex_pair, (start, end)))
     return found, len(found) <= 1 and abs(change - len(found)) <= slack
 
 
@@ -49,13 +49,13 @@ def _count_beyond_minus_one(point: ArcPoint) -> int:
     return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h))).sum())
 
 
-def _near_one(point: ArcPoint) -> bool:
+def _has_multiplier_near_one(point: ArcPoint) -> bool:
     return bool(
         (np.abs(point.partial_multipliers - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance).any()
     )
 
 
-def _has_pair(point: ArcPoint) -> bool:
+def _has_complex_pair(point: ArcPoint) -> bool:
     h = point.partial_multipliers
     return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)).any())
 
@@ -63,7 +63,7 @@ def _has_pair(point: ArcPoint) -> bool:
 def special_points(
     start: ArcPoint,
     end: ArcPoint,
-    step: Step,
+    step: CycleStep,
     accuracy: float,
     depth: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:

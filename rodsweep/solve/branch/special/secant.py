@@ -42,7 +42,7 @@ class _SecantIterate(NamedTuple):
 
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
-    cycle. Arguments as in `CycleFamily.correct`."""
+    cycle. Arguments as in `CycleFamily.corrected_point`."""
 
     def __init__(
         self,
@@ -70,10 +70,10 @@ class SecantSearch:
         self.measured_curvature = derivatives.curvature if derivatives else inf
         self.slopes: list[tuple[float, float]] = []
         """Measured derivatives of the test function: (middle of the two cycles, derivative)."""
-        contraction = derivatives.contraction if derivatives and not family.small else inf
+        contraction = derivatives.contraction if derivatives and not family.has_small_cycles else inf
         self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
 
-    def next(self) -> SolvedPoint | None:
+    def make_step(self) -> SolvedPoint | None:
         """Makes one secant step. Returns the point of the curve after the last step, otherwise None. Raises
         Unsolvable."""
         present = self._solve_at_distance()
@@ -81,23 +81,23 @@ class SecantSearch:
         if own := self._derivatives_from_last(present):
             self.derivatives = own
             self.is_carried = False
-            span = own.span
+            span = own.cycle_distance
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
-        step = -present.test / rates.test if rates else CURVE_SECANT_SETTINGS.first_secant
+        step = -present.test / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant
         if not abs(step) <= CURVE_SECANT_SETTINGS.longest_secant:
             raise Unsolvable("the secant method leaves the curve")
         if rates:
             error = self._error_after(step, span)
             if self._is_enough(error):
                 known = replace(rates, contraction=self.nearby.contraction, curvature=self.measured_curvature)
-                return self._point(step, known, error)
+                return self._curve_point(step, known, error)
             if self.is_carried and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
                 # Between closer cycles no derivative can be measured.
                 step = math.copysign(2 * CURVE_SECANT_SETTINGS.min_cycle_distance, step)
         if self.previous:  # the vectors are extrapolated along a line, like the cycle
             change = (present.vectors - self.previous.vectors) / (present.distance - self.previous.distance)
-            self.nearby.predict(present.vectors + step * change)
+            self.nearby.set_approximate_vectors(present.vectors + step * change)
         if rates:
             self.orbit = self._predicted_orbit(step, rates)
         self.previous = present
@@ -113,7 +113,7 @@ class SecantSearch:
             # Remainder of linear interpolation through two values, extrapolated to their zero.
             return self.curvature * abs(step) * (abs(step) + span) / 2
         assert self.derivatives is not None
-        slope_error = CURVE_SECANT_SETTINGS.slope_error + self.curvature * self.derivatives.span / 2
+        slope_error = CURVE_SECANT_SETTINGS.slope_error + self.curvature * self.derivatives.cycle_distance / 2
         if self.is_carried:
             # Along the curve a derivative changes more where the curvature is large.
             slope_error = CURVE_SECANT_SETTINGS.carried_slope_error * max(1.0, self.curvature)
@@ -124,7 +124,7 @@ class SecantSearch:
         tolerance of the test function always are."""
         if error <= AUGMENTED_SETTINGS.tolerance:
             return True
-        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.name))
+        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter))
         allowed = CURVE_SECANT_SETTINGS.secant_share * CURVE_SECANT_SETTINGS.accuracy * parameter
         return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
 
@@ -135,7 +135,7 @@ class SecantSearch:
         length = self.length + self.distance * float(self.line.direction[0])
         row = self.row_coordinate + self.distance * float(self.line.direction[1])
         self.orbit = family.orbit_at_row(self.orbit, row)
-        slope = abs(rates.test) if rates else 1.0
+        slope = abs(rates.test_slope) if rates else 1.0
         enough = (
             AUGMENTED_SETTINGS.tolerance
             if rates
@@ -153,7 +153,7 @@ class SecantSearch:
             return None
         if abs(present.distance - before.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
             return None
-        name = self.family.scale.name
+        name = self.family.scale.parameter
         # The test function is nearly linear here, so that difference quotients are as good as derivatives.
         span = present.distance - before.distance
         one = before.orbit
@@ -177,9 +177,9 @@ class SecantSearch:
         """The last cycle, moved by `step` across the curve along `derivatives`."""
         change = step * derivatives.on_mesh_of(self.orbit)
         self.nearby.distance += relative_change(self.orbit, change[:-1])
-        return moved_orbit(self.orbit, self.family.scale.name, change)
+        return moved_orbit(self.orbit, self.family.scale.parameter, change)
 
-    def _point(self, step: float, derivatives: NormalDerivatives, distance_error: float) -> SolvedPoint:
+    def _curve_point(self, step: float, derivatives: NormalDerivatives, distance_error: float) -> SolvedPoint:
         """The point of the curve: the last cycle, moved by `step` across the curve along `derivatives`.
         distance_error: distance of this point from the curve."""
         family = self.family
@@ -187,14 +187,14 @@ class SecantSearch:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
-        scale = Scale.of(orbit, family.scale.name, family.scale.min_deflection_unit)
+        scale = Scale.at_orbit(orbit, family.scale.parameter, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
-            ahead=ahead / np.linalg.norm(ahead),
+            branch_direction=ahead / np.linalg.norm(ahead),
             row_coordinate=row_coordinate,
-            parameter=getattr(orbit.form.rod, scale.name),
+            parameter=getattr(orbit.form.rod, scale.parameter),
             row_parameter=getattr(orbit.form.rod, family.rows.name),
             secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
             normal_derivatives=derivatives,
@@ -204,7 +204,7 @@ class SecantSearch:
         """Displacement of the parameter at a fixed row, for a point at a distance from the curve."""
         rates = self.derivatives
         assert rates is not None
-        parameter = PARAMETERS[self.family.scale.name]
-        at = self.orbit.form.rod.coordinate(self.family.scale.name)
-        moved = parameter.value(at + distance * float(rates.orbit[-1])) - parameter.value(at)
+        parameter = PARAMETERS[self.family.scale.parameter]
+        at = self.orbit.form.rod.coordinate(self.family.scale.parameter)
+        moved = parameter.value(at + distance * float(rates.orbit_derivative[-1])) - parameter.value(at)
         return abs(moved - distance * self.line.slope * float(self.line.direction[1]))

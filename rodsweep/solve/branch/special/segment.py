@@ -7,7 +7,7 @@ from ...orbit.orbit_mesh import OrbitMesh
 from ..arc import ArcPoint, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import bordered_matrix_of
-from .augmented.functions import FoldFunction, correct_fully
+from .augmented.functions import FoldFunction, correct_until_converged
 from .point import SPECIAL_POINT_SETTINGS
 
 
@@ -19,41 +19,41 @@ class BranchSegment:
         self.start = start
         self.end = end
         self.length = arc_length_between(start, end)
-        self._back = float(
+        self._tangent_length = float(
             end.unit_tangent @ (end.scale.components(end.orbit) - end.scale.components(start.orbit))
         )
-        self._known: tuple[float, Orbit, Array] | None = None
+        self._last_solved: tuple[float, Orbit, Array] | None = None
 
-    def predicted(self, length: float) -> Orbit:
+    def predicted_orbit(self, length: float) -> Orbit:
         """Predicted orbit at the arc length `length` from `start`, on the mesh of `end`, by the cubic through
         the cycles `start` and `end`."""
         # The cubic of `end` passes through both cycles; its variable is the arc length along the tangent at
         # `end`.
-        return self.end.predicted(-self._back * (1 - length / self.length))
+        return self.end.predicted_orbit(-self._tangent_length * (1 - length / self.length))
 
-    def start_on(self, mesh: OrbitMesh) -> None:
+    def set_mesh(self, mesh: OrbitMesh) -> None:
         """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted by the
         cubic."""
         self.mesh = mesh
-        self._known = None
+        self._last_solved = None
 
     def cycle_at(self, length: float) -> ConvergedOrbit:
         """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises
         Unsolvable."""
-        if self._known is None:
-            start = self.mesh.interpolate(self.predicted(length))
+        if self._last_solved is None:
+            start = self.mesh.interpolated_orbit(self.predicted_orbit(length))
         else:
-            last, orbit, tangent = self._known
+            last, orbit, tangent = self._last_solved
             # From the last cycle along its tangent: a secant method changes the length only a little.
-            start = moved_orbit(orbit, self.start.scale.name, (length - last) * tangent)
-        condition = self.start.condition(length)
+            start = moved_orbit(orbit, self.start.scale.parameter, (length - last) * tangent)
+        condition = self.start.arc_length_condition(length)
         workspace = self.start.workspace
         found = condition.solve_cycle(
             start, SPECIAL_POINT_SETTINGS.cycle_tolerance, workspace, SPECIAL_POINT_SETTINGS.matrix_distance
         )
         function = FoldFunction(bordered_matrix_of(found), self.start.unit_tangent, False)
-        correct_fully(function, found.orbit)
-        self._known = length, found.orbit, function.vectors
+        correct_until_converged(function, found.orbit)
+        self._last_solved = length, found.orbit, function.vectors
         return found
 
     @property
@@ -61,9 +61,9 @@ class BranchSegment:
         """(arc length from `start`, orbit, derivative of orbit values and parameter coordinate with respect
         to arc length, (N + 1,)) of the last cycle that `cycle_at` solved; raises ValueError if no cycle was
         solved."""
-        if self._known is None:
+        if self._last_solved is None:
             raise ValueError("no cycle was solved on this segment and mesh yet")
-        return self._known
+        return self._last_solved
 
     def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length, at the last cycle that

@@ -77,7 +77,7 @@ class AxisModesOfPath:
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
         expected to grow, and `certify` is set."""
-        return self.certify and self.problem.expected_growing(p) > AXIS_MODE_SETTINGS.many_modes
+        return self.certify and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.many_modes
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
         """The modes at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
@@ -129,7 +129,7 @@ class AxisModesOfPath:
         guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES) if beside is None else beside
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
         w = np.array([one[0] for one in refined], complex)
-        number = self.problem.counted(p, w, np.array([one[2] for one in refined]))
+        number = self.problem.counted_unstable_modes(p, w, np.array([one[2] for one in refined]))
         slopes = np.array([one[1] for one in refined], complex)
         return None if number is None else AxisModes(p, w, slopes, number)
 
@@ -184,6 +184,6 @@ def next_count_position(left: AxisModes, right: AxisModes) -> float:
                 return 0.5
             continue
         lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
-        if lowest < ANCHOR_SETTINGS.explained * min(a[0], b[0]):
+        if lowest < ANCHOR_SETTINGS.interpolation_tolerance * min(a[0], b[0]):
             return share
     return 0.0

@@ -32,10 +32,10 @@ class ArmCrossingSettings:
     max_frequency_ratio: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest known
     |w|."""
-    same_errors: float = 10.0
+    max_distance_in_errors: float = 10.0
     same_frequency: float = 1e-6
-    """Two crossings are equal if their parameter values differ by less than `same_errors` times the sum of
-    their errors, and their frequencies by less than `same_frequency` times the frequency."""
+    """Two crossings are equal if their parameter values differ by less than `max_distance_in_errors` times
+    the sum of their errors, and their frequencies by less than `same_frequency` times the frequency."""
     smallest_interval: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided: whether two crossings lie inside
     remains undecided."""
@@ -46,9 +46,9 @@ class ArmCrossingSettings:
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
-    converged: float = 4.0
+    converged_step_in_errors: float = 4.0
     """Newton's method for a crossing stops when the step is at most this multiple of the error of p."""
-    rounding: float = 4e-16
+    rounding_error: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
 
 
@@ -84,7 +84,7 @@ class CrossingSearch:
                 intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
                 continue
             if self._is_too_long(a, b, most, intervals.length):
-                intervals.divide((a, (a + b) / 2), ((a + b) / 2, b))
+                intervals.add_parts((a, (a + b) / 2), ((a + b) / 2, b))
                 continue
             try:
                 self._search(a, b, intervals)
@@ -105,7 +105,7 @@ class CrossingSearch:
         likely to be full before b, where a count is expensive. length: length of the path."""
         if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
-        expected = self.problem.expected_growing(b)
+        expected = self.problem.expected_unstable_count(b)
         return (
             self.axis_modes.has_many_modes(b) and expected > ARM_CROSSING_SETTINGS.full_list_ratio * 2 * most
         )
@@ -135,12 +135,12 @@ class CrossingSearch:
                 self.crossings_by_p.update(
                     (self.problem.path.coordinate(crossing.at), crossing) for crossing in crossings
                 )
-                intervals.divide(*parts)
+                intervals.add_parts(*parts)
                 return
             if b - a <= ARM_CROSSING_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(f"the crossing near {self.problem.path.text_at(a)} could not be located")
         middle = a + share * (b - a)
-        intervals.divide((a, middle), (middle, b))
+        intervals.add_parts((a, middle), (middle, b))
 
     def _intervals_between_crossings(
         self, crossings: list[Crossing], left: AxisModes, right: AxisModes, length: float
@@ -220,8 +220,8 @@ class CrossingSearch:
             if not ends[0] <= p <= ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
-            blur = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding * abs(p)
-            if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged * blur:
+            blur = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding_error * abs(p)
+            if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged_step_in_errors * blur:
                 # With such an error no root of D is resolved.
                 unresolved = self.axis_modes.has_many_modes(
                     p
@@ -244,7 +244,7 @@ class CrossingSearch:
 
 def _are_same_crossing(one: Crossing, other: Crossing) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
-    apart = abs(one.at - other.at) <= ARM_CROSSING_SETTINGS.same_errors * (one.error + other.error)
+    apart = abs(one.at - other.at) <= ARM_CROSSING_SETTINGS.max_distance_in_errors * (one.error + other.error)
     return (
         apart and abs(one.frequency - other.frequency) <= ARM_CROSSING_SETTINGS.same_frequency * one.frequency
     )

@@ -28,24 +28,25 @@ from ..path_problem import PathProblem, UniformPath
 class ArmPathSettings:
     """Settings for the intervals of a path of arms and for following eigenvalues."""
 
-    edges: int = 12
+    first_interval_count: int = 12
     """Number of intervals into which a path of arms is first divided."""
     edge_shift: float = 0.0618
     """All edges but the first and the last are shifted by this fraction of an interval. With equal intervals,
     an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice or three times the
     force of the Hopf point."""
-    points_between: int = 4
-    """Number of steps in which eigenvalues are followed through each of the `edges` intervals."""
+    steps_per_interval: int = 4
+    """Number of steps in which eigenvalues are followed through each of the `first_interval_count`
+    intervals."""
     followed_modes: int = 4
     """Number of leading eigenvalues that are proved complete at each step, together with all unstable
     eigenvalues."""
-    spare_pair: int = 2
+    spare_modes: int = 2
     """Number of modes solved for in addition to the requested modes, if more than `followed_modes` modes are
     requested."""
     max_growing_modes: float = 16.0
     """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
     followed."""
-    headroom: float = 4.0
+    largest_w_factor: float = 4.0
     """Largest |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
     max_count_offset: float = 0.25
@@ -76,44 +77,46 @@ class ArmPath(PathProblem):
 
     def _family(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
-        made = next((one for one in self._families if one.low <= p <= one.high), None)
+        made = next((one for one in self._families if one.p_low <= p <= one.p_high), None)
         if (
             made is None
             and self._followed is not None
-            and self.expected_growing(p) <= ARM_PATH_SETTINGS.max_growing_modes
+            and self.expected_unstable_count(p) <= ARM_PATH_SETTINGS.max_growing_modes
         ):
-            return self._followed.family(p)
+            return self._followed.family_at(p)
         return made
 
     def make_family(self, low: float, high: float, highest: float) -> None:
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if possible
         and if no stored family suffices."""
-        W = ARM_PATH_SETTINGS.headroom * highest
-        if any(one.low <= low and high <= one.high and highest * 2 <= one.W for one in self._families):
+        W = ARM_PATH_SETTINGS.largest_w_factor * highest
+        if any(
+            one.p_low <= low and high <= one.p_high and highest * 2 <= one.largest_w for one in self._families
+        ):
             return
         with suppress(ValueError, FloatingPointError):
             family = interpolated_family(self.path, low, high, W)
             self._families += [family] if family is not None else []
 
-    def edges(self, low: float, high: float) -> list[float]:
-        edges = np.linspace(low, high, ARM_PATH_SETTINGS.edges + 1)
-        edges[1:-1] -= ARM_PATH_SETTINGS.edge_shift * (high - low) / ARM_PATH_SETTINGS.edges
+    def interval_edges(self, low: float, high: float) -> list[float]:
+        edges = np.linspace(low, high, ARM_PATH_SETTINGS.first_interval_count + 1)
+        edges[1:-1] -= ARM_PATH_SETTINGS.edge_shift * (high - low) / ARM_PATH_SETTINGS.first_interval_count
         if self._followed is None and low < high:
             steps = (
-                np.arange(ARM_PATH_SETTINGS.edges * ARM_PATH_SETTINGS.points_between + 1)
-                / ARM_PATH_SETTINGS.points_between
+                np.arange(ARM_PATH_SETTINGS.first_interval_count * ARM_PATH_SETTINGS.steps_per_interval + 1)
+                / ARM_PATH_SETTINGS.steps_per_interval
             )
             points = np.interp(steps, np.arange(len(edges)), edges)
             self._followed = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_modes)
         return edges.tolist()
 
-    def expected_growing(self, p: float) -> float:
+    def expected_unstable_count(self, p: float) -> float:
         """Estimate of the number of unstable modes at p."""
         return expected_unstable_count(self.path.rod_at(p))
 
-    def followed(self, p: float, modes: int) -> Spectrum | None:
+    def followed_spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
-        if self._followed is None or self.expected_growing(p) > ARM_PATH_SETTINGS.max_growing_modes:
+        if self._followed is None or self.expected_unstable_count(p) > ARM_PATH_SETTINGS.max_growing_modes:
             return None
         found = self._followed.spectrum(p, modes)
         if found is not None:
@@ -124,13 +127,15 @@ class ArmPath(PathProblem):
         """The leading eigenvalues at p: followed, taken from an earlier request, or solved."""
         key = p, request
         if key not in self._spectra:
-            followed = self.followed(p, request.modes)
-            found = self._spectra[key] = followed if followed is not None else self._solved(p, request)
+            followed = self.followed_spectrum(p, request.modes)
+            found = self._spectra[key] = (
+                followed if followed is not None else self._solved_spectrum(p, request)
+            )
             if found.certified:
                 self._counts[p] = found.unstable_count
         return self._spectra[key]
 
-    def _solved(self, p: float, request: SpectrumRequest) -> Spectrum:
+    def _solved_spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
         """The leading eigenvalues at p, from an earlier solve at p with enough modes, or from a new solve.
 
         Near a crossing a request for many modes is followed by a request for one more pair; this pair is
@@ -139,7 +144,7 @@ class ArmPath(PathProblem):
         earlier = self._solutions.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
         if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
-            spare = ARM_PATH_SETTINGS.spare_pair if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
+            spare = ARM_PATH_SETTINGS.spare_modes if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
             earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
             # The additional modes may be harder to solve; they must not spoil the requested modes.
             if spare and earlier.status != SpectrumStatus.ok:
@@ -161,14 +166,14 @@ class ArmPath(PathProblem):
         return None if nearest is None else self._counts[nearest]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        known = self._followed.slope(guess, p) if self._followed is not None else None
+        known = self._followed.eigenvalue_slope(guess, p) if self._followed is not None else None
         return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         return self._along.double_eigenvalue(x, p, reach)
 
     def count(self, line: float, p: float) -> EigenvalueCount:
-        found = self.followed(p, ARM_PATH_SETTINGS.followed_modes)
+        found = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_modes)
         if found is not None:
             w = found.eigenvalues
             error = found.error_estimate
@@ -181,7 +186,7 @@ class ArmPath(PathProblem):
         known = self._followed.roots(p) if self._followed is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, known)
 
-    def counted(self, p: float, known: Complex, error: Array) -> int | None:
+    def counted_unstable_modes(self, p: float, known: Complex, error: Array) -> int | None:
         """Number of unstable modes at p by a count; None if undecided.
 
         known: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.

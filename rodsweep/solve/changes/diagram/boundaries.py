@@ -29,7 +29,7 @@ class BoundaryAssignmentSettings:
     the second parameter differ by less than this, relatively."""
     max_secants: int = 20
     """Maximum number of secant steps to the point of a curve at a given value of the second parameter."""
-    coincident_ends: float = 1e-6
+    max_end_distance: float = 1e-6
     """Two curves are identical if an end of the first and an end of the second (coordinates and log
     |eigenvalue|) are closer than this, because curves do not cross."""
     change_distance: float = 1e-7
@@ -47,7 +47,7 @@ class Seed:
     """A threshold on a row, at which a curve may start: values of both parameters, and the eigenvalue."""
 
     values: tuple[float, float]
-    sign: float
+    eigenvalue_sign: float
     """0 for a Hopf point, else the sign of the double eigenvalue."""
     eigenvalue: float
     """The frequency of a Hopf point, or the double eigenvalue."""
@@ -85,7 +85,7 @@ class _ChangeBoundaries:
         """The curve through the threshold with index `seed`; None if no curve is found."""
         one = self.seeds[seed]
         x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, one.values, strict=True))
-        return trace_boundary(one.sign, self.plane, (x, y), one.eigenvalue)
+        return trace_boundary(one.eigenvalue_sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
         """Distance of the threshold with index `seed` from `curve` along the first axis; inf if the curve has
@@ -97,8 +97,8 @@ class _ChangeBoundaries:
         be found on its own curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
-            one.sign == other.sign
-            and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.coincident_ends
+            one.eigenvalue_sign == other.eigenvalue_sign
+            and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.max_end_distance
         )
 
 
@@ -114,7 +114,7 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]
 def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis; inf if the curve has no point near the threshold."""
-    if curve.sign != seed.sign:
+    if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
@@ -134,7 +134,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
         if beside > BOUNDARY_ASSIGNMENT_SETTINGS.chord_overhang:
             continue
-        there = _point_at_height(Boundary(plane, curve.sign), a, b, y)
+        there = _point_at_height(Boundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
             there is not None
             and abs(there[2] - math.log(abs(seed.eigenvalue))) < BOUNDARY_ASSIGNMENT_SETTINGS.same_eigenvalue

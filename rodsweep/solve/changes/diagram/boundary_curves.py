@@ -41,13 +41,13 @@ class Fold:
 class BoundaryCurve:
     """A curve of Hopf points, or of double real eigenvalues.
 
-    sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
+    eigenvalue_sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
     values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the eigenvalue,
     in 1/tau2, (points,). ends: reasons for the ends at the first and at the last point.
     """
 
-    sign: float
+    eigenvalue_sign: float
     values: Array
     frequency: Array
     growth_rate: Array
@@ -58,7 +58,7 @@ class BoundaryCurve:
 
     @property
     def hopf(self) -> bool:
-        return self.sign == 0
+        return self.eigenvalue_sign == 0
 
 
 def trace_boundary(
@@ -74,7 +74,7 @@ def trace_boundary(
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
-        first = BoundaryPoint.on(curve.near(guess, tangent), tangent)
+        first = BoundaryPoint.oriented(curve.boundary_point_near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
     ahead = follow_curve(curve, first, BOUNDARY_STEPS, lambda _: report())
@@ -85,7 +85,7 @@ def trace_boundary(
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.coincident_points
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
     return _curve_with_folds(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
 
 
@@ -110,7 +110,7 @@ def _curve_with_folds(
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
-    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), ends, points)
+    return BoundaryCurve(boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
 def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
@@ -123,8 +123,8 @@ def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint,
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
-        found[length] = there = curve.near(a.v + length / size * chord, chord / size)
-        return float(BoundaryPoint.on(there, chord).tangent[axis])
+        found[length] = there = curve.boundary_point_near(a.v + length / size * chord, chord / size)
+        return float(BoundaryPoint.oriented(there, chord).tangent[axis])
 
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
@@ -144,11 +144,11 @@ def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint,
 
 def _tangent_error(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
-    if not boundary.plane.standard:
+    if not boundary.plane.has_standard_rods:
         return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
     return (
         BOUNDARY_CURVE_SETTINGS.double_tangent_error
-        if boundary.sign
+        if boundary.eigenvalue_sign
         else BOUNDARY_CURVE_SETTINGS.hopf_tangent_error
     )
 

@@ -35,7 +35,7 @@ class BoundaryCurveSettings:
 
     edge_tolerance: float = 1e-9
     """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
-    coincident_points: float = 1e-9
+    max_merged_distance: float = 1e-9
     """Two neighbouring points of a curve are merged if their distance is at most this, as at a start on an
     edge of the plane."""
     fold_accuracy: float = 1e-13
@@ -78,7 +78,7 @@ class BoundaryPoint(NamedTuple):
     tangent: Array
 
     @classmethod
-    def on(cls, there: BoundarySolution, way: Array) -> "BoundaryPoint":
+    def oriented(cls, there: BoundarySolution, way: Array) -> "BoundaryPoint":
         """The point `there` of a boundary; the tangent is oriented so that its product with `way`, (3,), is
         positive."""
         tangent = there.tangent
@@ -95,11 +95,11 @@ class ChangeCurveProblem:
         """One continuation step: predicts a point at distance `length` along the last tangent and corrects it
         to the curve. behind: points so far. Raises Unsolvable."""
         v, tangent = behind[-1]
-        there = BoundaryPoint.on(self.near(v + length * tangent, tangent), tangent)
+        there = BoundaryPoint.oriented(self.boundary_point_near(v + length * tangent, tangent), tangent)
         # The turn of the tangent alone controls the step length.
         return StepResult(there, 0.0, float(there.tangent @ tangent))
 
-    def near(self, guess: Array, normal: Array) -> BoundarySolution:
+    def boundary_point_near(self, guess: Array, normal: Array) -> BoundarySolution:
         """The point of the boundary near `guess`, in the plane through `guess` with normal `normal`, both
         (3,); raises Unsolvable."""
         there = self.boundary.point_near(guess, normal)
@@ -134,7 +134,7 @@ class ChangeCurveProblem:
             <= 1 + BOUNDARY_CURVE_SETTINGS.edge_tolerance
         ):
             return None
-        return BoundaryPoint.on(found, behind[-1].tangent)
+        return BoundaryPoint.oriented(found, behind[-1].tangent)
 
     def is_closed_by(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
         """Whether the curve passes its first point within the step from the last of `behind` to `there`."""

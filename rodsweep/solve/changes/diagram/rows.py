@@ -58,16 +58,16 @@ class DiagramRow:
 
     rod_class: NDArray[np.int8]
     unstable_count: NDArray[np.int32]
-    changes: Thresholds
+    thresholds: Thresholds
     seconds: float = 0.0
 
     @property
     def status(self) -> ThresholdStatus:
-        return self.changes.status
+        return self.thresholds.status
 
     @property
     def message(self) -> str:
-        return self.changes.message
+        return self.thresholds.message
 
 
 def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
@@ -91,7 +91,7 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     share = rod.build.relative_crushing_force(rod.taper)
     crushing = k1 * share
     uncrushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin) > F
-    crushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.meets_crushing) <= F
+    crushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_tolerance) <= F
     nearly_crushed = ~uncrushed & ~crushed
     if not uncrushed.any():
         row = _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
@@ -111,7 +111,7 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     classes[nearly_crushed] = RodClass.undecided
     unstable[nearly_crushed] = -1
     changes = thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
-    return DiagramRow(rod_class=classes, unstable_count=unstable, changes=changes)
+    return DiagramRow(rod_class=classes, unstable_count=unstable, thresholds=changes)
 
 
 def _row_of_one_class(
@@ -121,7 +121,7 @@ def _row_of_one_class(
     return DiagramRow(
         rod_class=np.full(len(values), rod_class, dtype=np.int8),
         unstable_count=np.full(len(values), -1, dtype=np.int32),
-        changes=empty_thresholds(status, float(values[-1]), message),
+        thresholds=empty_thresholds(status, float(values[-1]), message),
     )
 
 
@@ -142,7 +142,7 @@ def classes_and_unstable_counts(
             unstable[beyond] = crossing.unstable_after
         blurred |= np.abs(values - crossing.at) <= crossing.error
     if found.ended_early:
-        blurred |= (values < found.searched[0]) | (values > found.searched[1])
+        blurred |= (values < found.searched_interval[0]) | (values > found.searched_interval[1])
     low, high = found.open_range
     if not math.isnan(low):
         blurred |= (values >= low) & (values <= high)

@@ -18,10 +18,10 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
 from ...orbit.tails import smooth_tails, tails_of
-from .calibration_settings import CALIBRATION
+from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
 
-MULTIPLIER = 4
+MULTIPLIER_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
 indices are the indices of `path_differences`."""
 ERROR_COUNT = 5
@@ -69,18 +69,17 @@ class Calibration:
     def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a chain; `reach` is inf if the orbit
         has shrunk too much. change: relative change of the parameter since the previous orbit."""
-        tails = _tails(orbit)
+        tails = _tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
-        dies = tails[-1] < CALIBRATION.min_size_ratio * self.tails[-1]
-        return replace(
-            self, error_growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change
-        )
+        dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
+        growth = _growth_factors(self.tails, tails)
+        return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
-        growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
-        return replace(self, error_growth=growth)
+        after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0)
+        return replace(self, error_growth=_growth_factors(self.tails, after))
 
     @property
     def rates_only(self) -> "Calibration":
@@ -90,21 +89,18 @@ class Calibration:
     @property
     def is_valid(self) -> bool:
         """Whether the scaled errors apply: `reach` and `error_growth` do not exceed their limits."""
-        return (
-            self.reach <= CALIBRATION.max_parameter_change
-            and float(self.error_growth.max()) <= CALIBRATION.max_error_growth
-        )
+        is_near = self.reach <= CALIBRATION_SETTINGS.max_parameter_change
+        return is_near and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
-        return self.reach + change <= CALIBRATION.max_parameter_change
+        return self.reach + change <= CALIBRATION_SETTINGS.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        in_space, in_time = CALIBRATION.min_repeated_share * np.minimum(
-            _tail_growth(self.tails, _tails(orbit)), 1.0
-        )
+        shrinkage = np.minimum(_tail_growth(self.tails, _tails_and_size(orbit)), 1.0)
+        in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * shrinkage
         return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
@@ -128,11 +124,11 @@ class Calibration:
         finer mesh if no allowed mesh suffices."""
         present = self.mesh
         allowed = ORBIT_MESH_SETTINGS
-        lowest = max(allowed.min_order, present.order - CALIBRATION.max_fewer_orders)
-        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION.max_more_orders)
+        lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_fewer_orders)
+        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION_SETTINGS.max_more_orders)
         orders = np.arange(lowest, highest + 1)
-        fewest = max(allowed.min_intervals, ceil(CALIBRATION.min_interval_ratio * present.intervals))
-        most = min(CALIBRATION.max_interval_ratio * present.intervals, allowed.max_intervals)
+        fewest = max(allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * present.intervals))
+        most = min(CALIBRATION_SETTINGS.max_interval_ratio * present.intervals, allowed.max_intervals)
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
         # than the distance of the tip's paths, and errors in time with the smallest order.
@@ -143,7 +139,7 @@ class Calibration:
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= CALIBRATION.planned_error * accuracy
+        enough = largest_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error * accuracy
         meshes = [
             replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
@@ -154,30 +150,30 @@ class Calibration:
 def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
     safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
-    whole = CALIBRATION.safety_factor * (space + time)
+    whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
     apart = space[WHOLE_PATH] + time[WHOLE_PATH]
-    in_time = CALIBRATION.min_error_share_in_time * time[WHOLE_PATH]
+    in_time = CALIBRATION_SETTINGS.min_error_share_in_time * time[WHOLE_PATH]
     parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
-    either = CALIBRATION.mutual_bound * (parts[0] + parts[1])
-    of_period = CALIBRATION.min_period_error_share * space[WHOLE_PATH] + in_time
-    of_height = CALIBRATION.min_height_error_share * space[WHOLE_PATH] + in_time
+    either = CALIBRATION_SETTINGS.mutual_bound * (parts[0] + parts[1])
+    of_period = CALIBRATION_SETTINGS.min_period_error_share * space[WHOLE_PATH] + in_time
+    of_height = CALIBRATION_SETTINGS.min_height_error_share * space[WHOLE_PATH] + in_time
     stated = [
         np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
         np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM], CALIBRATION.min_extrema_error_share * apart),
-        whole[MULTIPLIER],
+        np.maximum(whole[WORST_EXTREMUM], CALIBRATION_SETTINGS.min_extrema_error_share * apart),
+        whole[MULTIPLIER_INDEX],
     ]
     least = max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
     errors: Array = np.maximum(np.array(stated), least)
     return errors
 
 
-def _tails(orbit: Orbit) -> Array:
-    """Tails of an orbit in space and in time, not below CALIBRATION.min_tail, and size of the orbit, (3,)."""
-    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION.min_tail), orbit.size)
+def _tails_and_size(orbit: Orbit) -> Array:
+    """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
+    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
 
 
-def _growth(before: Array, after: Array) -> Array:
+def _growth_factors(before: Array, after: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
     before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
@@ -207,11 +203,11 @@ def calibration_of(
     order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
     in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
     """
-    tails = _tails(orbit)
+    tails = _tails_and_size(orbit)
     if before is None:
-        decay = CALIBRATION.error_decay_ratio * tails_of(orbit).decay
-        fall = np.full(ERROR_COUNT, min(max(decay, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay))
-        power = np.full(ERROR_COUNT, CALIBRATION.time_order_by_stages * orbit.stages)
+        decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).decay
+        fall = _limited_space_decay(np.full(ERROR_COUNT, decay))
+        power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_by_stages * orbit.stages)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
     fall = before.fall
@@ -226,10 +222,14 @@ def calibration_of(
 def _space_rate(before: Array, after: Array, orders: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
     on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
-    fall: Array = np.clip(
-        _log_ratio(before, after) / orders, CALIBRATION.min_space_decay, CALIBRATION.max_space_decay
-    )
-    return fall
+    return _limited_space_decay(_log_ratio(before, after) / orders)
+
+
+def _limited_space_decay(decay: Array) -> Array:
+    """Decreases `decay` of ln(error) per order, (5,), limited to the allowed range."""
+    settings = CALIBRATION_SETTINGS
+    limited: Array = np.clip(decay, settings.min_space_decay, settings.max_space_decay)
+    return limited
 
 
 def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
@@ -238,7 +238,8 @@ def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMes
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stages + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    power: Array = np.clip(_log_ratio(before, after) / steps, least, CALIBRATION.max_time_order_ratio * least)
+    most = CALIBRATION_SETTINGS.max_time_order_ratio * least
+    power: Array = np.clip(_log_ratio(before, after) / steps, least, most)
     return power
 
 

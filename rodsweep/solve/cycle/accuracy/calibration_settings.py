@@ -67,4 +67,4 @@ class CalibrationSettings:
     """Lower limit of the coefficient tails by which errors are scaled; smaller tails are rounding errors."""
 
 
-CALIBRATION = CalibrationSettings()
+CALIBRATION_SETTINGS = CalibrationSettings()

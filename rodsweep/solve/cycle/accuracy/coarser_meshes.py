@@ -20,7 +20,7 @@ from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import path_differences
 from ...orbit.tails import tails_of
 from .calibration import Calibration, calibration_of
-from .calibration_settings import CALIBRATION
+from .calibration_settings import CALIBRATION_SETTINGS
 from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
 
 
@@ -68,10 +68,10 @@ class CoarserMeshes:
         )
         self._highest_order = order + fewer + COARSER_MESH_SETTINGS.max_more_orders
         intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.more_intervals)) + 1
-        self.mesh = replace(mesh, order=order, intervals=intervals)
+        self.coarse_mesh = replace(mesh, order=order, intervals=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
         self._workspace = workspace
-        self._coarse = self._solved(self.mesh, near)
+        self._coarse = self._solve_on_mesh(self.coarse_mesh, near)
         self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
@@ -81,35 +81,35 @@ class CoarserMeshes:
             mesh.order <= self._highest_order
             and self._refined_in_time(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
         )
-        return near and (mesh.edges, mesh.stages) == (self.mesh.edges, self.mesh.stages)
+        return near and (mesh.edges, mesh.stages) == (self.coarse_mesh.edges, self.coarse_mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
-        space = self._on(replace(self.mesh, order=mesh.order))
-        time = self._on(replace(self.mesh, intervals=mesh.intervals))
-        fine_in_space = mesh.interpolate(space.orbit)
-        fine_in_time = mesh.interpolate(time.orbit)
-        coarse = mesh.interpolate(self._coarse.orbit)
+        space = self._cycle_on_mesh(replace(self.coarse_mesh, order=mesh.order))
+        time = self._cycle_on_mesh(replace(self.coarse_mesh, intervals=mesh.intervals))
+        fine_in_space = mesh.interpolated_orbit(space.orbit)
+        fine_in_time = mesh.interpolated_orbit(time.orbit)
+        coarse = mesh.interpolated_orbit(self._coarse.orbit)
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
-        by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.mesh.order))
+        by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
         of_multipliers = multiplier_change(space.multipliers, time.multipliers)
-        in_space = np.append(self._errors(space, by_orders), 0.0)
-        in_time = np.append(self._errors(time, by_intervals), of_multipliers)
+        in_space = np.append(self._errors_of_finer_mesh(space, by_orders), 0.0)
+        in_time = np.append(self._errors_of_finer_mesh(time, by_intervals), of_multipliers)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
-    def _on(self, mesh: OrbitMesh) -> ComparedCycle:
+    def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._finer:
-            self._finer[mesh] = self._solved(mesh, self._coarse.orbit)
+            self._finer[mesh] = self._solve_on_mesh(mesh, self._coarse.orbit)
         return self._finer[mesh]
 
-    def _solved(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
-        return ComparedCycle(newton(mesh.interpolate(near), self._tolerance, self._workspace))
+    def _solve_on_mesh(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
+        return ComparedCycle(newton(mesh.interpolated_orbit(near), self._tolerance, self._workspace))
 
-    def _errors(self, finer: ComparedCycle, factor: float) -> Array:
+    def _errors_of_finer_mesh(self, finer: ComparedCycle, factor: float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the
         cycles on this mesh and on the coarse mesh.
 
@@ -121,13 +121,13 @@ class CoarserMeshes:
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
         """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
         mesh."""
-        return mesh.full_intervals / self.mesh.full_intervals
+        return mesh.full_intervals / self.coarse_mesh.full_intervals
 
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
     slowest = COARSER_MESH_SETTINGS.slowest_decay_ratio * tails_of(orbit).decay
-    return min(max(slowest, CALIBRATION.min_space_decay), CALIBRATION.max_space_decay)
+    return min(max(slowest, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
 
 
 def _fewer_orders(near: Orbit) -> int:

@@ -63,7 +63,7 @@ class RefinedCycle:
         stable or unstable cycle."""
         if self.measures.least_stretch <= 0:
             return CycleStatus.left_the_model, f"smallest h1 = {self.measures.least_stretch:.3g} on the cycle"
-        if self.errors.largest > accuracy:
+        if self.errors.largest_error > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
         if self.undecided_divisor != 1:
             several = (

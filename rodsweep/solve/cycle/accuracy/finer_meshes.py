@@ -12,7 +12,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
-from ...orbit.newton import ConvergedOrbit, at_orbit, multiplier_change, multipliers_of, newton
+from ...orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of, newton, with_orbit_matrix
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import path_differences
 from .calibration import Calibration, calibration_of
@@ -61,7 +61,7 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
     tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
-    others = (newton(target.interpolate(found.orbit), tolerance, found.workspace) for target in finer)
+    others = (newton(target.interpolated_orbit(found.orbit), tolerance, found.workspace) for target in finer)
     space, time = (measured.difference(ComparedCycle(other)) for other in others)
     time = time / share
     if before is not None and before.mesh == mesh:
@@ -81,7 +81,7 @@ class ComparedCycle:
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers of the cycle, (rank - 1,), by descending modulus."""
-        return multipliers_of(at_orbit(self._found, FINER_MESH_SETTINGS.matrix_distance))[0]
+        return multipliers_of(with_orbit_matrix(self._found, FINER_MESH_SETTINGS.matrix_distance))[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
         """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four

@@ -3,7 +3,7 @@
 from math import nan
 
 from ...orbit.measures import CyclePath
-from ..marching_settings import MARCHING
+from ..marching_settings import MARCHING_SETTINGS
 from .cycle_errors import CycleErrors
 
 
@@ -19,8 +19,8 @@ def errors_of_pair(one: CyclePath, other: CyclePath, share: float) -> CycleError
     # Errors of extrema are divided by the largest y; theta may be several times as large as y.
     left = share * max(1.0, abs(b["tip_theta_max"]) / size)
     return CycleErrors(
-        float(MARCHING.pair_factor * period + share),
-        float(MARCHING.pair_factor * height + share),
-        float(MARCHING.pair_factor * worst + left),
+        float(MARCHING_SETTINGS.pair_factor * period + share),
+        float(MARCHING_SETTINGS.pair_factor * height + share),
+        float(MARCHING_SETTINGS.pair_factor * worst + left),
         nan,
     )

@@ -38,11 +38,11 @@ MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 def common_divisor(path: CyclePath, present: float) -> int:
     """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest
     harmonic; 0 if all harmonics are 0."""
-    return int(_divisor_from_sizes(path.bending_harmonics, present))
+    return int(_divisor_from_harmonic_sizes(path.bending_harmonics, present))
 
 
 @compiled
-def _divisor_from_sizes(sizes: Array, present: float) -> int:
+def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
     """`common_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit `present`."""
     divisor = 0
     least = present * sizes.max()

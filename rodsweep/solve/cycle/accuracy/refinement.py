@@ -16,10 +16,10 @@ from ...orbit.measures import CyclePath, measures_of
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
-    at_orbit,
     multipliers_of,
     newton,
     newton_step,
+    with_orbit_matrix,
 )
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
@@ -40,7 +40,9 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
-    by_matrix = REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.distance + trivial_error)
+    by_matrix = (
+        REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.matrix_distance + trivial_error)
+    )
     by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
@@ -90,13 +92,13 @@ def refined_at_period(
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
-            if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.symmetric:
+            if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
                 raise
             aim = max(REFINEMENT_SETTINGS.retry_accuracy_factor * aim, REFINEMENT_SETTINGS.finest_accuracy)
             mesh = wanted_mesh(orbit, aim, orbit.stages)
             if mesh.intervals * mesh.unknowns**3 > REFINEMENT_SETTINGS.max_retry_work:
                 raise
-            start = mesh.interpolate(orbit)
+            start = mesh.interpolated_orbit(orbit)
 
 
 def _predicted_cycle(
@@ -113,8 +115,8 @@ def _predicted_cycle(
     last = inf
     orbit, known = best = coarser.predicted(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
-        error = known.errors(accuracy).largest
-        if error < best[1].errors(accuracy).largest:
+        error = known.errors(accuracy).largest_error
+        if error < best[1].errors(accuracy).largest_error:
             best = orbit, known
         if error <= accuracy:
             break
@@ -123,19 +125,19 @@ def _predicted_cycle(
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, known.cheapest_mesh(accuracy))
         last = REFINEMENT_SETTINGS.max_error_increase * error
-        if not mesh.allowed:
+        if not mesh.is_allowed:
             break
         if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
     found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
-    if found.distance > max(
+    if found.matrix_distance > max(
         REFINEMENT_SETTINGS.max_prediction_distance * accuracy, REFINEMENT_SETTINGS.min_prediction_distance
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return with_calibrated_errors(
-        known, at_orbit(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)), accuracy
+        known, with_orbit_matrix(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)), accuracy
     )
 
 
@@ -153,13 +155,13 @@ def calibrated_cycle(
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         before = measured_calibration(found, accuracy, before)
         cycle = with_calibrated_errors(before, found, accuracy)
-        if best is None or cycle.errors.largest < best.errors.largest:
+        if best is None or cycle.errors.largest_error < best.errors.largest_error:
             best = cycle
-        if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
+        if cycle.errors.largest_error <= accuracy or cycle.errors.largest_error > last:
             break
-        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest
+        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_error
         finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
-        if not finer.allowed:
+        if not finer.is_allowed:
             break
         found = _solve_on_mesh(finer, found, accuracy, parameter)
     if best is None:
@@ -175,7 +177,7 @@ def _solve_on_mesh(
     parameter: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error) ** 0.5
-    solution = newton(mesh.interpolate(found.orbit), last, found.workspace)
+    solution = newton(mesh.interpolated_orbit(found.orbit), last, found.workspace)
     return newton_step(require_similar_size(solution, found.orbit.size), parameter)
 
 

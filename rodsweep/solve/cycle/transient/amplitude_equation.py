@@ -46,17 +46,16 @@ class AmplitudeEquation:
     """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion.
 
     g: growth of ln |z| per return. period: of the leading mode, in tau2. linear_rate: exact linear growth
-    rate of the rod, in 1/tau2. excess: linear growth rate of the rod minus the linear growth rate of the
-    integrated beam, in 1/tau2. noise: growth per return that integration errors may add. Arguments of the
-    methods: times of returns, (k,), and states z at the returns, (k, unknowns).
-    """
+    rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear growth rate of
+    the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may add. Arguments
+    of the methods: times of returns, (k,), and states z at the returns, (k, unknowns)."""
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
         self.period = period
         self.linear_rate = linear_rate
-        self.excess = excess
-        self.noise = noise
-        self.coefficient = nan
+        self.growth_excess = excess
+        self.growth_noise = noise
+        self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
     def growth(self, times: Array, states: Array) -> tuple[float, float]:
@@ -68,8 +67,8 @@ class AmplitudeEquation:
         sizes = np.linalg.norm(states[-2:], axis=1)
         duration = float(times[-1] - times[-2])
         growth = float(np.log(sizes[1] / sizes[0]))
-        # The integrated beam grows at a slightly different rate; `excess` corrects the difference.
-        return growth + self.excess * duration, self.linear_rate * duration
+        # The integrated beam grows at a slightly different rate; `growth_excess` corrects the difference.
+        return growth + self.growth_excess * duration, self.linear_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion grows or decays slowly and has the period of the leading mode. times: (k,);
@@ -84,19 +83,22 @@ class AmplitudeEquation:
         growth, linear = self.growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         margin = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
-        falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
+        falls = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
         alike = bool(falls.all()) and abs(growth - linear) < margin
         # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
-        small = abs(self.coefficient) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
+        small = (
+            abs(self.cubic_coefficient) * sizes[-1] ** 2 < margin
+            and growth - linear < margin + self.growth_noise
+        )
         return linear < 0 and (alike or small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth(times, states)
-        known = self.coefficient > 0 and self.is_slow_mode(times, states)
+        known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
-            self.noise if known else 0
+            self.growth_noise if known else 0
         )
 
     def scale_to_cycle(self, times: Array, states: Array) -> float | None:
@@ -112,12 +114,12 @@ class AmplitudeEquation:
         size = float(np.linalg.norm(states[-1]))
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
         measured = (linear - growth) / size**2
-        if abs(linear - growth) > self.noise * (
-            1 if isnan(self.coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
+        if abs(linear - growth) > self.growth_noise * (
+            1 if isnan(self.cubic_coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
         ):
-            self.coefficient = measured
-        coefficient = measured if isnan(self.coefficient) else self.coefficient
-        if isnan(self.coefficient) and linear > 0:
+            self.cubic_coefficient = measured
+        coefficient = measured if isnan(self.cubic_coefficient) else self.cubic_coefficient
+        if isnan(self.cubic_coefficient) and linear > 0:
             factor = (
                 AMPLITUDE_EQUATION_SETTINGS.max_jump_factor
             )  # c is within the noise at this small amplitude
@@ -130,9 +132,9 @@ class AmplitudeEquation:
                     AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
                 )
             )
-        elif linear > 0 or (coefficient < 0 and growth > self.noise):
+        elif linear > 0 or (coefficient < 0 and growth > self.growth_noise):
             factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decay_factor  # the growth increases with the amplitude
-        elif coefficient > 0 or growth < -self.noise:
+        elif coefficient > 0 or growth < -self.growth_noise:
             factor = AMPLITUDE_EQUATION_SETTINGS.decay_factor
         else:
             return None

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.beam import Beam
-from ....discretization.plane import balance
+from ....discretization.plane import write_balance
 from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
 from ...orbit.orbit import Orbit, node_times
@@ -48,24 +48,24 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
         / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
     )
     whole = spline(times)
-    top = float(times[int(np.argmax(beam.tip(whole)[1]))])
+    top = float(times[int(np.argmax(beam.tip_coordinates(whole)[1]))])
     symmetry = (
         REFLECTION
         if relative_asymmetry(beam, whole) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
-    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals * turns // symmetry.parts
-    duration = period / symmetry.parts
+    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals * turns // symmetry.period_parts
+    duration = period / symmetry.period_parts
     at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     at = np.where(at > run.times[-1], at - period, at)
     states = form_states(beam, form, spline(at))
-    return Orbit.of(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
+    return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 
 def relative_asymmetry(beam: Beam, states: Array) -> float:
     """Norm of the difference between m3(t) and the reflection -m3(t + T/2), divided by the norm of m3; m3:
     bending moments, T: period. states: at m equidistant times over a period, (m, n)."""
-    moments = beam.layout.field(states, "m3")
+    moments = beam.layout.stress_field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
@@ -76,9 +76,9 @@ def form_states(beam: Beam, form: StressForm, z: Array) -> Array:
     S = beam.stresses(z)
     V = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))
-    if form.omega_unknown:
+    if form.is_omega_unknown:
         for k, state in enumerate(beam.layout.state(S, S)):
             velocity = np.empty(G.shape)
-            balance(state, velocity, G, beam.nodal, beam.mesh.matrices)
+            write_balance(state, velocity, G, beam.nodal_rod, beam.mesh.matrices)
             V[:, k] = velocity
     return form.layout.state(S, V)

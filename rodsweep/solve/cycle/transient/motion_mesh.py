@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 from ....discretization.elements.elements import halve_elements
-from ....discretization.elements.mesh import Mesh, mesh, mesh_on
+from ....discretization.elements.mesh import Mesh, mesh_with_edges, uniform_mesh
 from ....discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
     expected_wave_number,
@@ -64,12 +64,12 @@ def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
         modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         bent = arm_elements(rod, by_force, accuracy)
         finest = max(modal, bent, key=lambda each: each.nodes)
-        return mesh_on(finest.edges, finest.order)
+        return mesh_with_edges(finest.edges, finest.order)
     wave = max(
         expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), by_force
     )
     resolution = resolution_for(wave, accuracy)
-    return mesh(resolution.elements, resolution.order)
+    return uniform_mesh(resolution.elements, resolution.order)
 
 
 def accuracy_of_motion_mesh(is_stored: bool) -> float:
@@ -89,7 +89,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
         if order > RESOLUTION_SETTINGS.max_order:
             edges = halve_elements(edges)
             order = ceil(order / 2)
-        grid = mesh_on(edges, order)
+        grid = mesh_with_edges(edges, order)
         if grid.nodes > MOTION_MESH_SETTINGS.max_refined_nodes:
             return
         yield grid
@@ -99,11 +99,11 @@ def coarse_mesh(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
     wave_number = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
     if rod.standard:
-        return mesh(
+        return uniform_mesh(
             1, max(MOTION_MESH_SETTINGS.min_order, int(MOTION_MESH_SETTINGS.order_per_wave * wave_number))
         )
     elements = arm_elements(rod, wave_number, MOTION_MESH_SETTINGS.coarse_accuracy)
-    return mesh_on(elements.edges, elements.order)
+    return mesh_with_edges(elements.edges, elements.order)
 
 
 def integrable_rod(rod: Rod) -> Rod:

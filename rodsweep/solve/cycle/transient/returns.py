@@ -45,7 +45,7 @@ RETURN_SETTINGS = ReturnSettings()
 
 def tip_angle_row(beam: Beam) -> Array:
     """Row vector c, (unknowns,), whose product with a state z of the beam is theta of the tip."""
-    return beam.layout.vector({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
+    return beam.layout.state_with_stresses({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
 def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
@@ -90,7 +90,7 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
 
 def _loses_convexity(beam: Beam, states: Array) -> bool:
     """Whether the strain energy of a section is not convex in one of the `states`, (k, unknowns)."""
-    return any(np.isfinite(state).all() and not beam.is_convex(state) for state in states[::-1])
+    return any(np.isfinite(state).all() and not beam.has_convex_energy(state) for state in states[::-1])
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:

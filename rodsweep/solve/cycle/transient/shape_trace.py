@@ -47,20 +47,23 @@ class ShapeTrace:
     def needs_more_motion(self, z: Array) -> bool:
         """Whether the motion is integrated further even if its outcome is known: the arm is not at rest, and
         the record is not full. z: present state, (unknowns,)."""
-        return not self.is_full and abs(float(self.beam.tip(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
+        return (
+            not self.is_full
+            and abs(float(self.beam.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
+        )
 
-    def begin(self, z: Array, relaxed: Array, duration: float) -> None:
+    def begin_with_relaxation(self, z: Array, relaxed: Array, duration: float) -> None:
         """Records the start state z, (unknowns,). The relaxation from z to `relaxed`, (unknowns,), over
         `duration`, in tau2, is too short to be visible and is not recorded."""
-        self._keep(np.zeros(1), z[None])
+        self._append_steps(np.zeros(1), z[None])
 
-    def add(self, run: Trajectory, clock: float) -> None:
+    def add_run(self, run: Trajectory, clock: float) -> None:
         """Records the time steps of a run that begins at the time `clock`, in tau2."""
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)
-        self._keep(clock + run.times[finite], run.states[finite])
+        self._append_steps(clock + run.times[finite], run.states[finite])
 
-    def _keep(self, times: Array, states: Array) -> None:
+    def _append_steps(self, times: Array, states: Array) -> None:
         if not self.is_full:
             self.times.append(times)
             self.states.append(states)
@@ -84,7 +87,7 @@ class ShapeTrace:
             within = run_of == number
             if within.any():
                 states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
-        shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation(lobatto_points(nodes)).T
+        shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation_matrix(lobatto_points(nodes)).T
         is_whole = not self.is_full and len(due) < SHAPE_TRACE_SETTINGS.max_frames
         swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

@@ -58,10 +58,10 @@ TORUS_TEST_SETTINGS = TorusTestSettings()
 
 @dataclass(frozen=True, slots=True)
 class Modulation:
-    """Second frequency of a quasiperiodic motion. angle: advance on the closed curve per return, in rad.
-    prediction_error: relative rms error of the predicted returns."""
+    """Second frequency of a quasiperiodic motion. angle_per_return: advance on the closed curve per return,
+    in rad. prediction_error: relative rms error of the predicted returns."""
 
-    angle: float
+    angle_per_return: float
     prediction_error: float
 
 
@@ -89,9 +89,10 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         angle = unstable_pair_angle(cycle)
         modulation = modulation_of(moments, angle) if near and angle else None
         if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
+            turns = modulation.angle_per_return / (2 * np.pi)
             message = (
-                f"the motion is modulated at {modulation.angle / (2 * np.pi):.3f} times the return rate; "
-                f"the cycle inside the torus has a multiplier of modulus {cycle.largest_multiplier:.3g}"
+                f"the motion is modulated at {turns:.3f} times the return rate; the cycle inside the torus "
+                f"has a multiplier of modulus {cycle.largest_multiplier:.3g}"
             )
             return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
     return end
@@ -100,8 +101,8 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
 def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
     """Candidates for the unstable cycle inside a torus: a cycle found during the motion, then the cycle on
     the branch from the Hopf point below the force."""
-    if transient.unstable is not None:
-        yield transient.unstable
+    if transient.unstable_cycle is not None:
+        yield transient.unstable_cycle
     try:
         hopf = hopf_point_below(transient.form.rod)
         if hopf is not None:

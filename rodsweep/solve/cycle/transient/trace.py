@@ -29,18 +29,18 @@ class TipTrace:
         state, (unknowns,)."""
         return False
 
-    def begin(self, z: Array, relaxed: Array, duration: float) -> None:
+    def begin_with_relaxation(self, z: Array, relaxed: Array, duration: float) -> None:
         """Records a straight line from the tip at the start state z to the tip at the state `relaxed`, both
         (unknowns,), over `duration`, in tau2.
 
         The relaxation rates, up to 1e10/tau2, are too large for cubic interpolation.
         """
-        tips = self.beam.tip(np.stack([z, relaxed]))
+        tips = self.beam.tip_coordinates(np.stack([z, relaxed]))
         slope = (tips[:, 1:] - tips[:, :1]) / duration
         self.times.append(np.array([0.0, duration]))
         self.tips.append(np.concatenate([tips, np.repeat(slope, 2, axis=1)]))
 
-    def add(self, run: Trajectory, clock: float) -> None:
+    def add_run(self, run: Trajectory, clock: float) -> None:
         """Records the time steps of a run that begins at the time `clock`, in tau2."""
         # A run that left the model may end with a state that is not finite.
         finite = np.isfinite(run.states).all(axis=1)

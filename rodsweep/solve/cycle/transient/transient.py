@@ -35,17 +35,17 @@ from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
 from .transient_outcome import TransientOutcome
-from .transient_settings import TRANSIENT
+from .transient_settings import TRANSIENT_SETTINGS
 
 
 class Transient:
     """Integration of the motion of one rod from a start; `follow` is called only once.
 
-    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod. along:
-    parameter along which the cycle's tangent is computed, or None. unstable: a nearby unstable cycle, or
-    None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby rod if `form` has a
-    limiting rod (k1 = inf, ...). trace: record of the tip's path or of shapes, or None if not requested.
-    """
+    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod.
+    tangent_parameter: parameter along which the cycle's tangent is computed, or None. unstable_cycle: a
+    nearby unstable cycle, or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby
+    rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None
+    if not requested."""
 
     def __init__(
         self,
@@ -59,24 +59,23 @@ class Transient:
         self.beam = Beam(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
-        self.along = along
+        self.tangent_parameter = along
         self.workspace = workspace
         self.accuracy = request.accuracy
         self.most_periods = request.most_periods
-        self.unstable = unstable
+        self.unstable_cycle = unstable
         self.mode = leading_mode(self.beam)
-        self.trace = self._trace(request)
+        self.record = self._new_record(request)
         self.tip_angle_row = tip_angle_row(self.beam)
         rate = straight.growth_rate(self.mode.w.real)
         period = self.mode.period
-        self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
-            rate * period, request.transient > 0
-        )
-        self.max_steps = steps * max(request.most_periods, TRANSIENT.min_returns)
-        self.amplitude = AmplitudeEquation(period, rate, rate - self._rate_of_the_beam(rate), noise)
-        self.step = period / TRANSIENT.first_steps_per_period
+        schemes = schemes_for_growth(rate * period, request.transient > 0)
+        self.first_scheme, self.scheme, noise, steps = schemes
+        self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns)
+        self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._beam_growth_rate(rate), noise)
+        self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
-        self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT.max_stored_returns)
+        self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
         self.elapsed = 0.0
         self.returns = self.steps = self.jumps = self.failures = self.next_newton_return = 0
@@ -85,7 +84,7 @@ class Transient:
         self.unsolved_message = ""
         """Message that no cycle is found near a periodic motion; "" while the search continues."""
 
-    def _trace(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
+    def _new_record(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
         """A new record of the tip's path or of shapes, as requested; None if neither is requested."""
         if request.frames:
             return ShapeTrace(self.beam)
@@ -108,29 +107,29 @@ class Transient:
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
-                if self.trace or self.jumps >= TRANSIENT.max_jumps:
+                if self.record or self.jumps >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
-                z = self._after_jump(TRANSIENT.restart_deflection * self.mode.z.real)
+                z = self._after_jump(TRANSIENT_SETTINGS.restart_deflection * self.mode.z.real)
                 continue
             early = first
             first = False
-            if len(times) < 3 or (early and self.amplitude.is_slow_mode(times, states)):
+            if len(times) < 3 or (early and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
-            shown = self.trace is not None and self.trace.needs_more_motion(z)
-            if not early and not shown and self.amplitude.decays_as_linear(times, states):
+            shown = self.record is not None and self.record.needs_more_motion(z)
+            if not early and not shown and self.amplitude_equation.decays_as_linear(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            jumps = not early and self.jumps < TRANSIENT.max_jumps
-            factor = self.amplitude.scale_to_cycle(times, states) if jumps else None
+            jumps = not early and self.jumps < TRANSIENT_SETTINGS.max_jumps
+            factor = self.amplitude_equation.scale_to_cycle(times, states) if jumps else None
             if factor is not None:
-                if self.trace and not self.trace.is_full:
+                if self.record and not self.record.is_full:
                     continue  # a motion with a stored path has no jumps
                 scaled = factor * z
-                pull = self.beam.layout.field(scaled, "n1")
-                pull *= factor  # the stretch is quadratic in the deflection
+                self.beam.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
                 z = self._after_jump(scaled)
                 continue
-            cycle = None if self.amplitude.decays_faster(times, states) else self._cycle_from_returns(run)
+            decays = self.amplitude_equation.decays_faster(times, states)
+            cycle = None if decays else self._cycle_from_returns(run)
             if cycle is not None:
                 return self._result(*cycle.verdict(self.accuracy), cycle)
         return self._result(CycleStatus.not_settled, self._not_settled(z))
@@ -140,7 +139,7 @@ class Transient:
         times, states: of the returns, (k,) and (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
-        moments = self.beam.layout.field(states, "m3")
+        moments = self.beam.layout.stress_field(states, "m3")
         self.past_returns.extend(zip(map(float, self.elapsed + times), moments, strict=True))
         self.elapsed += run.times[-1]
 
@@ -164,9 +163,9 @@ class Transient:
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
-        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= RETURN_SETTINGS.straight_size)
+        return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_size)
 
-    def _rate_of_the_beam(self, rate: float) -> float:
+    def _beam_growth_rate(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
 
         rate: linear growth rate of the rod in `form`, returned if the integrated rod is the same rod or its
@@ -180,9 +179,9 @@ class Transient:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
         after = relax_fast_components(self.beam, z, self.mode.period)
-        if self.trace:
+        if self.record:
             self.elapsed = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
-            self.trace.begin(z, after, self.elapsed)
+            self.record.begin_with_relaxation(z, after, self.elapsed)
         return after
 
     def _result(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
@@ -192,42 +191,42 @@ class Transient:
         """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
         TRANSIENT.first_returns in the `first` run, but of at most TRANSIENT.max_run_duration times the
         expected time per return."""
-        returns = TRANSIENT.first_returns if first else TRANSIENT.returns_per_run
+        returns = TRANSIENT_SETTINGS.first_returns if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
         limit = until_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
-        duration = TRANSIENT.max_run_duration * returns * max(self.mode.period, last)
+        duration = TRANSIENT_SETTINGS.max_run_duration * returns * max(self.mode.period, last)
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
-        if self.trace:
-            self.trace.add(run, self.elapsed)
+        if self.record:
+            self.record.add_run(run, self.elapsed)
         return run
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
         """The stable cycle near the end of a run, if the returns repeat and Newton's method converges; else
         None, also until the next attempt is due: the returns between attempts double with each attempt. After
         too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
-        turns, distance = repetition(
-            [state for _, state in self.past_returns][-1 - RETURN_SETTINGS.max_returns_per_period :]
-        )
-        if self.failed_starts >= TRANSIENT.max_failed_starts and distance < TRANSIENT.max_periodic_distance:
+        states = [state for _, state in self.past_returns]
+        turns, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
+        often_failed = self.failed_starts >= TRANSIENT_SETTINGS.max_failed_starts
+        if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
         if distance >= self._newton_start_distance() or self.returns < self.next_newton_return:
             return None
-        self.next_newton_return = self.returns + TRANSIENT.returns_per_run * 2**self.failures
-        self.failures = min(self.failures + 1, TRANSIENT.max_newton_failures)
+        self.next_newton_return = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.failures
+        self.failures = min(self.failures + 1, TRANSIENT_SETTINGS.max_newton_failures)
         return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns)
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
-        distance = TRANSIENT.max_newton_distance / TRANSIENT.newton_divisor**self.failures
-        settles = self.trace and self.returns < self.most_periods // 2
-        return min(distance, TRANSIENT.stored_path_distance) if settles else distance
+        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.failures
+        settles = self.record and self.returns < self.most_periods // 2
+        return min(distance, TRANSIENT_SETTINGS.stored_path_distance) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
@@ -239,12 +238,13 @@ class Transient:
                 return None
         orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
         try:
-            found = refined_cycle(orbit, self.accuracy, self.workspace, self.along)
+            found = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
         except Unsolvable:
             self.failed_starts += 1
             return None
         self.failed_starts = 0
         if found.stable is False:
-            self.unstable = found
+            self.unstable_cycle = found
         # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
-        return found if found.stable and 1 - found.largest_multiplier >= TRANSIENT.min_unit_distance else None
+        is_isolated = 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance
+        return found if found.stable and is_isolated else None

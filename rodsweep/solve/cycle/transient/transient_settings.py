@@ -48,4 +48,4 @@ class TransientSettings:
     may need many time steps."""
 
 
-TRANSIENT = TransientSettings()
+TRANSIENT_SETTINGS = TransientSettings()

@@ -16,18 +16,18 @@ within a block: the diagonal blocks d_ii M - h F' are regular if h is short comp
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.plane import jacobian
+from ....discretization.plane import write_jacobian
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
-from ..semidiscrete import Semidiscrete
-from .inversion import INVERSION_SETTINGS, invert
-from .substitution import map_start_to_end, reduce
-from .workspace import Factors
+from ..semidiscrete import SemidiscreteEquations
+from .inversion import INVERSION_SETTINGS, invert_matrix
+from .substitution import map_start_to_end, reduce_right_sides
+from .workspace import NewtonFactors
 
 
 @compiled_for_vectors
-def eliminate(
-    points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
+def eliminate_newton_matrix(
+    points: Array, V: Array, duration: float, p: SemidiscreteEquations, factors: NewtonFactors, columns: Array
 ) -> Array:
     """Eliminates Newton's matrix of an orbit and writes it into `factors`. Returns the changes that the
     right-hand sides cause at the end of the last interval for a fixed start, (k, n).
@@ -46,23 +46,23 @@ def eliminate(
     so_far = np.diag(p.mass)
     ends = np.zeros(columns.shape[2:])
     for k in range(K):
-        B = factors.blocks[k]
-        h = duration * p.lengths[k]
+        B = factors.eliminated_blocks[k]
+        h = duration * p.interval_lengths[k]
         for i in range(s):
-            jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.matrices)
+            write_jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.node_matrices)
             for r in range(n):
                 for q in range(n):
                     # Diagonal block d_ii M - h F'. Column 0 of d is for the start of the interval, so stage i
                     # has the column i + 1.
                     B[i, i, r, q] *= -h
-                B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
+                B[i, i, r, r] += p.stage_differentiation[i, i + 1] * p.mass[r]
         _eliminate_interval(B, right, parts, p)
         # Row 0 of the blocks is unused after two stages are eliminated. The effect of the start on the end
         # and on the later stages is stored there, for `substitute`.
         square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
         for a in range(2, s - 1):
             B[0, a] = right[a]
-        reduce(B, columns[k], p)
+        reduce_right_sides(B, columns[k], p)
         map_start_to_end(B, columns[k], p, ends)
         # `right` was computed for x_0 = M^-1, so that B[0, 1] acts on M x_0: M is between the maps of two
         # intervals.
@@ -74,7 +74,7 @@ def eliminate(
 
 
 @compiled_for_vectors
-def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
+def _eliminate_interval(B: Array, right: Array, parts: Array, p: SemidiscreteEquations) -> None:
     """Eliminates the blocks B of one interval, (s, s, n, n), whose diagonal blocks are given. p: equations.
 
     right: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand side of the
@@ -83,12 +83,12 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
     s = B.shape[0]
     n = B.shape[2]
     pivots = np.empty(n, np.int64)
-    rows = np.empty((n, INVERSION_SETTINGS.panel))
+    rows = np.empty((n, INVERSION_SETTINGS.panel_width))
     end = np.empty((n, n))
-    d = p.differentiation
+    d = p.stage_differentiation
     mass = p.mass
     Z = parts[0]
-    invert(B[0, 0], pivots, rows)
+    invert_matrix(B[0, 0], pivots, rows)
     # Schur complement of the second stage. It needs no product of matrices, because both off-diagonal blocks
     # are multiples of M.
     factor = d[1, 1] * d[0, 2]
@@ -96,10 +96,10 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
         for q in range(n):
             Z[r, q] = mass[r] * B[0, 0, r, q]
             B[1, 1, r, q] -= factor * Z[r, q] * mass[q]
-    invert(B[1, 1], pivots, rows)
-    _eliminate_two(B, right, parts, p)
+    invert_matrix(B[1, 1], pivots, rows)
+    _eliminate_first_two_stages(B, right, parts, p)
     for a in range(2, s):
-        invert(B[a, a], pivots, rows)
+        invert_matrix(B[a, a], pivots, rows)
         for i in range(a + 1, s):
             square_product(B[i, a], B[a, a], end, 1.0, 0.0)
             B[i, a] = end
@@ -109,7 +109,7 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
 
 
 @compiled_for_vectors
-def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
+def _eliminate_first_two_stages(B: Array, right: Array, parts: Array, p: SemidiscreteEquations) -> None:
     """Eliminates the first two stages: computes the blocks of all later stages in B, (s, s, n, n), and their
     matrices in `right` (see `_eliminate_interval`). p: equations.
 
@@ -118,7 +118,7 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
     """
     s = B.shape[0]
     n = B.shape[2]
-    d = p.differentiation
+    d = p.stage_differentiation
     mass = p.mass
     # For x_0 = M^-1 the columns of `right` have the factor -1 instead of M.
     minus = -np.ones(n)
@@ -139,9 +139,9 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
     for first in range(0, n, INVERSION_SETTINGS.rows_in_cache):
         last = min(n, first + INVERSION_SETTINGS.rows_in_cache)
         for i in range(2, s):
-            _subtract_parts(right[i], parts, (i, 0), (first, last), d, minus)
+            _subtract_first_stage_terms(right[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):
-                _subtract_parts(B[i, j], parts, (i, j + 1), (first, last), d, mass)
+                _subtract_first_stage_terms(B[i, j], parts, (i, j + 1), (first, last), d, mass)
     for i in range(2, s):
         for r in range(n):
             right[i, r, r] -= d[i, 0]
@@ -150,7 +150,7 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 
 
 @compiled_for_vectors
-def _subtract_parts(
+def _subtract_first_stage_terms(
     out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
 ) -> None:
     """Subtracts from the block `out` of a later stage, (n, n), the terms from the elimination of the first

@@ -9,16 +9,16 @@ import numpy as np
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
 from ....model.compiled.settings import CompiledSettings
-from ...backend.products import product
+from ...backend.products import matrix_product
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InversionSettings(CompiledSettings):
     """Settings for inverses and products of blocks."""
 
-    panel: int = 12
-    """Number of columns of a panel: `invert` eliminates these columns one by one, then one product updates
-    all other columns."""
+    panel_width: int = 12
+    """Number of columns of a panel: `invert_matrix` eliminates these columns one by one, then one product
+    updates all other columns."""
     min_pivot: float = 0.1
     """A pivot is exchanged for the largest entry of its column if |pivot| is less than this number times this
     entry."""
@@ -32,7 +32,7 @@ INVERSION_SETTINGS = InversionSettings()
 
 
 @compiled_for_vectors
-def invert(A: Array, pivots: Any, rows: Array) -> None:
+def invert_matrix(A: Array, pivots: Any, rows: Array) -> None:
     """Replaces A by A^-1 with Gauss-Jordan elimination and partial pivoting, a panel of columns at a time.
 
     A: (n, n). pivots, rows: work arrays, (n,) integers and (n, panel). The inverse of the transpose is the
@@ -41,21 +41,25 @@ def invert(A: Array, pivots: Any, rows: Array) -> None:
     n = len(A)
     ones = np.ones(2)
     extents = np.empty(6, np.int32)
-    for first in range(0, n, INVERSION_SETTINGS.panel):
-        last = min(n, first + INVERSION_SETTINGS.panel)
+    for first in range(0, n, INVERSION_SETTINGS.panel_width):
+        last = min(n, first + INVERSION_SETTINGS.panel_width)
         _sweep_panel(A, first, last, pivots)
         for j in range(n):
             if j < first or j >= last:
                 for i in range(last - first):
                     rows[j, i] = A[j, first + i]
                     A[j, first + i] = 0.0
-        extents[:] = first, n, last - first, INVERSION_SETTINGS.panel, n, n
+        extents[:] = first, n, last - first, INVERSION_SETTINGS.panel_width, n, n
         panel = A.ctypes.data + 8 * n * first
         row = 8 * n * last
-        product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
+        matrix_product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
         extents[0] = n - last
-        product(
-            rows.ctypes.data + 8 * INVERSION_SETTINGS.panel * last, panel, A.ctypes.data + row, extents, ones
+        matrix_product(
+            rows.ctypes.data + 8 * INVERSION_SETTINGS.panel_width * last,
+            panel,
+            A.ctypes.data + row,
+            extents,
+            ones,
         )
     # Exchanges of columns of A are undone as exchanges of rows of the inverse, in reverse order.
     for k in range(n - 1, -1, -1):

@@ -8,20 +8,20 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....discretization.nodal_rod import NO_JUMP_CHANGE, NodalChange
-from ....discretization.state_layout import PLANE_COMPONENTS, stress_index
+from ....discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
 from ..orbit import Orbit
-from ..semidiscrete import Semidiscrete
-from .elimination import eliminate
-from .inversion import INVERSION_SETTINGS, invert
-from .multipliers import nonzero_eigenvalues
-from .phase import phase, phase_change, phase_row
-from .right_sides import ParameterDerivatives, residuals, right_sides, variation_sides
-from .substitution import map_start_to_end, reduce, substitute
-from .workspace import Factors, MatrixMemory, NewtonWorkspace
+from ..semidiscrete import SemidiscreteEquations
+from .elimination import eliminate_newton_matrix
+from .inversion import INVERSION_SETTINGS, invert_matrix
+from .multipliers import multipliers_over_period, partial_multipliers
+from .phase import phase_residual, phase_right_side, write_phase_row
+from .right_sides import ParameterDerivatives, write_right_sides, write_stage_residuals, write_variation_sides
+from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
+from .workspace import MatrixMemory, NewtonFactors, NewtonWorkspace
 
-NO_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
+NO_PARAMETER_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
 """Placeholder for the change of a rod if there is no parameter; compiled code never reads it."""
 
 
@@ -39,47 +39,37 @@ class Linearisation:
         p = orbit.semidiscrete
         factors = self._memory.factors
         along = (
-            ParameterDerivatives(NO_CHANGE, p.mass)
+            ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
             if parameter is None
-            else change_along(orbit.form, parameter)
+            else parameter_derivatives(orbit.form, parameter)
         )
         count = 2 if parameter is None else 3
-        steps, self._by_period = linearise(orbit.values, count, along, p, factors)
+        steps, self._period_derivative = eliminate_at_orbit(orbit.values, count, along, p, factors)
         self.step = steps[0]
         self.tangent = None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
-        step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._memory.factors)
+        step: Array = newton_step_with_factors(
+            orbit.values, self._period_derivative, orbit.semidiscrete, self._memory.factors
+        )
         return step
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
+        return multipliers_over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
 
 
-def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
-    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
-    propagator: P, (n, n)."""
-    return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))
-
-
-def over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
-    values: Complex = partial**orbit.symmetry.parts
-    return values[np.argsort(-np.abs(values), kind="stable")]
-
-
-def change_along(form: StressForm, name: str) -> ParameterDerivatives:
+def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
     """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of parameter `name`."""
     change = form.parameter_derivative(name)
     return ParameterDerivatives(change, form.mass_of(change))
 
 
 @compiled_for_vectors
-def linearise(
-    values: Array, count: int, along: ParameterDerivatives, p: Semidiscrete, factors: Factors
+def eliminate_at_orbit(
+    values: Array, count: int, along: ParameterDerivatives, p: SemidiscreteEquations, factors: NewtonFactors
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
@@ -87,16 +77,16 @@ def linearise(
     along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals with
     respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
     """
-    K = factors.blocks.shape[0]
-    s = factors.blocks.shape[1]
+    K = factors.eliminated_blocks.shape[0]
+    s = factors.eliminated_blocks.shape[1]
     n = len(p.mass)
     points = values[:-1].reshape(1 + K * s, n)
-    duration = values[-1] / p.parts
-    V = np.empty((K, s, PLANE_COMPONENTS, len(p.matrices.weights)))
+    duration = values[-1] / p.period_parts
+    V = np.empty((K, s, PLANE_COMPONENT_COUNT, len(p.node_matrices.weights)))
     columns = np.empty((K, s, count, n))
-    right_sides(points, duration, p, along, V, columns)
-    ends = eliminate(points, V, duration, p, factors, columns)
-    inverse = factors.inverse
+    write_right_sides(points, duration, p, along, V, columns)
+    ends = eliminate_newton_matrix(points, V, duration, p, factors, columns)
+    inverse = factors.closing_inverse
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
     for i in range(n):
@@ -104,23 +94,23 @@ def linearise(
         inverse[i, n] = ends[0, i]
         for j in range(n):
             inverse[i, j] -= p.symmetry[i, j]
-    phase_row(points[0], p.rod, p.matrices, inverse[n, :n])
-    invert(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, INVERSION_SETTINGS.panel)))
+    write_phase_row(points[0], p.rod, p.node_matrices, inverse[n, :n])
+    invert_matrix(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, INVERSION_SETTINGS.panel_width)))
     rights = np.zeros((count - 1, n + 1))
     for m in range(1, count):
         for i in range(n):
             rights[m - 1, i] = -ends[m, i]
-    rights[0, :n] += jump_of(points, p)
-    rights[0, n] = -phase(points[0], p.rod, p.matrices)
+    rights[0, :n] += closing_residual(points, p)
+    rights[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
     if count > 2:
-        rights[1, n] = phase_change(points[0], along.change, p.rod, p.matrices)
+        rights[1, n] = phase_right_side(points[0], along.change, p.rod, p.node_matrices)
     # A contiguous copy: later corrections at nearby orbits need only this column.
     by_period = columns[:, :, 0].copy()
-    return steps_of(rights, by_period, columns[:, :, 1:], p, factors), by_period
+    return orbit_changes(rights, by_period, columns[:, :, 1:], p, factors), by_period
 
 
 @compiled_for_vectors
-def jump_of(points: Array, p: Semidiscrete) -> Array:
+def closing_residual(points: Array, p: SemidiscreteEquations) -> Array:
     """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
@@ -130,7 +120,9 @@ def jump_of(points: Array, p: Semidiscrete) -> Array:
 
 
 @compiled_for_vectors
-def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
+def orbit_changes(
+    rights: Array, by_period: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors
+) -> Array:
     """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
     rights: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand sides of
     the stages, (K, s, k, n). by_period: reduced period derivative of the stage residuals, (K, s, n)."""
@@ -140,7 +132,7 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
         for i in range(n + 1):
             total = 0.0
             for j in range(n + 1):
-                total += factors.inverse[i, j] * rights[m, j]
+                total += factors.closing_inverse[i, j] * rights[m, j]
             found[m, i] = total
     whole = np.empty((K, s, count, n))
     out = np.empty((K, s, count, n))
@@ -149,7 +141,7 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
             for m in range(count):
                 for r in range(n):
                     whole[k, i, m, r] = columns[k, i, m, r] + found[m, n] * by_period[k, i, r]
-    substitute(found[:, :n].copy(), whole, p, factors, out)
+    substitute_stages(found[:, :n].copy(), whole, p, factors, out)
     steps = np.empty((count, (1 + K * s) * n + 1))
     for m in range(count):
         steps[m, :n] = found[m, :n]
@@ -164,7 +156,11 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 
 @compiled_for_vectors
 def reduced_residuals(
-    points: Array, duration: float, rod: Semidiscrete, p: Semidiscrete, factors: Factors
+    points: Array,
+    duration: float,
+    rod: SemidiscreteEquations,
+    p: SemidiscreteEquations,
+    factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
     duration: total length of the intervals, in tau2.
@@ -172,63 +168,65 @@ def reduced_residuals(
     Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
     fixed start, (1, n).
     """
-    K = factors.blocks.shape[0]
-    s = factors.blocks.shape[1]
+    K = factors.eliminated_blocks.shape[0]
+    s = factors.eliminated_blocks.shape[1]
     n = len(p.mass)
     columns = np.empty((K, s, 1, n))
     ends = np.zeros((1, n))
-    residuals(points, duration, rod, columns[:, :, 0])
+    write_stage_residuals(points, duration, rod, columns[:, :, 0])
     for k in range(K):
-        reduce(factors.blocks[k], columns[k], p)
-        map_start_to_end(factors.blocks[k], columns[k], p, ends)
+        reduce_right_sides(factors.eliminated_blocks[k], columns[k], p)
+        map_start_to_end(factors.eliminated_blocks[k], columns[k], p, ends)
     return columns, ends
 
 
 @compiled_for_vectors
 def reduced_variations(
     values: Array,
-    rod: Semidiscrete,
+    rod: SemidiscreteEquations,
     along: ParameterDerivatives,
     variations: Array,
-    p: Semidiscrete,
-    factors: Factors,
+    p: SemidiscreteEquations,
+    factors: NewtonFactors,
 ) -> tuple[Array, Array]:
-    """The right-hand sides of `variation_sides` with the equations `rod`, reduced by a matrix of a nearby rod
-    `p`.
+    """The right-hand sides of `write_variation_sides` with the equations `rod`, reduced by a matrix of
+    a nearby rod `p`.
 
     Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
     of the last interval for a fixed start, (m, n).
     """
-    K = factors.blocks.shape[0]
-    s = factors.blocks.shape[1]
+    K = factors.eliminated_blocks.shape[0]
+    s = factors.eliminated_blocks.shape[1]
     n = len(p.mass)
     m = len(variations)
     columns = np.empty((K, s, m, n))
     ends = np.zeros((m, n))
-    variation_sides(values, rod, along, variations, columns)
+    write_variation_sides(values, rod, along, variations, columns)
     for k in range(K):
-        reduce(factors.blocks[k], columns[k], p)
-        map_start_to_end(factors.blocks[k], columns[k], p, ends)
+        reduce_right_sides(factors.eliminated_blocks[k], columns[k], p)
+        map_start_to_end(factors.eliminated_blocks[k], columns[k], p, ends)
     return columns, ends
 
 
 @compiled_for_vectors
-def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
+def newton_step_with_factors(
+    values: Array, by_period: Array, p: SemidiscreteEquations, factors: NewtonFactors
+) -> Array:
     """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors, by_period:
-    from `linearise` at a nearby orbit."""
+    from `eliminate_at_orbit` at a nearby orbit."""
     K, s, n = by_period.shape
     points = values[:-1].reshape(1 + K * s, n)
-    duration = values[-1] / p.parts
+    duration = values[-1] / p.period_parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
     rights = np.empty((1, n + 1))
     # The residuals of the stages move the end, too; this change is subtracted from the jump.
-    rights[0, :n] = jump_of(points, p) - ends[0]
-    rights[0, n] = -phase(points[0], p.rod, p.matrices)
-    return steps_of(rights, by_period, columns, p, factors)[0]
+    rights[0, :n] = closing_residual(points, p) - ends[0]
+    rights[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
+    return orbit_changes(rights, by_period, columns, p, factors)[0]
 
 
 @compiled_for_vectors
-def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
+def largest_relative_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
     """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
     divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:
     length of a state. nodes: number of nodes without the tip."""
@@ -237,14 +235,14 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
         # NaN would be lost in the comparisons below.
         if not np.isfinite(change):
             return np.inf
-    most = np.zeros(PLANE_COMPONENTS)
-    size = np.zeros(PLANE_COMPONENTS)
+    most = np.zeros(PLANE_COMPONENT_COUNT)
+    size = np.zeros(PLANE_COMPONENT_COUNT)
     # The state at the start is left out: it is the last stage of the previous part of the period.
     for first in range(unknowns, len(values) - 1, unknowns):
-        for a in range(1, PLANE_COMPONENTS):
+        for a in range(1, PLANE_COMPONENT_COUNT):
             for i in range(nodes):
                 at = first + stress_index(a, i, nodes)
                 most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
-    for a in range(1, PLANE_COMPONENTS):
+    for a in range(1, PLANE_COMPONENT_COUNT):
         largest = max(largest, most[a] / size[a])
     return largest

@@ -13,14 +13,15 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.exponents import EXPONENT_SETTINGS
 from ....model.compiled.compilation import compiled_for_vectors
-from ...backend.small_eigenvalues import eigenvalues
+from ...backend.small_eigenvalues import small_matrix_eigenvalues
+from ..orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloquetMultiplierSettings:
     """Settings for the factorisation of the derivative of a flow."""
 
-    negligible: float = 1e-17
+    negligible_column: float = 1e-17
     """A remaining column is neglected if its norm is at most this number times the largest column norm of the
     derivative."""
 
@@ -34,25 +35,39 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
     Raises LinAlgError if A has entries that are not finite.
     """
-    values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible)
+    values: Complex = _eigenvalues_by_rank(
+        np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column
+    )
     if not len(values):
         raise np.linalg.LinAlgError("the derivative of the flow is not finite")
     return values
 
 
+def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
+    """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
+    propagator: P, (n, n)."""
+    return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))
+
+
+def multipliers_over_period(partial: Complex, orbit: Orbit) -> Complex:
+    """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
+    values: Complex = partial**orbit.symmetry.period_parts
+    return values[np.argsort(-np.abs(values), kind="stable")]
+
+
 @compiled_for_vectors
 def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
-    """Eigenvalues of `compressed(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
+    """Eigenvalues of `compressed_matrix(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
     finite."""
-    small = compressed(A, negligible)
+    small = compressed_matrix(A, negligible)
     for value in small.flat:
         if not np.isfinite(value):
             return np.empty(0, np.complex128)
-    return eigenvalues(small)
+    return small_matrix_eigenvalues(small)
 
 
 @compiled_for_vectors
-def compressed(A: Array, negligible: float) -> Array:
+def compressed_matrix(A: Array, negligible: float) -> Array:
     """Matrix R Q, (rank, rank), with the nonzero eigenvalues of A = Q R, (n, n), after small columns are
     neglected.
 
@@ -80,7 +95,7 @@ def compressed(A: Array, negligible: float) -> Array:
         q[:] = columns[p] / max(size, EXPONENT_SETTINGS.least_divisor)
         for j in range(n):
             if norms[j] > least:
-                norms[j] = _without(columns[j], q, r, j)
+                norms[j] = _subtract_projection(columns[j], q, r, j)
         # The rest of the pivot column is rounding error: its norm is set to 0.
         r[p] = size
         norms[p] = 0.0
@@ -97,7 +112,7 @@ def compressed(A: Array, negligible: float) -> Array:
 
 
 @compiled_for_vectors
-def _without(column: Array, q: Array, r: Array, j: int) -> float:
+def _subtract_projection(column: Array, q: Array, r: Array, j: int) -> float:
     """Subtracts from `column`, (n,), in place, its component along the unit vector q, (n,), stores this
     component in r[j], and returns the norm of the remaining column. j: index of the column."""
     along = 0.0

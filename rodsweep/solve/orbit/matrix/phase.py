@@ -9,21 +9,21 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.elements.mesh import NodeMatrices
 from ....discretization.nodal_rod import NodalChange, NodalRod
-from ....discretization.plane import balance, balance_change, jacobian
-from ....discretization.state_layout import BENDING_INDEX, PLANE_COMPONENTS, stress_index
+from ....discretization.plane import write_balance, write_balance_derivative, write_jacobian
+from ....discretization.state_layout import BENDING_INDEX, PLANE_COMPONENT_COUNT, stress_index
 from ....model.compiled.compilation import compiled_for_vectors
 
 
 @compiled_for_vectors
-def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
+def phase_right_side(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
     """Minus the derivative of the phase condition along a change of the parameters, at the state `start` at t
     = 0, (n,): the right-hand side of the phase equation. change: derivatives of the nodal values c of the
     rod. m: matrices of the mesh."""
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     changes = np.empty((3, *c.drag.shape))
-    balance(start, V, G, c, m)
-    balance_change(start, V, changes, change, c, m)
+    write_balance(start, V, G, c, m)
+    write_balance_derivative(start, V, changes, change, c, m)
     theta = tip_angle(start, c.compliance, m)
     turned = tip_angle(start, change.compliance, m)
     by_angle = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]
@@ -32,12 +32,12 @@ def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 
 
 @compiled_for_vectors
-def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
+def phase_residual(start: Array, c: NodalRod, m: NodeMatrices) -> float:
     """Residual of the phase condition: lateral velocity dy/dt of the tip, computed from the reaction at the
     tip. start: state at t = 0, (n,). c: nodal values of the rod. m: matrices of the mesh."""
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
-    balance(start, V, G, c, m)
+    write_balance(start, V, G, c, m)
     return float(lateral_velocity(G, tip_angle(start, c.compliance, m)))
 
 
@@ -62,16 +62,16 @@ def tip_angle(x: Array, compliance: Array, m: NodeMatrices) -> float:
 
 
 @compiled_for_vectors
-def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
-    """Writes the derivative of the tip's lateral velocity (`phase`) with respect to the state `start`, (n,),
-    into `row`, (n,). c: rod at the nodes of the mesh. m: matrices of the mesh."""
+def write_phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
+    """Writes the derivative of the tip's lateral velocity (`phase_residual`) with respect to the state
+    `start`, (n,), into `row`, (n,). c: rod at the nodes of the mesh. m: matrices of the mesh."""
     n = len(start)
     V = np.empty(c.drag.shape)
     G = np.empty(c.drag.shape)
     J = np.empty((n, n))
-    tip = np.empty((PLANE_COMPONENTS, n))
-    balance(start, V, G, c, m)
-    jacobian(start, V, J, tip, c, m)
+    tip = np.empty((PLANE_COMPONENT_COUNT, n))
+    write_balance(start, V, G, c, m)
+    write_jacobian(start, V, J, tip, c, m)
     theta = tip_angle(start, c.compliance, m)
     nodes = len(m.weights) - 1
     sin = np.sin(theta)

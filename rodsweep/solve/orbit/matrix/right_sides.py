@@ -8,10 +8,15 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.nodal_rod import NodalChange
-from ....discretization.plane import balance, balance_change, jacobian, velocity_balance
+from ....discretization.plane import (
+    write_balance,
+    write_balance_derivative,
+    write_jacobian,
+    write_velocity_residuals,
+)
 from ....discretization.state_layout import stress_index, velocity_index
 from ....model.compiled.compilation import compiled_for_vectors
-from ..semidiscrete import Semidiscrete
+from ..semidiscrete import SemidiscreteEquations
 from .substitution import add_products
 
 
@@ -24,13 +29,13 @@ class ParameterDerivatives(NamedTuple):
 
 
 @compiled_for_vectors
-def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
+def write_rates_of_state(x: Array, F: Array, V: Array, G: Array, p: SemidiscreteEquations) -> None:
     """Writes the right-hand side of M dx/dt = F(x), (n,), into F, and the velocities and strain rates at the
     state x, (n,), into V and G, (3, nodes + 1). p: equations of the orbit."""
-    balance(x, V, G, p.rod, p.matrices)
+    write_balance(x, V, G, p.rod, p.node_matrices)
     _store_stresses(G, F)
     if len(p.rod.unknown_velocities):
-        velocity_balance(x, F, p.rod, p.matrices)
+        write_velocity_residuals(x, F, p.rod, p.node_matrices)
 
 
 @compiled_for_vectors
@@ -44,88 +49,95 @@ def _store_stresses(G: Array, F: Array) -> None:
 
 
 @compiled_for_vectors
-def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: Semidiscrete) -> None:
-    """Writes the derivative of F(x) of `equations` along a change of the parameters into F, (n,).
+def write_rate_derivatives(
+    x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: SemidiscreteEquations
+) -> None:
+    """Writes the derivative of F(x) of `write_rates_of_state` along a change of the parameters into F, (n,).
 
     x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1). change:
     derivatives of the arrays of the rod. p: equations of the orbit.
     """
-    balance_change(x, V, out, change, p.rod, p.matrices)
+    write_balance_derivative(x, V, out, change, p.rod, p.node_matrices)
     _store_stresses(out[2], F)
     d, size = V.shape
     for k in range(len(p.rod.unknown_velocities)):
         for i in range(size):
             F[velocity_index(k, i, d, size - 1)] = (
-                p.matrices.weights[i] * out[0, p.rod.unknown_velocities[k], i]
+                p.node_matrices.weights[i] * out[0, p.rod.unknown_velocities[k], i]
             )
 
 
 @compiled_for_vectors
-def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> None:
+def write_stage_residuals(points: Array, duration: float, p: SemidiscreteEquations, out: Array) -> None:
     """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
     points: states x_j at the start and at all stages, in order, (1 + K s, n). duration: total length of the
     intervals, in tau2. p: equations F, differentiation matrix d and mass matrix M.
     """
     K, s, n = out.shape
-    size = len(p.matrices.weights)
+    size = len(p.node_matrices.weights)
     V = np.empty((3, size))
     G = np.empty((3, size))
     F = np.empty(n)
     for k in range(K):
-        h = duration * p.lengths[k]
+        h = duration * p.interval_lengths[k]
         for i in range(s):
-            equations(points[1 + k * s + i], F, V, G, p)
-            _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, out[k, i])
+            write_rates_of_state(points[1 + k * s + i], F, V, G, p)
+            _write_stage_slope(points[k * s : (k + 1) * s + 1], i, p.stage_differentiation, out[k, i])
             for r in range(n):
                 out[k, i, r] = h * F[r] - p.mass[r] * out[k, i, r]
 
 
 @compiled_for_vectors
-def right_sides(
-    points: Array, duration: float, p: Semidiscrete, along: ParameterDerivatives, V: Array, columns: Array
+def write_right_sides(
+    points: Array,
+    duration: float,
+    p: SemidiscreteEquations,
+    along: ParameterDerivatives,
+    V: Array,
+    columns: Array,
 ) -> None:
     """Writes k right-hand sides of Newton's system into `columns`, (K, s, k, n), and the velocities of the
     stages into V, (K, s, 3, nodes + 1).
 
-    Column 0: derivative of the residuals with respect to the period. Column 1: the `residuals`. Column 2, if
-    present: derivative of the residuals along the parameter of `along`. points, duration, p: as in
-    `residuals`.
-    """
+    Column 0: derivative of the residuals with respect to the period. Column 1: the `write_stage_residuals`.
+    Column 2, if present: derivative of the residuals along the parameter of `along`. points, duration, p: as
+    in `write_stage_residuals`."""
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
     changes = np.empty((3, *V.shape[2:]))
     slopes = np.empty(n)
     for k in range(K):
-        length = p.lengths[k]
+        length = p.interval_lengths[k]
         for i in range(s):
             x = points[1 + k * s + i]
             sides = columns[k, i]
-            equations(x, sides[0], V[k, i], G, p)
-            _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+            write_rates_of_state(x, sides[0], V[k, i], G, p)
+            _write_stage_slope(points[k * s : (k + 1) * s + 1], i, p.stage_differentiation, slopes)
             for r in range(n):
                 # sides[0] contains F, which is needed for the residual, and is then overwritten by the
                 # derivative of h F with respect to the period.
                 sides[1, r] = duration * length * sides[0, r] - p.mass[r] * slopes[r]
-                sides[0, r] *= length / p.parts
+                sides[0, r] *= length / p.period_parts
             if count > 2:
-                equations_change(x, sides[2], V[k, i], changes, along.change, p)
+                write_rate_derivatives(x, sides[2], V[k, i], changes, along.change, p)
                 for r in range(n):
                     sides[2, r] = duration * length * sides[2, r] - along.mass[r] * slopes[r]
 
 
 @compiled_for_vectors
-def variation_sides(
-    values: Array, p: Semidiscrete, along: ParameterDerivatives, variations: Array, columns: Array
+def write_variation_sides(
+    values: Array, p: SemidiscreteEquations, along: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
-    """Writes the derivatives of the `residuals` of an orbit along k variations into `columns`, (K, s, k, n).
+    """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
+    (K, s, k, n).
 
     values: values of the orbit, (N,). p: equations of the orbit. variations: changes of the values and of the
     parameter of `along`, (k, N + 1).
     """
     K, s, count, n = columns.shape
     points = values[:-1].reshape(1 + K * s, n)
-    duration = values[-1] / p.parts
+    duration = values[-1] / p.period_parts
     # The last two entries of a variation are the period and the parameter's coordinate.
     changes = variations[:, :-2].copy().reshape(count, 1 + K * s, n)
     V = np.empty(p.rod.drag.shape)
@@ -141,29 +153,29 @@ def variation_sides(
     moving = np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):
-        h = duration * p.lengths[k]
+        h = duration * p.interval_lengths[k]
         for i in range(s):
             x = points[1 + k * s + i]
-            equations(x, F, V, G, p)
-            jacobian(x, V, J, tip, p.rod, p.matrices)
+            write_rates_of_state(x, F, V, G, p)
+            write_jacobian(x, V, J, tip, p.rod, p.node_matrices)
             if moving:
-                equations_change(x, by_parameter, V, out, along.change, p)
-                _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                write_rate_derivatives(x, by_parameter, V, out, along.change, p)
+                _write_stage_slope(points[k * s : (k + 1) * s + 1], i, p.stage_differentiation, slopes)
                 for r in range(n):
                     by_parameter[r] = h * by_parameter[r] - along.mass[r] * slopes[r]
             v[:] = changes[:, 1 + k * s + i]
             add_products(J, v, columns[k, i], h)
             for m in range(count):
-                _slopes(changes[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                _write_stage_slope(changes[m, k * s : (k + 1) * s + 1], i, p.stage_differentiation, slopes)
                 # h is T/p times the relative length of the interval, so that dh/dT is this length over p.
-                by_period = variations[m, -2] * p.lengths[k] / p.parts
+                by_period = variations[m, -2] * p.interval_lengths[k] / p.period_parts
                 for r in range(n):
                     rates = by_period * F[r] + variations[m, -1] * by_parameter[r]
                     columns[k, i, m, r] += rates - p.mass[r] * slopes[r]
 
 
 @compiled_for_vectors
-def _slopes(points: Array, i: int, d: Array, out: Array) -> None:
+def _write_stage_slope(points: Array, i: int, d: Array, out: Array) -> None:
     """Writes sum_j d_ij x_j for stage i into `out`, (n,). points: states x_j at the start and at the stages
     of an interval, (s + 1, n). d: (s, s + 1)."""
     out[:] = 0.0

@@ -15,9 +15,9 @@ from scipy.linalg import schur
 
 from ....arrays import Array, Complex
 from ..orbit import Orbit
-from ..semidiscrete import Semidiscrete
-from .substitution import map_start_to_end, substitute
-from .workspace import Factors
+from ..semidiscrete import SemidiscreteEquations
+from .substitution import map_start_to_end, substitute_stages
+from .workspace import NewtonFactors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,13 +40,15 @@ SHOOTING_INTERVAL_SETTINGS = ShootingIntervalSettings()
 @dataclass(frozen=True, eq=False)
 class ShootingIntervals:
     """The m shooting intervals of an orbit. edges: index of the first time interval of each shooting
-    interval, and the number of time intervals, m + 1 numbers. maps: derivative of the end of each shooting
-    interval with respect to its start, (m, n, n)."""
+    interval, and the number of time intervals, m + 1 numbers. flow_maps: derivative of the end of each
+    shooting interval with respect to its start, (m, n, n)."""
 
     edges: tuple[int, ...]
-    maps: Array
+    flow_maps: Array
 
-    def ends(self, factors: Factors, columns: Array, whole: Array, p: Semidiscrete) -> Array:
+    def end_changes(
+        self, factors: NewtonFactors, columns: Array, whole: Array, p: SemidiscreteEquations
+    ) -> Array:
         """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
         the shooting intervals, (m, k, n).
 
@@ -54,23 +56,25 @@ class ShootingIntervals:
         for a fixed start of the first time interval, (k, n). factors: eliminated matrix. p: equations of the
         orbit.
         """
-        ends = np.zeros((len(self.maps), *whole.shape))
+        ends = np.zeros((len(self.flow_maps), *whole.shape))
         if len(ends) == 1:
             return whole[None]
         columns = np.ascontiguousarray(columns)
         for end, (first, last) in zip(ends, pairwise(self.edges), strict=True):
             for k in range(first, last):
-                map_start_to_end(factors.blocks[k], columns[k], p, end)
+                map_start_to_end(factors.eliminated_blocks[k], columns[k], p, end)
         return ends
 
-    def substituted(self, factors: Factors, starts: Array, columns: Array, p: Semidiscrete) -> Array:
+    def stage_changes(
+        self, factors: NewtonFactors, starts: Array, columns: Array, p: SemidiscreteEquations
+    ) -> Array:
         """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
         n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated matrix. p: equations of the
         orbit."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
-            part = factors._replace(blocks=factors.blocks[first:last])
-            substitute(start[None], columns[first:last], p, part, out[first:last])
+            part = factors._replace(eliminated_blocks=factors.eliminated_blocks[first:last])
+            substitute_stages(start[None], columns[first:last], p, part, out[first:last])
         return out
 
     def multipliers(self, orbit: Orbit) -> Complex:
@@ -80,7 +84,7 @@ class ShootingIntervals:
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.
         """
-        *others, last = self.maps
+        *others, last = self.flow_maps
         ahead = triangle = np.eye(len(last))
         for _ in range(SHOOTING_INTERVAL_SETTINGS.sweeps):
             # Directions that decay to nothing over a period are dropped, to save time.
@@ -102,12 +106,12 @@ class ShootingIntervals:
         return values[np.abs(values) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier]
 
 
-def shooting_intervals_of(factors: Factors, mass: Array) -> ShootingIntervals:
+def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
     """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval if the norm
     of P is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
     present shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
     (n,)."""
-    blocks = factors.blocks
+    blocks = factors.eliminated_blocks
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]

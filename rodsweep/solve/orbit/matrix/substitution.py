@@ -9,21 +9,21 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
-from ..semidiscrete import Semidiscrete
-from .workspace import Factors
+from ..semidiscrete import SemidiscreteEquations
+from .workspace import NewtonFactors
 
 
 @compiled_for_vectors
-def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
+def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> None:
     """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
     first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
     end for a fixed start. B: eliminated blocks of the interval, (s, s, n, n). p: equations."""
     s, count, n = columns.shape
-    d = p.differentiation
+    d = p.stage_differentiation
     mass = p.mass
     t = np.empty((count, n))
     u = np.empty((count, n))
-    _first_two_stages(B, columns, p, t, u)
+    _write_first_two_stages(B, columns, p, t, u)
     for i in range(2, s):
         for m in range(count):
             for r in range(n):
@@ -37,7 +37,7 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
 
 
 @compiled_for_vectors
-def map_start_to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
+def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: Array) -> None:
     """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
     interval. B: eliminated blocks of the interval, (s, s, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
@@ -48,11 +48,11 @@ def map_start_to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> 
 
 
 @compiled_for_vectors
-def _first_two_stages(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
+def _write_first_two_stages(B: Array, y: Array, p: SemidiscreteEquations, t: Array, u: Array) -> None:
     """Writes the changes of the first two stages into t and u, (k, n). B: eliminated blocks, (s, s, n, n). y:
     right-hand sides, of which only the first two stages are used, (s, k, n). The changes of later stages are
     taken as 0."""
-    d = p.differentiation
+    d = p.stage_differentiation
     mass = p.mass
     (count, n) = t.shape
     side = np.empty((count, n))
@@ -93,17 +93,19 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 
 @compiled_for_vectors
-def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
+def substitute_stages(
+    start: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors, out: Array
+) -> None:
     """Writes the changes of all stages into `out`, (K, s, k, n). start: changes of the start, (k, n).
     columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""
     K, s, count, n = columns.shape
     y = np.empty((2, count, n))
     first = start.copy()
     scaled = np.empty((count, n))
-    d = p.differentiation
+    d = p.stage_differentiation
     mass = p.mass
     for k in range(K):
-        B = factors.blocks[k]
+        B = factors.eliminated_blocks[k]
         for m in range(count):
             for r in range(n):
                 scaled[m, r] = mass[r] * first[m, r]
@@ -116,7 +118,7 @@ def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, 
                 for r in range(n):
                     for i in range(2):
                         y[i, m, r] -= d[i, a + 1] * mass[r] * out[k, a, m, r]
-        _first_two_stages(B, y, p, out[k, 0], out[k, 1])
+        _write_first_two_stages(B, y, p, out[k, 0], out[k, 1])
         first[:] = out[k, s - 1]
 
 
@@ -127,7 +129,7 @@ def _substitute_stage(B: Array, a: int, columns: Array, scaled: Array, out: Arra
     (s, k, n), in which the changes of later stages are known."""
     s = len(B)
     out[a] = 0.0
-    # `reduce` has solved the last stage for a fixed start; the effect of the start is added.
+    # `reduce_right_sides` has solved the last stage for a fixed start; the effect of the start is added.
     if a == s - 1:
         out[a] = columns[a]
         add_products(B[0, 1], scaled, out[a], 1.0)

@@ -26,19 +26,19 @@ class WorkspaceSettings:
 WORKSPACE_SETTINGS = WorkspaceSettings()
 
 
-class Factors(NamedTuple):
+class NewtonFactors(NamedTuple):
     """Eliminated Newton matrix of all K intervals.
 
-    blocks: (K, s, s, n, n); the diagonal has inverses of the pivot blocks, the part below has row
+    eliminated_blocks: (K, s, s, n, n); the diagonal has inverses of the pivot blocks, the part below has row
     multipliers, the part above has Schur-updated blocks. Off the diagonal, the first two rows and columns are
     unused, except row 0: its blocks multiply M x_0, x_0: state at the start; block 1 gives the change of the
     end, blocks 2 to s - 2 the right-hand sides of these stages. propagator: map P over all intervals, (n, n).
-    inverse: inverse of the remaining matrix for start and period, (n + 1, n + 1).
+    closing_inverse: inverse of the remaining matrix for start and period, (n + 1, n + 1).
     """
 
-    blocks: Array
+    eliminated_blocks: Array
     propagator: Array
-    inverse: Array
+    closing_inverse: Array
 
 
 class NewtonWorkspace:
@@ -85,7 +85,7 @@ class MatrixMemory:
         self._inverse = np.zeros((unknowns + 1, unknowns + 1))
 
     @property
-    def factors(self) -> Factors:
+    def factors(self) -> NewtonFactors:
         """The factors; raises RuntimeError if another matrix was assembled in the workspace."""
         blocks = self.workspace.buffer(self._reservation)[: prod(self._shape)].reshape(self._shape)
-        return Factors(blocks, self.propagator, self._inverse)
+        return NewtonFactors(blocks, self.propagator, self._inverse)

@@ -7,7 +7,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant
-from ....determinant.arm.family import propagators_in_family
+from ....determinant.arm.family import propagators_at
 from ....determinant.arm.hull.region import hull_at
 from ....determinant.parameter_path import Path
 from ..candidates import lines_for_count
@@ -16,7 +16,7 @@ from .carried_count import leading_eigenvalues
 from .prediction import Track
 
 
-def count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
+def confirmed_count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
     right of a line; 0 if no count confirms this.
 
@@ -44,7 +44,7 @@ def confirmed_line(
     w, error = followed
     if w[-1].real > 0:  # more modes grow, and the count would include them
         return None
-    determinant = ArmDeterminant(path.rod_at(p), propagators_in_family(found.family, p))
+    determinant = ArmDeterminant(path.rod_at(p), propagators_at(found.family, p))
     hull = hull_at(found.hulls, p)
     lines = [line for line in lines_for_count(w.tolist(), modes) if line <= rightmost]
     for line in [*lines, rightmost] if rightmost < math.inf else lines:

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
 from ....determinant.arm.completeness import (
-    COMPLETENESS,
+    COMPLETENESS_SETTINGS,
     points_right_of_hull,
     proves_completeness,
     remainder_of_sum,
 )
-from ....determinant.arm.family import ARM_FAMILY_SETTINGS, ArmFamily, propagators_at
-from ....determinant.arm.hull.region import Hull, PathHulls, hull_at
+from ....determinant.arm.family import ARM_FAMILY_SETTINGS, ArmFamily, write_propagators
+from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
 from ....determinant.arm.value import ARM_VALUE_SETTINGS, determinant_along_chain, path_value_by_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
@@ -77,7 +77,7 @@ def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[com
 
 
 @compiled
-def _correct_all(
+def _refine_all_eigenvalues(
     track: Track, i: int, p: float, guess: Complex, modes: int, level: PropagatorsWithSlopes
 ) -> bool:
     """Refines the guesses for all eigenvalues of point i, at path variable p, and writes the eigenvalues to
@@ -88,7 +88,7 @@ def _correct_all(
     """
     w = track.w[i]
     error = track.error[i]
-    order = track.order[i]
+    order = track.descending_order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
     find_conjugates(guess, mate)
@@ -114,7 +114,9 @@ def _correct_all(
 
 
 @compiled
-def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: PropagatorsWithSlopes) -> int:
+def proved_count_right_of_line(
+    track: Track, i: int, modes: int, hull: EigenvalueHull, level: PropagatorsWithSlopes
+) -> int:
     """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a line;
     0 without a proof.
 
@@ -123,7 +125,7 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Propa
     """
     w = track.w[i]
     error = track.error[i]
-    k = track.order[i, modes - 1]
+    k = track.descending_order[i, modes - 1]
     line = min(
         w[k].real
         - CANDIDATE_SETTINGS.proof_line_errors * error[k]
@@ -135,7 +137,7 @@ def all_right_of_line(track: Track, i: int, modes: int, hull: Hull, level: Propa
         if abs(w[j].real - line) <= 2 * error[j]:
             return 0
         here += w[j].real > line
-    for power in COMPLETENESS.point_counts:
+    for power in COMPLETENESS_SETTINGS.point_counts:
         points = points_right_of_hull(line, hull.a, hull.c, power)
         if len(points) == 0 or points[-1] > level[0]:
             continue
@@ -153,24 +155,24 @@ def follow_eigenvalues_of_arms(
 
     track: `w` and `order` of the first point are given, the remaining points are filled. family: family of
     arms that contains all p. hulls: regions that contain the spectra of all arms of the family. known:
-    output, the number from `all_right_of_line` at each point, (points,).
+    output, the number from `proved_count_right_of_line` at each point, (points,).
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
-    level = (family.W, polynomials, changes)
+    level = (family.largest_w, polynomials, changes)
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)
     for i in range(len(p)):
-        propagators_at(family, p[i], polynomials, changes)
+        write_propagators(family, p[i], polynomials, changes)
         if i > 0:
             predict_eigenvalues(track, i, p, guess, decided)
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
                     set_two_guesses(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
-            track.order[i] = track.order[i - 1]
-        if not _correct_all(track, i, p[i], guess, modes, level):
+            track.descending_order[i] = track.descending_order[i - 1]
+        if not _refine_all_eigenvalues(track, i, p[i], guess, modes, level):
             return i
-        known[i] = all_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
+        known[i] = proved_count_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
     return len(p)

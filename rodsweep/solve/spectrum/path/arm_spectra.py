@@ -10,7 +10,7 @@ from ....arrays import Array
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.parameter_path import Path
 from ..spectrum import FollowedPoints, SpectrumRequest
-from .arm_count import count_at
+from .arm_count import confirmed_count_at
 from .arm_stretch import ArmInterval, follow_interval
 from .arm_stretch_settings import ARM_STRETCH_SETTINGS
 from .carried_arm_count import carry_counts
@@ -29,12 +29,12 @@ def follow_stretch_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
     carry_counts(path, found, request.modes)
     for i in np.flatnonzero(found.proved_modes < request.modes).tolist():
         here = slice_track(found.track, i, i + 1)
-        found.proved_modes[i] = count_at(path, found, float(found.p[i]), request.modes, here)
+        found.proved_modes[i] = confirmed_count_at(path, found, float(found.p[i]), request.modes, here)
     good, unstable = assess_points(found.track, found.proved_modes, request.modes, request.accuracy)
     return FollowedPoints(*leading_eigenvalues(found.track, request.modes), unstable, good)
 
 
 def _with_finer_hulls(path: Path, found: ArmInterval) -> ArmInterval:
     """The interval `found` with hulls at more arms, hence closer to the hull of each arm."""
-    places = np.linspace(found.family.low, found.family.high, ARM_STRETCH_SETTINGS.hull_arms_for_unproved)
+    places = np.linspace(found.family.p_low, found.family.p_high, ARM_STRETCH_SETTINGS.hull_arms_for_unproved)
     return found._replace(hulls=hulls_along([path.rod_at(x) for x in places.tolist()], places))

@@ -14,7 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
-from ....determinant.arm.completeness import COMPLETENESS, has_conjugate, points_right_of_hull, prove_complete
+from ....determinant.arm.completeness import (
+    COMPLETENESS_SETTINGS,
+    has_conjugate,
+    points_right_of_hull,
+    prove_complete,
+)
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.family import ArmFamily, has_smooth_coefficients, interpolated_family
 from ....determinant.arm.hull.hull import hulls_along
@@ -72,15 +77,16 @@ def follow_interval(
         if before is None or number >= before.further_modes
     ):
         if best is not None and not (
-            _follows_too_few_modes(best) or (not counts_follow and _proves_more(path, best, request, further))
+            _follows_too_few_modes(best)
+            or (not counts_follow and _more_modes_prove_middle(path, best, request, further))
         ):
             break
         found = (
-            _follow_with(path, p, request, further, before)
+            _follow_with_further_modes(path, p, request, further, before)
             if len(p) >= ARM_STRETCH_SETTINGS.min_points
             else None
         )
-        if found is not None and (best is None or _is_better(found, best, request.modes)):
+        if found is not None and (best is None or _is_better_interval(found, best, request.modes)):
             best = found
         enough = best is not None and best.proved_points(
             request.modes
@@ -96,7 +102,7 @@ def _follows_too_few_modes(found: ArmInterval) -> bool:
     return bool(growing + ARM_STRETCH_SETTINGS.modes_beyond_growing > found.track.w.shape[1])
 
 
-def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
+def _is_better_interval(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
     """Whether `found` has more proved points than `other`, or equally many while `other` follows too few
     modes.
     """
@@ -105,14 +111,16 @@ def _is_better(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
     return here > there or (here == there and _follows_too_few_modes(other))
 
 
-def _proves_more(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
+def _more_modes_prove_middle(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
     """Whether following `further` additional modes would prove completeness at the middle point among the
     points without a proof."""
     left = np.flatnonzero(found.proved_modes < request.modes)
-    return _proves_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
+    return _more_modes_prove_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
 
 
-def _proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int) -> bool:
+def _more_modes_prove_point(
+    path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int
+) -> bool:
     """Whether the wanted modes at path variable p, inside the interval `found`, would be proved complete if
     `further` modes were followed in addition."""
     roots = _leading_roots(path, p, request, further)
@@ -126,7 +134,7 @@ def _proves_point(path: Path, found: ArmInterval, p: float, request: SpectrumReq
         return False
 
 
-def _follow_with(
+def _follow_with_further_modes(
     path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `further` modes
@@ -137,10 +145,10 @@ def _follow_with(
     n = len(p)
     made = None
     if first is not None and before is not None:
-        inside = int(((p >= before.family.low) & (p <= before.family.high)).sum())
+        inside = int(((p >= before.family.p_low) & (p <= before.family.p_high)).sum())
         if (
             inside >= ARM_STRETCH_SETTINGS.min_points
-            and ARM_STRETCH_SETTINGS.reused_headroom * np.abs(first).max() <= before.family.W
+            and ARM_STRETCH_SETTINGS.min_reused_w_factor * np.abs(first).max() <= before.family.largest_w
         ):
             made = (before.family, before.hulls)
             n = inside
@@ -182,15 +190,15 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
             return None
         places = np.linspace(low, high, ARM_STRETCH_SETTINGS.hull_arms)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
-        W = ARM_STRETCH_SETTINGS.headroom * float(np.abs(first).max())
-        line = min(ARM_STRETCH_SETTINGS.headroom * float(first[modes - 1].real), 0.0)
+        W = ARM_STRETCH_SETTINGS.largest_w_factor * float(np.abs(first).max())
+        line = min(ARM_STRETCH_SETTINGS.largest_w_factor * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
-            for k in COMPLETENESS.point_counts
+            for k in COMPLETENESS_SETTINGS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
-        near = [end for end in ends if end <= ARM_STRETCH_SETTINGS.headroom * W]
+        near = [end for end in ends if end <= ARM_STRETCH_SETTINGS.largest_w_factor * W]
         family = interpolated_family(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None
@@ -207,7 +215,7 @@ def _eigenvalues_of_previous_interval(
         return None
     if before.proved_points(request.modes) < len(before.p):
         return None
-    return before.track.w[-1][before.track.order[-1]]
+    return before.track.w[-1][before.track.descending_order[-1]]
 
 
 def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:

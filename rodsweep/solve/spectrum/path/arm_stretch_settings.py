@@ -21,9 +21,9 @@ class ArmStretchSettings:
     hull_arms_for_unproved: int = 49
     """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
     proof."""
-    headroom: float = 2.0
+    largest_w_factor: float = 2.0
     """The propagators of a new family are valid up to W = headroom * (largest |w| at the first point)."""
-    reused_headroom: float = 1.25
+    min_reused_w_factor: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""
     max_points_growth: int = 2

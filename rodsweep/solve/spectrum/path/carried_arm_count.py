@@ -32,7 +32,7 @@ class CarriedArmCountSettings:
 CARRIED_ARM_COUNT_SETTINGS = CarriedArmCountSettings()
 
 
-class Eigenvalues(NamedTuple):
+class FollowedEigenvalues(NamedTuple):
     """Followed eigenvalues of an interval by descending real part, and their errors, (points, m) each.
 
     lines: real part of the rightmost line that lies left of all requested eigenvalues, (points,).
@@ -43,7 +43,7 @@ class Eigenvalues(NamedTuple):
     lines: Array
 
 
-class Chain(NamedTuple):
+class CarriedCountChain(NamedTuple):
     """Successive points of an interval, by index, between which no unknown eigenvalue crosses a line:
     `lines[k]` between `points[k]` and `points[k + 1]`.
     """
@@ -60,7 +60,7 @@ def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
     w, error = leading_eigenvalues(found.track, found.track.w.shape[1])
     last = w[:, modes - 1]
     lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(last)
-    followed = Eigenvalues(w, error, lines)
+    followed = FollowedEigenvalues(w, error, lines)
     # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
     left = np.flatnonzero((found.proved_modes < modes) & (w[:, -1].real <= 0))
     for run in np.split(left, np.flatnonzero(np.diff(left) > 1) + 1):
@@ -82,13 +82,13 @@ def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
 
 
 def _longest_chain(
-    path: Path, found: ArmInterval, followed: Eigenvalues, ends: tuple[int, int], modes: int
-) -> Chain:
+    path: Path, found: ArmInterval, followed: FollowedEigenvalues, ends: tuple[int, int], modes: int
+) -> CarriedCountChain:
     """The longest chain of points found from the first to the last index in `ends`; without lines if no count
     can be carried from the first point."""
     here, last = ends
     shortest = NO_CROSSING_SETTINGS.arm_count - 1
-    chain = Chain([here], [])
+    chain = CarriedCountChain([here], [])
     counted = None
     ahead = last - here
     while last - here >= shortest:
@@ -114,7 +114,7 @@ def _longest_chain(
 
 
 def _confirmed_line_at(
-    path: Path, found: ArmInterval, followed: Eigenvalues, at: tuple[int, float], modes: int
+    path: Path, found: ArmInterval, followed: FollowedEigenvalues, at: tuple[int, float], modes: int
 ) -> float | None:
     """`confirmed_line` at a point, for the line at most. at: (index of the point, real part of the line)."""
     i, line = at
@@ -131,7 +131,7 @@ def _is_line_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, 
     return proves_no_crossing(line, rods, p, known, found.family, found.hulls)
 
 
-def _store_proved_modes(found: ArmInterval, followed: Eigenvalues, chain: Chain) -> None:
+def _store_proved_modes(found: ArmInterval, followed: FollowedEigenvalues, chain: CarriedCountChain) -> None:
     """Fills `found.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
     line."""
     for (first, last), line in zip(pairwise(chain.points), chain.lines, strict=True):

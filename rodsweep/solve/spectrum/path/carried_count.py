@@ -47,8 +47,8 @@ def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
 
     gap: number of eigenvalues to the right of the gap.
     """
-    right = track.w[i, track.order[i, gap - 1]].real
-    left = track.w[i, track.order[i, gap]].real
+    right = track.w[i, track.descending_order[i, gap - 1]].real
+    left = track.w[i, track.descending_order[i, gap]].real
     line = (right + left) / 2
     if not line < 0:
         return line, 0.0
@@ -84,7 +84,7 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
         share = (p[s] - p[i]) / (p[j] - p[i])
         line = (1 - share) * lines[0] + share * lines[1]
         for rank in range(track.w.shape[1]):
-            k = track.order[s, rank]
+            k = track.descending_order[s, rank]
             away = track.w[s, k].real - line
             if not (away if rank < gap else -away) > 2 * track.error[s, k]:
                 return False
@@ -92,7 +92,7 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 
 @compiled
-def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
+def _widest_open_gap(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
     gap stays open.
 
@@ -110,7 +110,7 @@ def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p:
 
 
 @compiled
-def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
+def _interval_end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
     F, nu, c2, gamma3 = coefficients[i]
     return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in_gap(track, i, gap)[0])
 
@@ -130,11 +130,11 @@ def carry_count(
     ahead = last
     while i < last:
         j = min(i + ahead, last)
-        gap = _gap_between(track, (i, j), modes, known[i], p)
+        gap = _widest_open_gap(track, (i, j), modes, known[i], p)
         proved = False
         if gap > 0:
-            first = _end(track, i, gap, p, coefficients)
-            end = _end(track, j, gap, p, coefficients)
+            first = _interval_end(track, i, gap, p, coefficients)
+            end = _interval_end(track, j, gap, p, coefficients)
             most = CARRIED_COUNT_SETTINGS.base_rectangles + CARRIED_COUNT_SETTINGS.rectangles_per_point * (
                 j - i
             )
@@ -166,7 +166,7 @@ def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> 
     for s in range(n):
         good[s] = known[s] >= modes
         for rank in range(known[s]):
-            k = track.order[s, rank]
+            k = track.descending_order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
             if abs(w.real) <= max(
@@ -187,7 +187,7 @@ def leading_eigenvalues(track: Track, modes: int) -> tuple[Complex, Array]:
     error = np.empty((n, modes))
     for s in range(n):
         for rank in range(modes):
-            k = track.order[s, rank]
+            k = track.descending_order[s, rank]
             w[s, rank] = track.w[s, k]
             error[s, rank] = track.error[s, k]
     return w, error

@@ -11,7 +11,7 @@ from ....determinant.arm.family import ArmFamily
 from ....determinant.parameter_path import Path
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
-from .arm_count import count_at
+from .arm_count import confirmed_count_at
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_stretch import ArmInterval, follow_interval
 from .arm_stretch_settings import ARM_STRETCH_SETTINGS
@@ -53,12 +53,14 @@ class FollowedArms:
             )
             self._points_skipped_on_failure = 1 if found is not None else 2 * self._points_skipped_on_failure
 
-    def family(self, p: float) -> ArmFamily | None:
+    def family_at(self, p: float) -> ArmFamily | None:
         """The family of interpolated arms that contains p; None if no interval reached p."""
         self._follow_to(p)
-        return next((one.family for one in self.intervals if one.family.low <= p <= one.family.high), None)
+        return next(
+            (one.family for one in self.intervals if one.family.p_low <= p <= one.family.p_high), None
+        )
 
-    def slope(self, w: complex, p: float) -> tuple[complex, float] | None:
+    def eigenvalue_slope(self, w: complex, p: float) -> tuple[complex, float] | None:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
         w."""
         for one in self._proved_at.get(p, []):
@@ -73,7 +75,7 @@ class FollowedArms:
         self._follow_to(p)
         judged = self._proved_at.setdefault(p, [])
         if not any(modes <= one.max_modes for one in judged):
-            judged += self._prove_at(p, modes)
+            judged += self._proved_eigenvalues_at(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
 
@@ -82,12 +84,12 @@ class FollowedArms:
         self._follow_to(p)
         for one in self.intervals:
             if one.p.min() <= p <= one.p.max():
-                here, _ = self._from_nearest(one, p, self.request.modes)
+                here, _ = self._track_from_nearest_point(one, p, self.request.modes)
                 if here is not None:
                     return KnownRoots(here.w[0], here.error[0])
         return None
 
-    def _prove_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
+    def _proved_eigenvalues_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
         """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
         for `modes`.
 
@@ -106,18 +108,18 @@ class FollowedArms:
                 needed := min(max(modes, growing + ARM_STRETCH_SETTINGS.modes_beyond_growing), followed)
             ):
                 requested = needed
-                here, known = self._from_nearest(one, p, requested)
+                here, known = self._track_from_nearest_point(one, p, requested)
                 growing = 0 if here is None else int((here.w.real > 0).sum())
             if here is None:
                 continue
             for number in sorted({requested, modes}, reverse=True):
                 if known < number:
-                    known = max(known, count_at(self.path, one, p, number, here))
+                    known = max(known, confirmed_count_at(self.path, one, p, number, here))
             yield ProvedEigenvalues(max(modes, min(known, requested)), here, known)
             if known >= modes:
                 return
 
-    def _from_nearest(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
+    def _track_from_nearest_point(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
         """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
         point nearest to p. one: an interval that contains p. modes: number of leading modes to be proved.
 
@@ -131,7 +133,7 @@ class FollowedArms:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)
-            track.order[0] = one.track.order[i]
+            track.descending_order[0] = one.track.descending_order[i]
             if follow_eigenvalues_of_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
                 return slice_track(track, len(grid) - 1, len(grid)), int(known[-1])
         return None, 0

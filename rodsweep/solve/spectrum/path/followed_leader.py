@@ -19,7 +19,7 @@ from ....determinant.arm.hull.hull import hull_of
 from ....determinant.arm.newton import refine_eigenvalue_and_error
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
-from ....determinant.roots.roots import root_error
+from ....determinant.roots.roots import root_error_and_scales
 from ....model.rod import Rod
 from ..candidates import CANDIDATE_SETTINGS, line_for_proof
 from .following import are_distinct_roots
@@ -63,7 +63,7 @@ def _follow_leader_of_uniform(rod: Rod, near: complex, accuracy: float) -> Leadi
     near: leading eigenvalue of the neighbouring rod. accuracy: largest relative error.
     """
     w = refine_eigenvalue(near, rod.coefficients)
-    error, _, _ = root_error(w, rod.coefficients)
+    error, _, _ = root_error_and_scales(w, rod.coefficients)
     if not _matches_neighbour(w, error, near, accuracy):
         return None
     number = 2 if w.imag else 1
@@ -86,7 +86,7 @@ def _follow_leader_of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEi
     size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
     if not isfinite(size):
         size = largest_w_of_count(next(_lines_for_count(first)), determinant, hull)
-    determinant.level(size)  # the elements for the proof also serve the eigenvalues
+    determinant.propagators_for(size)  # the elements for the proof also serve the eigenvalues
     found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
     w = np.array([root for root, _ in found])
     error = np.array([error for _, error in found])

@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.exponents import ROUND_OFF
-from ....determinant.parameter_path import determinant_along
+from ....determinant.parameter_path import determinant_along_path
 from ....determinant.roots.newton import ROOT_NEWTON_SETTINGS
 from ....determinant.roots.roots import sort_descending, two_roots
 from ....determinant.roots.settings import ROOT_SETTINGS
@@ -44,12 +44,13 @@ FOLLOWING_SETTINGS = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
-    """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of w."""
+    """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of
+    w."""
 
     w: complex
     slope: complex
-    step: float
-    rounding: float
+    step_length: float
+    rounding_error: float
 
 
 @compiled
@@ -59,7 +60,7 @@ def correct_eigenvalue(
     """One Newton step for a root of D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
     gamma3)/dp.
     """
-    D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
+    D, D_w, D_p, _, noise = determinant_along_path(w, coefficients, direction)
     return newton_step(w, D, D_w, D_p, DETERMINANT_SETTINGS.typical_noise * noise)
 
 
@@ -101,12 +102,14 @@ def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> 
     crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
     rounding error, instead of `FOLLOWING_SETTINGS.accuracy` |w|.
     """
-    left = crowding * here.step * here.step
+    left = crowding * here.step_length * here.step_length
     allowed = (
-        max(here.rounding, ROUND_OFF * abs(here.w)) if exact else FOLLOWING_SETTINGS.accuracy * abs(here.w)
+        max(here.rounding_error, ROUND_OFF * abs(here.w))
+        if exact
+        else FOLLOWING_SETTINGS.accuracy * abs(here.w)
     )
-    if left <= allowed or here.step <= FOLLOWING_SETTINGS.final_step * here.rounding:
-        return max(here.rounding, min(left, here.step))
+    if left <= allowed or here.step_length <= FOLLOWING_SETTINGS.final_step * here.rounding_error:
+        return max(here.rounding_error, min(left, here.step_length))
     return math.inf
 
 
@@ -164,7 +167,7 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
 
 
 @compiled
-def _correct_all(
+def _refine_all_eigenvalues(
     track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
     """Refines the guesses `guess` for all eigenvalues of point i, (m,), and writes the eigenvalues to the
@@ -173,7 +176,7 @@ def _correct_all(
     """
     w = track.w[i]
     error = track.error[i]
-    order = track.order[i]
+    order = track.descending_order[i]
     m = len(w)
     mate = np.empty(m, np.int64)
     find_conjugates(guess, mate)
@@ -222,7 +225,7 @@ def follow_eigenvalues(
                 if decided[k] >= 0:
                     two = (k, decided[k])
                     set_two_guesses(track.w[i - 1], two, two_roots(guess[k], rod), guess)
-            track.order[i] = track.order[i - 1]
-        if not _correct_all(track, i, guess, modes, rod, direction):
+            track.descending_order[i] = track.descending_order[i - 1]
+        if not _refine_all_eigenvalues(track, i, guess, modes, rod, direction):
             return i
     return len(p)

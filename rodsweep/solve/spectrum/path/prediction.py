@@ -37,14 +37,13 @@ EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
 class Track(NamedTuple):
     """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each.
 
-    order: indices of the eigenvalues at each point by descending real part, then descending frequency,
-    (points, m).
-    """
+    descending_order: indices of the eigenvalues at each point by descending real part, then descending
+    frequency, (points, m)."""
 
     w: Complex
     slope: Complex
     error: Array
-    order: NDArray[np.int64]
+    descending_order: NDArray[np.int64]
 
 
 class KnownRoots(NamedTuple):
@@ -69,7 +68,7 @@ def start_track(first: Complex, points: int) -> Track:
 def slice_track(track: Track, start: int, stop: int) -> Track:
     """The points of a track with indices from `start` to `stop` - 1."""
     here = slice(start, stop)
-    return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
+    return Track(track.w[here], track.slope[here], track.error[here], track.descending_order[here])
 
 
 @compiled
@@ -86,7 +85,7 @@ def find_conjugates(w: Complex, mate: NDArray) -> None:
 
 
 @compiled
-def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
+def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
     """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of the
     partner of each paired eigenvalue into `mate`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change
     of p.
@@ -127,7 +126,7 @@ def extrapolate_hermite(
 
 
 @compiled
-def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
+def _pair_sum_and_difference(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
     """Returns (half the sum of w[k] and w[j], squared half difference, slope of the half sum, slope of the
     squared half difference). w, slope: eigenvalues and dw/dp, (m,)."""
     half = (w[k] - w[j]) / 2
@@ -150,10 +149,10 @@ def _predict_pair(
     k, j = two
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
     # difference are smooth.
-    middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
+    middle, square, m1, s1 = _pair_sum_and_difference(track.w[i - 1], track.slope[i - 1], k, j)
     before = square
     if i >= 2:
-        middle_0, square_0, m0, s0 = _sum_and_square(track.w[i - 2], track.slope[i - 2], k, j)
+        middle_0, square_0, m0, s0 = _pair_sum_and_difference(track.w[i - 2], track.slope[i - 2], k, j)
         middle = extrapolate_hermite((middle_0, middle), (m0, m1), steps)
         square = extrapolate_hermite((square_0, square), (s0, s1), steps)
     else:
@@ -193,7 +192,7 @@ def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, decided:
     mate = np.empty(len(w), np.int64)
     find_conjugates(w, mate)
     ahead = p[i] - p[i - 1]
-    _pair_up(w, slope, ahead, mate)
+    _pair_meeting_eigenvalues(w, slope, ahead, mate)
     steps = (p[i - 1] - p[i - 2] if i >= 2 else ahead, ahead)
     decided[:] = -1
     for k in range(len(w)):

@@ -52,7 +52,7 @@ class Stretch:
     def __len__(self) -> int:
         return len(self.values)
 
-    def rod(self, i: int) -> Rod:
+    def rod_at(self, i: int) -> Rod:
         """Rod of index i."""
         return self.path.rod.changed(**{self.path.name: float(self.values[i])})
 
@@ -73,12 +73,12 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class FollowedStretch:
-    """Spectra of the rods of a stretch. solved: whether the spectrum of each rod is known, (n,); the
+    """Spectra of the rods of a stretch. is_solved: whether the spectrum of each rod is known, (n,); the
     remaining rods must be solved one by one.
     """
 
     spectra: Spectrum
-    solved: NDArray[np.bool_]
+    is_solved: NDArray[np.bool_]
 
 
 def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretch:
@@ -98,12 +98,12 @@ def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretc
             start += patience
             patience *= 2
             continue
-        here = slice(start, start + len(found.accepted))
+        here = slice(start, start + len(found.is_accepted))
         columns["eigenvalues"][here] = found.w
         columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
         columns["unstable_count"][here] = found.unstable_count
         columns["certified"][here] = True
-        solved[here] = found.accepted
+        solved[here] = found.is_accepted
         start = here.stop
         patience = 1
     seconds = np.full(n, (time.perf_counter() - began) / max(1, int(solved.sum())))
@@ -134,7 +134,7 @@ def _followed_eigenvalues(stretch: Stretch, start: int, request: SpectrumRequest
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.standard:
         return follow_stretch_of_arms(stretch.path, stretch.path_variables[start:], request)
-    seed = _first_eigenvalues(stretch.rod(start), request)
+    seed = _first_eigenvalues(stretch.rod_at(start), request)
     if seed is None:
         return None
     first, complete = seed
@@ -171,7 +171,7 @@ def _proved_counts_along(stretch: Stretch, track: Track, modes: int, complete: i
             break
         gap = widest_gap(track, at + 1, modes)
         line = float(line_in_gap(track, at + 1, gap)[0]) if gap else 0.0
-        if not gap or count_right_of(line, stretch.rod(at + 1)).number != gap:
+        if not gap or count_right_of(line, stretch.rod_at(at + 1)).number != gap:
             break
         at += 1
         known[at] = gap

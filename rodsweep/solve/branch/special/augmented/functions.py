@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .....arrays import Array
-from ....orbit.matrix.linearisation import jump_of
-from ....orbit.matrix.phase import phase_change, phase_row
+from ....orbit.matrix.linearisation import closing_residual
+from ....orbit.matrix.phase import phase_right_side, write_phase_row
 from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.matrix import BorderedMatrix
@@ -58,14 +58,14 @@ AUGMENTED_SETTINGS = AugmentedSettings()
 
 class FoldFunction:
     """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
-    the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. small: whether the
-    derivative is divided by the deflection; without this division the derivative vanishes at a Hopf point
-    too."""
+    the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. has_small_cycles:
+    whether the derivative is divided by the deflection; without this division the derivative vanishes at a
+    Hopf point too."""
 
-    def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
+    def __init__(self, matrix: BorderedMatrix, border: Array, has_small_cycles: bool) -> None:
         self.matrix = matrix
         self.border = border
-        self.small = small
+        self.has_small_cycles = has_small_cycles
         tangent = matrix.direction(border)
         self.vectors = tangent / (matrix.scale.directional_derivative(matrix.orbit, tangent) @ border)
 
@@ -73,13 +73,17 @@ class FoldFunction:
         """The test function at an orbit, from the last corrected tangent."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate_unit)
         # Near a Hopf point the derivative is proportional to the deflection; their ratio stays regular.
-        return rises * self.matrix.scale.deflection_unit / deflection_of(orbit) if self.small else rises
+        return (
+            rises * self.matrix.scale.deflection_unit / deflection_of(orbit)
+            if self.has_small_cycles
+            else rises
+        )
 
-    def start_from(self, tangent: Array) -> None:
-        """Sets the approximate tangent, (N + 1,), that the next call of `correct` improves."""
+    def set_approximate_vectors(self, tangent: Array) -> None:
+        """Sets the approximate tangent, (N + 1,), that the next call of `correct_vectors` improves."""
         self.vectors = tangent
 
-    def correct(self, orbit: Orbit) -> None:
+    def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
         matrix = self.matrix
         tangent = self.vectors
@@ -87,10 +91,10 @@ class FoldFunction:
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start))
-        phase_row(orbit.start, p.rod, p.matrices, row)
-        along = orbit.form.parameter_derivative(matrix.scale.name)
-        shift = phase_change(orbit.start, along, p.rod, p.matrices)
-        closing = matrix.closing_sides(jump_of(change.points, p), columns, ends)
+        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
+        along = orbit.form.parameter_derivative(matrix.scale.parameter)
+        shift = phase_right_side(orbit.start, along, p.rod, p.node_matrices)
+        closing = matrix.closing_sides(closing_residual(change.points, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start
         right = np.array(
             [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
@@ -128,12 +132,12 @@ class TorusFunction:
         """The test function |mu| - 1, from the last corrected multiplier mu; `orbit` is not used."""
         return abs(self.multiplier) - 1
 
-    def start_from(self, parts: Array) -> None:
-        """Sets the approximate eigenvector that the next call of `correct` improves. parts: real and
+    def set_approximate_vectors(self, parts: Array) -> None:
+        """Sets the approximate eigenvector that the next call of `correct_vectors` improves. parts: real and
         imaginary part, (2, N + 1)."""
         self.vectors = parts
 
-    def correct(self, orbit: Orbit) -> None:
+    def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the multiplier and its eigenvector at an orbit by one approximate Newton step."""
         columns, ends = self.matrix.residual_variations(orbit, self.vectors)
         n = ends.shape[1]
@@ -145,13 +149,13 @@ class TorusFunction:
         self.vectors = self.vectors + self.matrix.back_substitute(_real_and_imaginary(change[:-1]), columns)
 
 
-def correct_fully(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
+def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
     """Corrects a test function at an orbit until its value changes only by rounding error; raises
     Unsolvable."""
     value = function.value(orbit)
     last = np.inf
     for _ in range(AUGMENTED_SETTINGS.max_corrections):
-        function.correct(orbit)
+        function.correct_vectors(orbit)
         before = value
         value = function.value(orbit)
         change = abs(value - before)

@@ -18,21 +18,20 @@ from .functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 class CycleFamilyInterface(Protocol):
     """Two-parameter family of cycles near a curve of special points, as `NearbyCycleSolver` uses it.
 
-    border: direction of the branch in components (deflection, log period, parameter), (3,). small: whether
-    the cycles are so small that the fold function is divided by the deflection. workspace: memory of Newton's
-    matrices.
-    """
+    border: direction of the branch in components (deflection, log period, parameter), (3,). has_small_cycles:
+    whether the cycles are so small that the fold function is divided by the deflection. workspace: memory of
+    Newton's matrices."""
 
     @property
     def scale(self) -> Scale: ...
     @property
     def border(self) -> Array: ...
     @property
-    def small(self) -> bool: ...
+    def has_small_cycles(self) -> bool: ...
     @property
     def workspace(self) -> NewtonWorkspace: ...
 
-    def function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
+    def test_function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
         """The test function that is zero on the curve of special points, for cycles near the orbit of
         `matrix`."""
 
@@ -51,20 +50,20 @@ class NearbyCycleSolver:
         self.contraction = contraction
         """Assumed contraction rate: ratio of successive corrections, divided by the relative distance of the
         cycle from the orbit of the matrix. Each solution of a cycle updates the rate unless the family is
-        `small`."""
-        self._eliminate(start)
+        `has_small_cycles`."""
+        self._assemble_matrix(start)
 
-    def _eliminate(self, orbit: Orbit) -> None:
+    def _assemble_matrix(self, orbit: Orbit) -> None:
         """Assembles and factorises a new matrix at an orbit, with a new test function. Sets `distance`, the
         relative distance of the present cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
         self.distance = 0.0
-        self.function = self._family.function(self.matrix)
+        self.function = self._family.test_function(self.matrix)
 
-    def predict(self, vectors: Array) -> None:
+    def set_approximate_vectors(self, vectors: Array) -> None:
         """Sets the approximate tangent, (N + 1,), or eigenvector, (2, N + 1), that the next correction of the
         test function improves."""
-        self.function.start_from(vectors)
+        self.function.set_approximate_vectors(vectors)
 
     def solve(
         self, orbit: Orbit, condition: BorderCondition, slope: float, enough: float
@@ -80,13 +79,13 @@ class NearbyCycleSolver:
             orbit, change = self._corrected(orbit, condition)
             distance = self.distance
             before = self.function.value(orbit)
-            self.function.correct(orbit)
+            self.function.correct_vectors(orbit)
             value = self.function.value(orbit)
             # The change of the test function, divided by `slope`, is a distance across the curve.
             off = max(change, abs(value - before) / slope)
             # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
             rate = off / last if last else min(1.0, self.contraction * distance)
-            if last and not self._family.small:
+            if last and not self._family.has_small_cycles:
                 measured = AUGMENTED_SETTINGS.contraction_safety * rate / distance
                 self.contraction = max(AUGMENTED_SETTINGS.min_contraction, measured)
             if off * min(rate, 1.0) <= max(enough, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope):
@@ -94,7 +93,7 @@ class NearbyCycleSolver:
             if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
                 if off <= AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
-                self._eliminate(orbit)
+                self._assemble_matrix(orbit)
                 off = 0.0
             last = off
         raise Unsolvable(f"Newton's corrections of a cycle do not converge; the last step is {change:.0e}")
@@ -107,4 +106,4 @@ class NearbyCycleSolver:
         if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
             raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
         self.distance += change
-        return moved_orbit(orbit, self.scale.name, step), change
+        return moved_orbit(orbit, self.scale.parameter, step), change

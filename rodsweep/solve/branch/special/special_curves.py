@@ -49,7 +49,7 @@ class CurveIdentitySettings:
     coordinates differ by at most this number; each axis has length 1."""
 
 
-CURVE_IDENTITY = CurveIdentitySettings()
+CURVE_IDENTITY_SETTINGS = CurveIdentitySettings()
 
 
 Arrays = dict[str, Array]
@@ -78,12 +78,12 @@ class CurveEnd(IntEnum):
 class VanishingPoint:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
-    period: period of the vanishing cycles, in tau2.
+    at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
+    parameter. period: period of the vanishing cycles, in tau2.
     """
 
     at: float
-    row: float
+    row_value: float
     error: float
     period: float
 
@@ -92,19 +92,19 @@ class VanishingPoint:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    at: value of the parameter along a row, with the absolute error `error`. row: value of the row parameter.
-    row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
+    at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
+    parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
     at: float
-    row: float
+    row_value: float
     row_coordinate: float
     error: float
     period: float
     tip_y_max: float
 
     @classmethod
-    def of(cls, point: SolvedPoint) -> "CurvePoint":
+    def from_solved_point(cls, point: SolvedPoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
         period = point.orbit.period
         return cls(
@@ -145,7 +145,7 @@ class TracedHalfCurve:
         }
 
     @classmethod
-    def of(cls, arrays: Arrays) -> "TracedHalfCurve":
+    def from_arrays(cls, arrays: Arrays) -> "TracedHalfCurve":
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
@@ -157,7 +157,7 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 
 
 @dataclass(frozen=True, slots=True)
-class CycleCurve:
+class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
     vanishing: for each end the Hopf point at which the cycles vanish; None for an end with another reason."""
 
@@ -167,7 +167,7 @@ class CycleCurve:
     vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
 
     @classmethod
-    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
+    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
         """The curve joined from the halves `ahead` and `behind`, which start at the same point; behind: None
         for a closed curve."""
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
@@ -179,7 +179,9 @@ class CycleCurve:
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
-def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
+def with_located_ends(
+    curve: SpecialPointCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]
+) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
     `known`, which is more accurate than the extrapolation. A curve of torus points, and an end without an
     identical point, are unchanged.
@@ -189,9 +191,9 @@ def with_located_ends(curve: CycleCurve, plane: Plane, known: Sequence[Generalis
         if end is None or curve.kind != SpecialKind.fold:
             return end
         for point in known:
-            pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
+            pairs = zip(plane.axes, point.values, (end.at, end.row_value), strict=True)
             if all(
-                abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY.max_hopf_distance
+                abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
                 for axis, a, b in pairs
             ):
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
@@ -212,13 +214,13 @@ def lagrange_weights(places: Array, at: float) -> Array:
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None if there are too few points."""
-    known = points[-CURVE_IDENTITY.max_interpolated_points :]
-    if len(known) < CURVE_IDENTITY.max_interpolated_points:
+    known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    if len(known) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
-    table = np.array([[point.at, point.row, point.period] for point in known])
+    table = np.array([[point.at, point.row_value, point.period] for point in known])
     # The error estimate is the difference between the polynomials with and without the first point.
     best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)
-    error = CURVE_IDENTITY.extrapolation_factor * difference
+    error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

@@ -18,7 +18,6 @@ from ...point import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from .augmented.functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
-from .cycle_curves import CURVE_IDENTITY, CurveEnd, lagrange_weights
 from .family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
 from .on_curve import (
@@ -30,14 +29,15 @@ from .on_curve import (
     with_larger_errors,
 )
 from .point import SpecialKind, SpecialPoint
+from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
 
-CURVE_STEPS = StepControl(
+CURVE_STEP_CONTROL = StepControl(
     first_length=0.01,
     max_length=0.1,
     min_length=1e-4,
     target_error=3e-3,
     max_error=0.1,
-    prediction_order=CURVE_IDENTITY.max_interpolated_points,
+    prediction_order=CURVE_IDENTITY_SETTINGS.max_interpolated_points,
     max_angle=0.55,
     max_ratio=2.0,
     max_solutions=400,
@@ -79,29 +79,29 @@ END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_mode
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
     """Continuation problem for curves of folds or torus points in a parameter plane. line: axis of the
-    parameter that varies along a row. rows: axis of the row parameter. side: sign, 1 or -1, of the first step
-    in the row parameter. workspace: memory of Newton's matrices."""
+    parameter that varies along a row. rows: axis of the row parameter. direction: sign, 1 or -1, of the first
+    step in the row parameter. workspace: memory of Newton's matrices."""
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
     workspace: NewtonWorkspace
-    side: float = 1.0
+    direction: float = 1.0
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
         curve); raises Unsolvable. row: value of the row parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
-        curve = follow_curve(self, first, CURVE_STEPS, self._report)
-        return with_larger_errors(curve.solutions), self._why_ended(curve)
+        curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
+        return with_larger_errors(curve.solutions), self._end_reason(curve)
 
-    def _why_ended(self, curve: Curve[SolvedPoint]) -> CurveEnd:
+    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEnd:
         """Reason for the end of the curve `curve`, as stored in the result file."""
         if curve.end is CurveStop.margin:
             return END_BY_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
             return CurveEnd.closed
-        return self._why_lost(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
+        return self._lost_end(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
@@ -115,7 +115,7 @@ class SpecialCurveProblem:
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
-            at_row = last.row_coordinate + self.side * length
+            at_row = last.row_coordinate + self.direction * length
             line = ALONG_BRANCH
             rates = None
         else:
@@ -123,13 +123,13 @@ class SpecialCurveProblem:
             change = last.scale.components(start) - last.scale.components(last.orbit)
             line = line_across(np.append(change, at_row - last.row_coordinate), *behind[-2:])
             rates = last.normal_derivatives
-        point = self._family(last).correct_with_error(start, at_row, line, rates, last)
+        point = self._family(last).corrected_point_with_error(start, at_row, line, rates, last)
         mesh = mesh_of(point.orbit)
-        predicted = start if mesh == mesh_of(start) else mesh.interpolate(start)
+        predicted = start if mesh == mesh_of(start) else mesh.interpolated_orbit(start)
         # Prediction and point can be compared only on the same mesh.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
-            return StepResult(point, min(off, CURVE_STEPS.max_error), 1.0)
+            return StepResult(point, min(off, CURVE_STEP_CONTROL.max_error), 1.0)
         one = last.step_from(behind[-2])
         other = point.step_from(last)
         return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
@@ -139,7 +139,7 @@ class SpecialCurveProblem:
 
     def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
-        known = points[-CURVE_IDENTITY.max_interpolated_points :]
+        known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
@@ -147,7 +147,7 @@ class SpecialCurveProblem:
         crushing margin; unchanged if the last point has less than half of this margin."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        known = points[-CURVE_IDENTITY.max_interpolated_points :]
+        known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         lengths = arc_lengths(known)
 
         def distance(longest: float) -> float:
@@ -168,10 +168,10 @@ class SpecialCurveProblem:
     ) -> tuple[Orbit, float]:
         """(orbit on the mesh `mesh`, row coordinate): sums of `points` with weights, (points,); raises
         Unsolvable."""
-        values = np.dot(weights, [mesh.interpolate(point.orbit).values for point in points])
+        values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
         at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
-        orbit = replace(mesh.interpolate(points[-1].orbit), values=values)
+        orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
         changed = {self.line.name: at, self.rows.name: self.rows.value(at_row)}
         return orbit_with_parameters(orbit, changed), at_row
 
@@ -198,14 +198,14 @@ class SpecialCurveProblem:
             return None
         try:
             if margin in ROW_EDGES:
-                point = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
+                point = self.point_on_row(inner, outer, float(margin - ROW_EDGES[0]))
             else:
-                point = self._where_zero(inner, outer, margin, ends)
+                point = self._zero_of_margin(inner, outer, margin, ends)
         except Unsolvable:
             return None
         return replace(point, errors=outer.errors and outer.errors.for_next_point)
 
-    def _where_zero(
+    def _zero_of_margin(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
     ) -> SolvedPoint:
         """The point at which a margin is 0; raises Unsolvable. ends: the margin at `inner` and `outer`."""
@@ -232,16 +232,16 @@ class SpecialCurveProblem:
         """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
         start, at_row = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         line = line_across(other.step_from(one), one, other)
-        return self._family(other).correct(start, at_row, line, other.normal_derivatives)
+        return self._family(other).corrected_point(start, at_row, line, other.normal_derivatives)
 
-    def on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
+    def point_on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
         """Point of the curve between `one` and `other` at the row coordinate `at_row`; raises Unsolvable."""
         length = other.row_coordinate - one.row_coordinate
         share = (at_row - one.row_coordinate) / length if length else 0.0
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).correct(start, at_row, ALONG_BRANCH, other.normal_derivatives)
+        return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
-    def _why_lost(self, last: SolvedPoint) -> CurveEnd:
+    def _lost_end(self, last: SolvedPoint) -> CurveEnd:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
