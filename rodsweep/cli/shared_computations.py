@@ -72,5 +72,5 @@ def report_stop(team: Team, stop: StopRequest) -> None:
     Collective: all ranks call together.
     """
     signal = max(team.exchange(stop.name))
-    if team.first:
+    if team.is_first:
         click.echo(f"stopped by {signal}; no point is computed yet, the same command starts again")

@@ -149,8 +149,8 @@ def _bound_sockets(port: int) -> list[socket.socket]:
 
 
 async def serve(state: PageState, stored: StoredResults | None, port: int, is_opened: bool) -> None:
-    """Serves the page until Ctrl-C. state, stored, port: as in `ExploreServer`. is_opened: whether to open a
-    browser.
+    """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state, stored, port: as in `ExploreServer`.
+    is_opened: whether to open a browser; if none can be opened, a line on standard error says so.
     """
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):

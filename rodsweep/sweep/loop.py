@@ -86,7 +86,7 @@ def sweep(
     """
     requests = (
         FirstRankRequests(team, queue, stop, progress.show_position)
-        if team.first
+        if team.is_first
         else OtherRankRequests(team, stop)
     )
     with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):

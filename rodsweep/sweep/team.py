@@ -36,7 +36,7 @@ class Team:
             )
 
     @property
-    def first(self) -> bool:
+    def is_first(self) -> bool:
         """Whether this is the first rank, which prints, hands out points and writes the result file."""
         return self.rank == 0
 
@@ -45,7 +45,7 @@ class Team:
         `work` raised.
         """
         outcome: Any = None
-        if self.first:
+        if self.is_first:
             try:
                 outcome = (work(), None)
             except Refusal as error:

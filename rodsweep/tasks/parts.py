@@ -1,4 +1,5 @@
-"""Rows and sentences of `check` that all tasks share, and the base class of tasks with a certificate."""
+"""Rows and sentences of `check` that several tasks share, and the base classes of tasks with a certificate
+and of tasks on cycles."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping

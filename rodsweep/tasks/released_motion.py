@@ -77,16 +77,16 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
         cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES_PER_RETURN))
-    if cycle.motion is None:
+    if cycle.motion_shapes is None:
         return None
-    x, y = cycle.motion.shapes
+    x, y = cycle.motion_shapes.shapes
     return ReleasedMotion(
         status=cycle.status.name,
         sentence=cycle.status.sentence,
         message=cycle.message,
         cycle=task.record(job.points.values(0), cycle),
-        step=cycle.motion.step,
+        step=cycle.motion_shapes.step,
         x=x,
         y=y,
-        is_whole=cycle.motion.is_whole,
+        is_whole=cycle.motion_shapes.is_whole,
     )

@@ -27,7 +27,7 @@ class PlaneOfMotion:
     """Name of the plane, such as "the plane of its height"; empty if all planes of motion are equivalent."""
 
     @property
-    def flutter_loads(self) -> list[float]:
+    def flutter_load_by_drag(self) -> list[float]:
         """Force of the first flutter, in N, for each drag; inf for a drag without flutter."""
         forces = [each.force(ChangeKind.hopf) for each in self.flutter_range.forces]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
@@ -49,7 +49,7 @@ class Planes:
         """
         if self.second is None:
             return True
-        loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
+        loads = zip(self.first.flutter_load_by_drag, self.second.flutter_load_by_drag, strict=True)
         return all(ours <= other for ours, other in loads)
 
 
@@ -62,7 +62,7 @@ def planes_of(arm: SlenderArm) -> Planes:
     other = with_exchanged_sides(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
     across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
-    if across.flutter_loads[0] < own.flutter_loads[0]:
+    if across.flutter_load_by_drag[0] < own.flutter_load_by_drag[0]:
         return Planes(across, own)
     return Planes(own, across)
 

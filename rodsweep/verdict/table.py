@@ -115,7 +115,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
         NumberRow(
             "rotational drag",
             with_drag_range(arm, [d.gamma3 for d in drags], " Pa s m^2"),
-            "pi to 4 pi eta a^2",
+            "(pi to 4 pi) eta a^2",
             "section turning about a diameter; Powers 2010",
         ),
         NumberRow(

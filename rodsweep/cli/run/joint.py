@@ -76,13 +76,13 @@ class JointWork:
             return new
 
         todo = ChunkQueue([], self.team.size)
-        if self.team.first:
+        if self.team.is_first:
             self.results = self.item_results.read()
             todo = DependentItemQueue(items, self.results, self.team.size)
         self._exchange_starts(items)
         shown = (
             ProgressReporter(None, f"{title}, curves", HALF_CURVE_NOUN)
-            if self.team.first and title
+            if self.team.is_first and title
             else SilentProgress()
         )
         loop = SweepCallbacks(

@@ -85,7 +85,9 @@ class PointWork:
                 journal.append(int(index), solver.record(int(index), result), new)
 
         shown = (
-            ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else SilentProgress()
+            ProgressReporter(count, self.job.name)
+            if self.team.is_first and not self.quiet
+            else SilentProgress()
         )
         directory = journal_directory(self.output)
         try:

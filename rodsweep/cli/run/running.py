@@ -96,7 +96,7 @@ class _RankRun:
             self.plan = plan
         missing = self.team.on_first(self._open_store)
         items, count = self.work.items(missing)
-        if self.team.first:
+        if self.team.is_first:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""

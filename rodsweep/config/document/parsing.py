@@ -105,7 +105,10 @@ def _refuse_scalar(event: ScalarEvent) -> None:
     number."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
-        raise InputError(f"{short_repr(text)} has {len(text)} characters, more than any value of a config")
+        raise InputError(
+            f"{short_repr(text)} has {len(text)} characters; a value of a config has at most "
+            f"{MAX_TEXT_LENGTH}"
+        )
     if not text.isprintable():
         raise InputError(f"{short_repr(text)} has characters that cannot be printed")
     if event.style is None and text == "<<":

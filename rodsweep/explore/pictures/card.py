@@ -109,7 +109,7 @@ class Card:
         self.figure = figure
         self.title_lines = title_lines
         figure.name = f"{name}_figure"
-        self._paint_axes(0.0)
+        self._set_axes_opacity(0.0)
         self.message = Div(name=f"{name}_message", visible=False, css_classes=["sentence"])
         self.root = Column(self.message, figure, name=name, sizing_mode="stretch_width")
 
@@ -133,10 +133,10 @@ class Card:
     def show_figure(self) -> None:
         """Shows the figure with its axes."""
         self.message.visible = False
-        self._paint_axes(1.0)
+        self._set_axes_opacity(1.0)
         self.figure.visible = True
 
-    def _paint_axes(self, alpha: float) -> None:
+    def _set_axes_opacity(self, alpha: float) -> None:
         """Makes the axes transparent or opaque. Removing and adding axes instead would move the frame and
         leave parts of an earlier title. alpha: opacity, 0 or 1.
         """

@@ -34,7 +34,7 @@ class Cancellation:
 
     def __init__(self) -> None:
         self.is_solving = False
-        self.is_sending = False
+        self.is_sending_progress = False
         self.is_due = False
         """Whether the question being solved was cancelled."""
 
@@ -42,7 +42,7 @@ class Cancellation:
         if not self.is_solving:
             return
         self.is_due = True
-        if self.is_sending or is_importing(frame):
+        if self.is_sending_progress or is_importing(frame):
             signal.setitimer(signal.ITIMER_REAL, CANCELLATION_RETRY_SECONDS)
             return
         self.is_solving = False
@@ -66,11 +66,11 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
     """
 
     def send_progress(position: SolvePosition) -> None:
-        cancellation.is_sending = True
+        cancellation.is_sending_progress = True
         try:
             send(Reply("progress", position._asdict(), time.perf_counter() - started))
         finally:
-            cancellation.is_sending = False
+            cancellation.is_sending_progress = False
 
     started = time.perf_counter()
     cancellation.is_due = False

@@ -96,9 +96,10 @@ BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
-    """Draws the class or the stable states of the rod over two parameters, with boundary curves, or along
-    single rows if fewer than two rows are at finite values; returns a sentence. Raises InputError for options
-    that the task does not have, and if nothing can be drawn.
+    """Draws the class of the rod, or its stable states if they are stored, as a map over two parameters with
+    boundary curves; as one bar per row if fewer than two rows have a finite value of the row parameter.
+    Returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
+    drawn.
     """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)

@@ -30,16 +30,16 @@ class Variables(Mapping[str, np.ndarray]):
         self.path = path
         self.file = file
         self.recent = recent
-        self.read: dict[str, np.ndarray] = {}
+        self.values_read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self.read:
+        if name not in self.values_read:
             with damage_refusals(self.path):
                 values = self.file[name][...]
                 if len(self.recent) and name in self.recent.dtype.fields:
                     insert_records(values, name, self.recent)
-                self.read[name] = values
-        return self.read[name]
+                self.values_read[name] = values
+        return self.values_read[name]
 
     def __contains__(self, name: object) -> bool:
         with damage_refusals(self.path):

@@ -143,7 +143,8 @@ class BranchCalibration:
 
     @cached_property
     def _parameter_errors_only(self) -> Calibration:
-        """A calibration in which every error equals the parameter error at equal deflection."""
+        """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
+        at equal deflection, in space and in time; the error of the multiplier is unchanged."""
         numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
         parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
         for part, own in zip(parts, self.parameter_errors, strict=True):

@@ -30,7 +30,7 @@ class BranchMeshSettings:
     planned_error: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
-    min_rate_share: float = 0.7
+    min_parameter_rate_ratio: float = 0.7
     """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
     times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
     errors measured away from the fold are no bound."""
@@ -205,7 +205,7 @@ def _with_interpolated_errors(
     errors at `last` and `end` are then no bound.
     """
     ends = (last, end)
-    slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_rate_share * min(
+    slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
         abs(one.parameter_rate) for one in ends
     )
     grown = min(one.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends)

@@ -109,8 +109,9 @@ def only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
 
 
 def only_overtaking(left: Anchor, right: Anchor) -> bool:
-    """Whether the slopes exclude further exchanges between two anchors with an overtaking between them. The
-    leading eigenvalue is real at one anchor, and a pair at the other."""
+    """Whether the slopes show that, between two anchors, a real eigenvalue and a pair exchange the lead once
+    and no other eigenvalue takes the lead. False if the first eigenvalues at an anchor are not one real
+    eigenvalue and one pair."""
     # Indices of the real eigenvalue and of one eigenvalue of the pair; index 3 is the next eigenvalue.
     places = [(2, 0) if anchor.oscillates else (0, 1) for anchor in (left, right)]
     ((real_left, pair_left), (real_right, pair_right)) = places

@@ -108,7 +108,7 @@ class Cycle:
     transient: Array | None = None
     """Time in tau2, and x, y (in L) and theta of the tip, at equidistant times of the integrated motion,
     (4, transient); None if no path was requested or no motion was integrated."""
-    motion: MotionShapes | None = None
+    motion_shapes: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
     neighbour: Neighbour | None = None
     """Data of this cycle from which the next rod of a chain starts; None outside a chain."""

@@ -144,7 +144,7 @@ def _with_motion_data(
         elements=transient.form.mesh.elements,
         order=transient.form.mesh.order,
         transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
-        motion=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
+        motion_shapes=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
     )
 
 

@@ -148,8 +148,8 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
 def _coefficients_with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
-    """The coefficients of `normal`, with errors from three relative errors: `landau_error` of c,
-    `slope_error` of dw/dF, and `force_error` of F."""
+    """The coefficients of `normal` with relative errors, from three relative errors: `landau_error` of c,
+    `slope_error` of dw/dF, and `force_error` of F; also the mesh."""
     c = normal.c
     slope = normal.slope
     slope_off = slope_error * abs(slope)

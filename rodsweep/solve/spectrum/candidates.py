@@ -45,7 +45,7 @@ class CandidateSettings(CompiledSettings):
     min_gap: float = 1e-6
     """Two real parts are treated as equal if the relative gap between them is at most this: no line is drawn
     between them."""
-    max_lines: int = 3
+    max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
@@ -163,8 +163,8 @@ def _count_right_of(line: float, w: list[complex], errors: list[float]) -> tuple
 
 
 def lines_for_count(w: list[complex], modes: int) -> list[float]:
-    """Real parts of up to `max_lines` vertical lines to the right of which eigenvalues are counted, best
-    first: middles of the widest gaps to the left of the `modes` leading and of all unstable eigenvalues.
+    """Real parts of up to `max_count_lines` vertical lines to the right of which eigenvalues are counted,
+    best first: middles of the widest gaps to the left of the `modes` leading and of all unstable eigenvalues.
 
     w: eigenvalues found, by descending real part. Gaps wider than `wide_gap` (unstable rod:
     `wide_gap_of_flutter`) are equally good; the rightmost comes first. The last line lies to the left of all
@@ -181,4 +181,4 @@ def lines_for_count(w: list[complex], modes: int) -> list[float]:
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last = below[-1]
     behind = last - CANDIDATE_SETTINGS.last_line_distance * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_lines - 1]), behind]
+    return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), behind]

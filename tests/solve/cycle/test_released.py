@@ -30,13 +30,13 @@ def test_a_rod_that_flutters_comes_to_its_cycle_from_every_place():
         found = released(FLUTTER, *place)
         assert found.status == CycleStatus.cycle
         assert found.measures.period == pytest.approx(cycle.measures.period, rel=1e-6)
-        assert found.motion.is_whole
-        assert found.motion.shapes[:, 0, -1] == pytest.approx(place, abs=1e-6)
+        assert found.motion_shapes.is_whole
+        assert found.motion_shapes.shapes[:, 0, -1] == pytest.approx(place, abs=1e-6)
 
 
 def test_a_rod_below_flutter_comes_to_rest_and_the_motion_ends_there():
     found = released(replace(FLUTTER, F=20.0), 0.7, 0.5)
-    deflection = np.abs(found.motion.shapes[1])
+    deflection = np.abs(found.motion_shapes.shapes[1])
     assert found.status == CycleStatus.straight
     assert deflection[-1].max() < 2 * SHAPE_TRACE_SETTINGS.max_rest_deflection
     assert deflection[-20:].max() > SHAPE_TRACE_SETTINGS.max_rest_deflection
@@ -49,7 +49,7 @@ def test_of_two_stable_states_the_place_decides():
 
 def test_the_motion_is_that_of_another_time_scheme():
     beam = Beam(FLUTTER, motion_mesh(FLUTTER, 1e-5))
-    motion = released(FLUTTER, 0.7, 0.5).motion
+    motion = released(FLUTTER, 0.7, 0.5).motion_shapes
     z = equilibrium_at_tip(beam, 0.7, 0.5)
     for frame in (8, 20, 40):
         run = integrator(beam.mesh, TimeScheme("bdf", "4", 1e-7)).run(beam, z, frame * motion.step, 1e-8)
@@ -62,4 +62,4 @@ def test_the_motion_is_that_of_another_time_scheme():
 def test_a_motion_that_settles_slowly_is_stored_up_to_its_limit():
     onset = 37.0
     found = released(replace(FLUTTER, F=onset), 0.7, 0.5)
-    assert found.motion.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_frames
+    assert found.motion_shapes.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_frames

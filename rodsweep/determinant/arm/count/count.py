@@ -208,8 +208,8 @@ def _serves_efficiently(W: float, needed: float) -> bool:
 
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
-    """Distance to the next node at which the reaches of both nodes just overlap, if the reach changes by
-    `growth` per distance.
+    """Distance to the next node: `reach_overlap` times the sum of the present reach and of the reach expected
+    there. growth: expected change of the reach per distance, clipped to between -1 and `largest_growth`.
     """
     overlap = CONTOUR_SETTINGS.reach_overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.largest_growth))

@@ -52,7 +52,9 @@ class EigenvalueHull(NamedTuple):
     """
 
     a: float
+    """Largest growth rate divided by n, without damping."""
     c: float
+    """1 minus the damping rate divided by n^2."""
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """Bounds (max Re w, max |Im w|) of all points of the hull with Re w >= -depth, depth >= 0; inf if no

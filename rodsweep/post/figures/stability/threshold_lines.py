@@ -33,8 +33,9 @@ LIGHTEST_SHADE = 0.85
 """End of the used range of the colour map; lighter colours are invisible on white paper."""
 MIN_LINE_DISTANCE = 0.01
 """Two lines are drawn as one line if their distance, divided by the largest force, is below this number."""
-FORCE_AXIS_MARGIN = 1.05
-"""Upper limit of the axis of forces, divided by the largest force."""
+FORCE_AXIS_RATIO = 1.05
+"""Upper limit of the axis of forces divided by the largest force; on a logarithmic axis also the smallest
+force divided by the lower limit."""
 
 
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
@@ -86,7 +87,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     forces = np.sort(tables[np.isfinite(tables)])
     if style.is_logarithmic(forces):
         style.scale_axis(axes, "y", forces)
-        axes.set_ylim(forces[0] / FORCE_AXIS_MARGIN, forces[-1] * FORCE_AXIS_MARGIN)
+        axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
     figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
@@ -159,8 +160,9 @@ def _abscissa_values(view: View, along: str) -> Array:
 
 
 def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
-    """Draws lines of the three kinds of thresholds; returns legend entries. x: (n,). values: first forces,
-    (3, n), with NaN at gaps. look: keywords for matplotlib that replace the look in CRITICAL_FORCES.
+    """Draws lines of the three kinds of thresholds; returns legend entries of the kinds with a finite force.
+    x: (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look:
+    keywords for matplotlib that replace the look in CRITICAL_FORCES.
     """
     place = np.isfinite(x)
     handles = []
@@ -180,7 +182,7 @@ def _label_axes(axes: Axes, view: View, along: str, table: Array) -> None:
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if along == "gamma3" else style.LABELS[along])
     highest = max(
-        float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_MARGIN, axes.get_ylim()[1] if axes.lines else 0.0
+        float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, axes.get_ylim()[1] if axes.lines else 0.0
     )
     axes.set_ylim(0, highest or 1.0)
 

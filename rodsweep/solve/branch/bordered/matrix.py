@@ -95,8 +95,9 @@ class BorderedMatrix:
         return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
-        """Returns (stages, ends): derivatives of the eliminated stage residuals, (K, s, v, n), and of the end
-        of `orbit`, (v, n), along v variations.
+        """Returns (stages, ends): derivatives of the stage residuals of `orbit` along v variations, reduced
+        by the factors of this matrix, (K, s, v, n), and the resulting changes of the end of the last interval
+        for a fixed start, (v, n).
 
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """

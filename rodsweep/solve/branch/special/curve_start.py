@@ -23,10 +23,10 @@ from .point import SpecialPoint
 class CurveStartSettings:
     """Settings for the first mesh on a curve of special points."""
 
-    order_share: float = 0.62
+    order_ratio: float = 0.62
     """Ratio of the order of the first mesh on a curve to the order of the mesh on which the special point was
     located to 1e-9."""
-    interval_share: float = 0.5
+    interval_ratio: float = 0.5
     """Ratio of the number of time intervals of the first mesh on a curve to the number on the mesh on which
     the special point was located."""
 
@@ -49,8 +49,8 @@ def first_point_of_curve(
     mesh = mesh_of(orbit)
     rough = replace(
         mesh,
-        order=ceil(CURVE_START_SETTINGS.order_share * mesh.order),
-        intervals=ceil(CURVE_START_SETTINGS.interval_share * mesh.intervals),
+        order=ceil(CURVE_START_SETTINGS.order_ratio * mesh.order),
+        intervals=ceil(CURVE_START_SETTINGS.interval_ratio * mesh.intervals),
         stages=stages_for(CURVE_SECANT_SETTINGS.accuracy),
     )
     orbit = rough.interpolated_orbit(orbit)

@@ -36,8 +36,9 @@ LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
 def least_stretch_of_cycle(point: ArcPoint) -> float:
-    """Smallest h1 of a cycle of a branch over rod and period. The smallest nodal value is returned if it
-    exceeds `safe_nodal_stretch`, otherwise the smallest sampled value if it exceeds `safe_sampled_stretch`.
+    """Smallest h1 of a cycle of a branch over rod and period: the smallest nodal value if it exceeds
+    `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
+    minimum found by a search around the position of the smallest sampled value.
     """
     rough = point.cycle.measures.least_stretch
     if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
@@ -46,8 +47,10 @@ def least_stretch_of_cycle(point: ArcPoint) -> float:
 
 
 def least_stretch_of_orbit(orbit: Orbit) -> float:
-    """Smallest h1 of an orbit over rod and period. The smallest nodal value is returned if it exceeds
-    `safe_nodal_stretch`, otherwise the smallest sampled value if it exceeds `safe_sampled_stretch`."""
+    """Smallest h1 of an orbit over rod and period: the smallest nodal value if it exceeds
+    `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
+    minimum found by a search around the position of the smallest sampled value.
+    """
     rough = orbit.form.least_stretch(orbit.points)
     if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return rough

@@ -29,7 +29,7 @@ class AmplitudeEquationSettings:
     max_amplitude_distance: float = 0.1
     """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this,
     because Newton's method converges."""
-    decay_factor: float = 0.7
+    decaying_state_factor: float = 0.7
     """Factor by which a slowly decaying motion is scaled; a growing motion with c < 0 is scaled by the
     inverse. The factor is close enough to 1 not to miss a cycle."""
     max_jump_factor: float = 4.0
@@ -133,9 +133,11 @@ class AmplitudeEquation:
                 )
             )
         elif linear > 0 or (coefficient < 0 and growth > self.growth_noise):
-            factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decay_factor  # the growth increases with the amplitude
+            factor = (
+                1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
+            )  # the growth increases with the amplitude
         elif coefficient > 0 or growth < -self.growth_noise:
-            factor = AMPLITUDE_EQUATION_SETTINGS.decay_factor
+            factor = AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
         else:
             return None
         return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.max_amplitude_distance else None

@@ -189,9 +189,9 @@ class Transient:
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
-        TRANSIENT.first_returns in the `first` run, but of at most TRANSIENT.max_run_duration times the
+        TRANSIENT.returns_in_first_run in the `first` run, but of at most TRANSIENT.max_run_duration times the
         expected time per return."""
-        returns = TRANSIENT_SETTINGS.first_returns if first else TRANSIENT_SETTINGS.returns_per_run
+        returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
         limit = until_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.

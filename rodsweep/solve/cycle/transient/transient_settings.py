@@ -14,7 +14,7 @@ class TransientSettings:
     max_run_duration: int = 3
     """Longest duration of a run divided by the number of returns and by the expected time per return: the
     period of the leading mode, or the time between the last two returns if it is longer."""
-    first_returns: int = 3
+    returns_in_first_run: int = 3
     """Number of returns of the first run. A fast-growing motion may already have reached its cycle then; slow
     growth and decay are recognised only after later runs."""
     max_newton_distance: float = 0.1
