@@ -84,11 +84,8 @@ class PointWork:
             else:
                 journal.append(int(index), solver.record(int(index), result), new)
 
-        shown = (
-            ProgressReporter(count, self.job.name)
-            if self.team.is_first and not self.quiet
-            else SilentProgress()
-        )
+        is_shown = self.team.is_first and not self.quiet
+        shown = ProgressReporter(count, self.job.name) if is_shown else SilentProgress()
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:

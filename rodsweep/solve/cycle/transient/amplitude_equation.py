@@ -133,9 +133,8 @@ class AmplitudeEquation:
                 )
             )
         elif linear > 0 or (coefficient < 0 and growth > self.growth_noise):
-            factor = (
-                1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
-            )  # the growth increases with the amplitude
+            # The growth increases with the amplitude.
+            factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
         elif coefficient > 0 or growth < -self.growth_noise:
             factor = AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
         else:
