@@ -41,9 +41,12 @@ class LeadingEigenvalueSettings:
     close_anchors: float = 2e-4
     """Between two anchors whose distance, as a fraction of the path's length, is at most this, the second and
     third eigenvalue, or the first two pairs, may explain the interval as well."""
-    smallest_interval: float = 2e-6
+    smallest_interval: float = 1e-8
     """An anchor is added between two anchors only if their distance, as a fraction of the path's length,
-    exceeds this."""
+    exceeds this. Three real eigenvalues of cones meet within 4e-7 of the path."""
+    max_anchors: int = 1000
+    """With more anchors than this, an anchor is added only between anchors farther apart than
+    `close_anchors`."""
     distance_to_exchange: float = 1e-3
     """Where further exchanges may lie between two anchors, anchors are added on both sides of the exchange
     found, at this fraction of the interval."""
@@ -126,6 +129,8 @@ class LeaderExchangeSearch:
             share, hides = next_anchor(left, right)
             settings = LEADING_EIGENVALUE_SETTINGS
             smallest = settings.smallest_hiding_interval if hides else settings.smallest_interval
+            if len(self.anchors) > settings.max_anchors:
+                smallest = settings.close_anchors
             close = b - a <= settings.close_anchors * intervals.length
             if share == 0.0 or (close and exclude_exchange(left, right, hides)):
                 return []

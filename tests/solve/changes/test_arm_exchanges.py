@@ -4,12 +4,22 @@ import numpy as np
 import pytest
 from surveyed import RODS, survey_only
 
+from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.verdict.relative import rod_with_drag
 
+CONE = SlenderArm(
+    length="10.75 cm",
+    radius="0.5061 cm",
+    tip_radius="0.1058 cm",
+    young="5.975e+04 Pa",
+    viscosity="1.706 Pa s",
+)
+NEARLY_TRIPLE = rod_with_drag(CONE, CONE.drags[0])
 TO_30 = ThresholdsRequest(30.0, 1e-6, True, 100)
 
 
@@ -93,6 +103,8 @@ def forces_between(found):
         cone(238.54427297868136, 240.0821900457012, 0.00017730179369483172, 0.1486808577982113),
         # Three real eigenvalues within a thousandth of the path.
         cone(7456.321605964616, 994.9549132857708, 0.00021244815052571517, 0.1874555969069303),
+        # Three real eigenvalues within a millionth of the path.
+        NEARLY_TRIPLE,
         # An eigenvalue of a pair was taken for the real one; an eigenvalue that had not converged was taken.
         cone(41281.777834686414, 24198.095242172014, 0.0008519563856196541, 0.18778640691937346),
         cone(281.485966480166, 38.82445589689772, 0.0022144599132281196, 0.18180628515845332),
