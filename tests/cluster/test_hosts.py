@@ -72,9 +72,9 @@ def sweep(team, todo, work, *words):
             solved.write(b".")
         return solve(index)
 
-    if not team.first:
+    if not team.is_first:
         wait(inside.exists)
-    own = solve_long if team.first else solve_elsewhere
+    own = solve_long if team.is_first else solve_elsewhere
     return real(team, todo, replace(work, solve=own), *words)
 
 loop.sweep = sweep

@@ -137,11 +137,11 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
 def test_variables_are_read_when_they_are_asked_for(tmp_path):
     Store(tmp_path / "a.h5", plan()).close()
     variables = read_view(tmp_path / "a.h5").variables
-    assert not variables.read
+    assert not variables.values_read
     assert "growth_rate" in variables
     assert "Y_real" not in variables
     assert variables["growth_rate"].shape == (3, 2, 1, 2, 2)
-    assert set(variables.read) == {"growth_rate"}
+    assert set(variables.values_read) == {"growth_rate"}
     assert len(dict(variables)) == len(variables)
 
 
