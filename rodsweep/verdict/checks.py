@@ -142,7 +142,8 @@ def rubber_stiffening(strain: float) -> float:
 
 
 def _one_digit(value: float) -> str:
-    """The positive number `value` as text with one significant digit, never with an exponent of ten."""
+    """The positive number `value` as text with one significant digit; without an exponent of ten from 1e-4
+    to 1e5."""
     return f"{float(f'{value:.1g}'):g}"
 
 

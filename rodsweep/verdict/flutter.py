@@ -52,10 +52,10 @@ class FlutterForces:
         found = self.thresholds
         accuracy = SEARCH_REQUEST.accuracy
         if any(c.error > accuracy * abs(c.at) for c in found.crossings if c.kind in KINDS_OF_VERDICT):
-            return ThresholdStatus.accuracy_not_reached.sentence
-        if found.transitions.proved or found.status == ThresholdStatus.ended_early:
+            return f"a threshold misses the relative accuracy of {accuracy:g}"
+        if found.transitions.proved:
             return ""
-        return found.message or ThresholdStatus.not_certified.sentence
+        return found.message or "the list of thresholds is not proved complete"
 
     def first(self, kind: ChangeKind) -> Crossing | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""

@@ -86,7 +86,7 @@ def test_phase_of_the_fluid_is_proportional_to_slow_rates():
 
 
 def test_phase_of_the_fluid_is_smooth_where_its_series_ends():
-    """Three equal steps of s across the end: second differences of the phase are those of its series."""
+    """Steps of 1, 2 and 1 % of s across the end: the middle change of phase/s is the sum of the others."""
     s = SERIES_END * np.array([0.98, 0.99, 1.01, 1.02])
     phase = drag_phase_lag(s, 1.5) / s
     assert phase[2] - phase[1] == pytest.approx(phase[1] - phase[0] + phase[3] - phase[2], rel=0.02)

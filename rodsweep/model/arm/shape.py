@@ -28,7 +28,7 @@ BUCKLING_MAX_ITERATIONS = 1000
 """Maximum number of steps of the power iteration, which usually takes twenty."""
 MAX_RADIUS_RATIO = 1.3
 """Maximum ratio of the radii of a cone at neighbouring u of its profile. The cubic polynomials of the profile
-then approximate the drags, for tapers from 0.01 to 100, to 5e-4 if the arm is 20 or more radii long, to 5e-3
+then approximate the drags, for tapers from 0.01 to 100, to 6e-4 if the arm is 20 or more radii long, to 5e-3
 at ten radii."""
 
 

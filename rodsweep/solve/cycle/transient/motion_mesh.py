@@ -26,7 +26,7 @@ class MotionMeshSettings:
     stored_accuracy: float = 1e-10
     """Relative accuracy of the mesh of a motion whose path is stored: an error of the growth rate shifts the
     phase of the whole later motion. The integration takes a quarter longer than with `accuracy`, and its
-    errors were 30 to 400 times smaller on four arms."""
+    errors were 30 to 500 times smaller on four arms."""
     refinement: float = 1.5
     """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near it:
     compressed rubber may bend more sharply than linear waves."""
