@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo docs figures test test-kernels test-peers survey lint check stress bench wheel clean distclean help FORCE
+.PHONY: install demo docs figures test test-long test-kernels test-peers survey lint check stress bench wheel clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -43,6 +43,8 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
+test-long: .venv/installed  ## run the tests marked long, which `make test` leaves out
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -m long -n auto --dist loadfile --no-loadscope-reorder
 test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, those in KERNELS, or with KERNELS=another under one of them
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
 lint: .venv/installed  ## check style, types and who may import whom
@@ -67,8 +69,8 @@ survey: .venv/installed  ## all cases of the tests that `make test` asks of a fe
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto $$surveyed
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py tests/hard/test_settings.py
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, damage files and configs CASES (10) times as often (half an hour)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/results/test_stress.py tests/solve/test_interrupts.py
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_CASES=$(or $(CASES),10) $(BIN)/python -m pytest -n auto tests/cli/test_bad_files.py tests/cli/test_bad_input.py tests/results/test_edited_files.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest --long tests/results/test_stress.py tests/solve/test_interrupts.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_CASES=$(or $(CASES),10) $(BIN)/python -m pytest --long -n auto tests/cli/test_bad_files.py tests/cli/test_bad_input.py tests/results/test_edited_files.py
 docs: .venv/docs  ## build the documentation site, build/site/index.html: runs its tutorials, checks its links (a minute)
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m sphinx -q -W --keep-going -E -b html docs build/site
 	$(BIN)/python docs/links.py build/site

@@ -95,6 +95,14 @@ def pytest_xdist_auto_num_workers(config):
     return min(len(os.sched_getaffinity(0)) + 1, 4)
 
 
+def pytest_addoption(parser):
+    parser.addoption("--long", action="store_true", help="run the tests that take long too, marked `long`")
+
+
+def pytest_report_header(config):
+    return [] if _takes_long_tests(config) else ["tests marked `long` are left out: make test-long runs them"]
+
+
 def pytest_collection():
     """Collects no garbage while tests are collected: it would take half the time and find next to none."""
     gc.disable()
@@ -106,10 +114,19 @@ def pytest_collection_finish():
     gc.enable()
 
 
-def pytest_collection_modifyitems(items):
-    """Puts first what takes longest."""
+def pytest_collection_modifyitems(config, items):
+    """Puts first what takes longest, and leaves out what takes too long for every commit."""
+    if not _takes_long_tests(config):
+        config.hook.pytest_deselected(items=[item for item in items if item.get_closest_marker("long")])
+        items[:] = [item for item in items if not item.get_closest_marker("long")]
     places = {name: place for place, name in enumerate(LONGEST)}
     items.sort(key=lambda item: places.get(item.path.stem, len(LONGEST)))
+
+
+def _takes_long_tests(config) -> bool:
+    """Whether tests marked `long` run: where they are asked for, by a marker, a name or for a survey."""
+    named = any("::" in str(argument) for argument in config.args)
+    return bool(config.getoption("--long") or config.option.markexpr or named or RODS)
 
 
 NOT_FITTED = "from rodsweep.post.figures import request; request.fit_layout = lambda *_: None"

@@ -228,6 +228,7 @@ PRINTED = re.compile(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```)?", re.MUL
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
 
+@pytest.mark.long
 def test_python_page_prints_what_it_says(tmp_path, monkeypatch, capsys):
     """But for the last digits, which are the processor's."""
     monkeypatch.chdir(tmp_path)

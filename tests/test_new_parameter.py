@@ -4,9 +4,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HERE = Path(__file__).parent / "with_new_parameter.py"
 
 
+@pytest.mark.long
 def test_a_new_parameter_is_one_entry_of_the_table(tmp_path):
     """Spectra, thresholds, cycles and branches are those of the rod with the drag that the factor makes."""
     run = subprocess.run(

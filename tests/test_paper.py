@@ -94,6 +94,7 @@ def test_the_onset_of_a_soft_rod_does_not_rise_with_inverse_drag(command):
     )
 
 
+@pytest.mark.long
 def test_figure_4(command):
     k1, F, partial = stated("fig4")[:3]
     axes = "parameters.F.num=51", "parameters.k1.num=17"
@@ -133,6 +134,7 @@ def test_figures_7_to_9(command, name):
         assert np.isinf(growth) == (name == "fig9")
 
 
+@pytest.mark.long
 def test_figure_5(command):
     T_one, y_one, _, T_half, y_half = stated("fig5")
     with run(command, "fig5", "limit_cycle.samples=32", "limit_cycle.shapes=8") as file:
@@ -167,6 +169,7 @@ def test_figure_6(command):
         assert np.log(y[2] / y[1]) / np.log(4) == pytest.approx(0.5, abs=1e-3)
 
 
+@pytest.mark.long
 def test_what_a_restabilised_rod_does_depends_on_where_it_comes_from(command):
     """Beyond the paper, whose Discussion excludes oscillations outside the linear window of flutter."""
     hopf, period, y = stated("hysteresis_up")[:3]
@@ -212,6 +215,7 @@ def test_krylov_schur_alone_counts_what_d_counts(command):
         assert (file["elements"][...] > 0).all()
 
 
+@pytest.mark.long
 def test_integration_alone_gives_the_cycle_that_collocation_gives(command):
     period, height = stated("integration")
     with run(command, "integration", "parameters.F=[30, 40]") as file:
@@ -247,6 +251,7 @@ def test_cone_cycles(command):
         assert first == pytest.approx(numbers[3], rel=1e-11)
 
 
+@pytest.mark.long
 def test_rubber_branch(command):
     """Its branch is born, and the straight rod stable again, where the comment says; a cycle alone agrees."""
     born, stable_again, period, y = stated("rubber_branch")[:4]
@@ -261,6 +266,7 @@ def test_rubber_branch(command):
     assert [cycle.period, cycle.tip_y_max] == pytest.approx([period, y], rel=1e-5)
 
 
+@pytest.mark.long
 def test_rubber(command):
     """The window of the swelling section, and of a fixed section, which never closes."""
     lower, upper, fixed = stated("rubber")
@@ -286,6 +292,7 @@ def test_cast_arm(command):
         assert not file["status"][...].any()
 
 
+@pytest.mark.long
 def test_slender(command):
     rubber, linear = stated("slender")
     length = "parameters.arm.length=[12 cm, 14 cm]"

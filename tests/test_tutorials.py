@@ -36,6 +36,7 @@ def is_printed(text, printed):
     return bool((np.abs(printed - float(text)) <= 0.501 * unit).any())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", only(["filament"], PAGES))
 def test_every_number_of_a_tutorial_is_printed_by_its_cells(page, tmp_path, monkeypatch):
     page = TUTORIALS / f"{page}.md"

@@ -196,6 +196,7 @@ def test_ranks_that_no_mpiexec_starts_are_refused_in_a_sentence(tmp_path, monkey
         rs.sweep("spectrum", **ROD, ranks=2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("before", "variables", "code", "sentence"),
     [
@@ -237,6 +238,7 @@ def test_numpy_scalars_as_values_and_as_names_are_those_of_python():
     assert rs.Arm(**arm) == rs.Arm(**SILICONE)
 
 
+@pytest.mark.long
 def test_numpy_scalars_are_taken_by_every_door():
     off, once = np.bool_(False), np.int64(1)
     rod = rs.Rod(**{np.str_(name): np.float64(value) for name, value in ROD.items()}, law=np.str_("linear"))

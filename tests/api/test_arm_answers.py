@@ -49,6 +49,7 @@ def test_a_rod_made_of_an_arm_keeps_what_is_given():
     assert rod.parameters["k2"] == arm.k2
 
 
+@pytest.mark.long
 def test_making_an_arm_starts_no_solver():
     """Nor does a rod of it, unless its load is relative to flutter."""
     code = (

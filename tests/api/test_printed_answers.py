@@ -155,6 +155,7 @@ def test_an_answer_that_failed_begins_with_the_meaning_of_its_status():
     assert not list(flaws_of_layout(answer))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", few([80, 120], 1))
 @pytest.mark.parametrize(
     ("task", "asked"),

@@ -141,6 +141,7 @@ def test_tables_and_figures_of_answers_are_made_or_refused(seed):
         assert "..." not in getattr(made, "shown", ""), made.shown
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(FILES))
 def test_commands_on_a_result_say_what_they_should(seed, command):
     rng = Random(f"commands {seed}")

@@ -224,6 +224,7 @@ def test_command_times_the_peers_of_its_checkout(command, tmp_path):
         assert file.attrs["petsc"]
 
 
+@pytest.mark.long
 def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_out(command, tmp_path):
     """As installed: the package without what is beside it."""
     (tmp_path / "site").mkdir()
@@ -241,6 +242,7 @@ def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_ou
     assert methods == ["rodsweep, certificate off", "rodsweep, certificate on", KRYLOV_SCHUR]
 
 
+@pytest.mark.long
 def test_command_takes_peers_from_a_folder_that_is_named(command, tmp_path):
     write_peers(tmp_path / "mine")
     done = command("bench", "spectrum", "--quick", "-o", "b.md", "--peers", "mine")

@@ -155,6 +155,7 @@ def test_the_benchmark_times_rodsweep_alone(tmp_path):
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     """One that fails, one that is rodsweep's own under another name, and a section of its own."""
     monkeypatch.setattr("rodsweep.bench.limit_cycle.study.measure_sweep_points", lambda *_: [])

@@ -89,6 +89,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     assert all(isnan(error) for error in table["error"])
 
 
+@pytest.mark.long
 def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
     """Up to a kill at the last point, and in the next run, which reads all that is there."""
     peaks = {}
@@ -103,6 +104,7 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
         assert many < few + 1e6 * FEW_MEGABYTES
 
 
+@pytest.mark.long
 def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
     case = spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
     taken = run(case, 1)

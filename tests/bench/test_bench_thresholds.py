@@ -63,6 +63,7 @@ def test_tables_say_what_was_missed():
         assert f"| {cells} |" in threshold_table(HOPF, measure_rods(HOPF, cases, [method], 1))
 
 
+@pytest.mark.long
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"], CASE["Fig. 2d"]))
     study = thresholds_study(quick=True, peers=NO_PEERS)

@@ -164,6 +164,7 @@ def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
     assert np.abs(by_force - difference).max() < 1e-14 * terms.max()
 
 
+@pytest.mark.long
 def test_auto_continues_the_same_cycles(auto):
     """To the error that its mesh leaves, which falls with the mesh."""
     rough, fine = AutoSetting(14, 15, 3, 3), AutoSetting(16, 9, 5, 3)

@@ -234,6 +234,7 @@ def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
     assert command("arm", *words).stdout == f"{arm.report()}\n"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("load", ["pressure", "force"])
 def test_a_load_may_be_relative_to_flutter(load):
     arm = rs.Arm(**THICK, **{load: "1.25 of flutter"})

@@ -159,6 +159,7 @@ def test_damaged_file_is_refused_and_left_as_it_is_or_repaired(results, tmp_path
     assert not complaints, report(complaints)
 
 
+@pytest.mark.long
 def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
     complaints = []
     rng = Random(f"pages {name}")
@@ -179,6 +180,7 @@ def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
     assert not complaints, report(complaints)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", few(["limit_cycle", "list"], 1), indirect=True)
 def test_odd_things_among_the_journals_do_no_harm(results, tmp_path, name):
     complaints = []
@@ -205,6 +207,7 @@ LINES = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 def test_what_is_no_result_is_refused_and_left_alone(results, tmp_path):
     directory = tmp_path / "a"
     results.copied("spectrum", "whole", directory)
@@ -254,6 +257,7 @@ def test_result_that_another_program_made_unfit_is_refused(results, tmp_path, na
     assert not complaints, report(complaints)
 
 
+@pytest.mark.long
 def test_result_with_odd_numbers_is_shown_and_continued(results, tmp_path, name):
     complaints = []
     for edit, change in shared(ODD_NUMBERS.items(), name, 1):
@@ -265,6 +269,7 @@ def test_result_with_odd_numbers_is_shown_and_continued(results, tmp_path, name)
     assert not complaints, report(complaints)
 
 
+@pytest.mark.long
 def test_interrupted_result_to_which_the_user_added_is_continued(results, tmp_path, name):
     complaints = []
     for addition, add in shared(ADDITIONS.items(), name, 1):

@@ -89,6 +89,7 @@ def report(complaints, total):
     return f"{len(complaints)} of {total} cases:\n{text}"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", [*DRAWN, *SPREAD])
 def test_mutated_config_is_refused_in_one_sentence_or_valid(run, tmp_path, kind):
     complaints, cases = [], cases_of(kind)
@@ -112,6 +113,7 @@ def test_kinds_have_hundreds_of_cases_and_most_must_be_refused():
     assert sum(case.refused for case in cases) > 300
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
 def test_untouched_configs_are_valid_also_as_the_mutations_write_them(run, tmp_path, path):
     places = [tmp_path / name / "here" for name in ("own", "written")]
@@ -244,6 +246,7 @@ def the_command(directory, no_solver, *words):
     return Outcome(ended.returncode, False, ended.stdout.decode(), ended.stderr.decode())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", range(REAL))
 def test_the_command_itself_refuses_and_leaves_nothing(tmp_path, no_solver, number):
     kind = [*DRAWN, *SPREAD][number % len([*DRAWN, *SPREAD])]

@@ -63,6 +63,7 @@ def test_too_small_a_disk_for_an_extension_leaves_the_file(command):
         assert sorted(path.name for path in small.directory.iterdir()) == ["c.h5", "c.yaml"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("word", ["check", "run"])
 def test_full_disk_under_a_log_of_both_streams_ends_with_3(command, word):
     """Nothing can be said any more; at exit Python flushes again, which must not change the status."""
@@ -73,6 +74,7 @@ def test_full_disk_under_a_log_of_both_streams_ends_with_3(command, word):
     assert run.returncode == 3
 
 
+@pytest.mark.long
 def test_closed_streams_and_a_window_of_no_columns_change_nothing(command):
     """The result file must not take the number of a closed stream, into which C libraries write."""
     command.write("c.yaml", CONFIG.replace("1500", "2"))
@@ -106,6 +108,7 @@ def test_too_small_a_disk_is_refused_before_anything_is_solved(command):
         assert [path.name for path in small.directory.iterdir()] == ["c.yaml"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ranks", few([2, 0], 1))
 def test_disk_that_fills_up_in_the_middle_costs_no_point(command, ranks):
     with disk(command, "size=64m") as small:

@@ -116,6 +116,7 @@ def test_extended_file_is_that_of_the_larger_config(command, small, changes, tod
     assert f"{todo} points to do" in told
 
 
+@pytest.mark.long
 def test_extension_killed_at_any_point_goes_on_with_the_same_command(command):
     large = SPECTRA.replace("[10, 30]", "{start: 0, stop: 40, num: 41}")
     command.write("small.yaml", SPECTRA)

@@ -36,6 +36,7 @@ def test_each_shell_gets_its_script(command, shell):
     assert f"_RODSWEEP_COMPLETE={shell}_complete" in done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ranks", [0, 2])
 def test_a_quiet_run_says_nothing(command, ranks):
     command.write("c.yaml", SPECTRA)

@@ -48,6 +48,7 @@ def test_a_report_needs_a_file(command):
 ROD = ("--k1", "1e4", "--k2", "1e2", "--gamma3", "1e-2")
 
 
+@pytest.mark.long
 def test_a_portrait_is_drawn_and_said(command):
     done = command("portrait", *ROD, "--F-max", "40", "--accuracy", "1e-3", "-o", "p.svg")
     assert done.returncode == 0, done.stderr

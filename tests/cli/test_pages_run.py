@@ -111,6 +111,7 @@ def run_page(command, page):
             assert missing(said, come) is None, (line, come)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "page",
     [

@@ -23,6 +23,7 @@ def without_numbers(text):
     return re.sub(r"# (ms|min|h)\b", "# s", numbered)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", only(["thresholds"], TASKS))
 def test_every_command_does_the_same_started_afresh_and_loaded(command, task):
     """What is imported late is imported by whoever needs it, for every task."""

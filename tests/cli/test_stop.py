@@ -85,6 +85,7 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, conte
     assert same(content(command.directory / "c.h5"), content_of(SPECTRA))
 
 
+@pytest.mark.long
 def test_further_signals_do_not_change_the_status(command):
     """Python forgets its handlers long before MPI is through with its end: they come until all is over."""
     command.write("c.yaml", SPECTRA)
@@ -126,6 +127,7 @@ def typed_ctrl_c(command, ranks):
     return status, said.decode(errors="replace")
 
 
+@pytest.mark.long
 def test_ctrl_c_in_a_terminal_ends_like_sigterm(command):
     command.write("c.yaml", SPECTRA)
     status, said = typed_ctrl_c(command, ranks=0)
@@ -154,6 +156,7 @@ def test_launcher_passes_the_warning_on(command):
     assert "stopped by SIGUSR1" in out
 
 
+@pytest.mark.long
 def test_chain_stops_between_two_of_its_points_and_goes_on_from_there(command):
     command.write("c.yaml", CYCLES)
     process = started(command, ranks=2, pause=FOR_EVER)
@@ -195,6 +198,7 @@ RankListener.__call__ = hear_and_wait
 """What every rank executes first: within a point but the first it stays on a branch until a stop ends it."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("number", "ranks", "rank"),
     [pytest.param(signal.SIGINT, 0, None, marks=survey_only), (signal.SIGTERM, 2, 1)],

@@ -173,6 +173,7 @@ def test_hosts_with_different_blas_kernels_agree_within_their_error_estimates(ho
     assert same_spectra(content(command.directory / "c.h5"), content(command.directory / "plain.h5"))
 
 
+@pytest.mark.long
 def test_other_host_need_not_wait_while_the_first_rank_is_inside_a_long_solve(hosts, command):
     """The first point lasts until the other rank has begun 15; if it waited, it would share them."""
     rows = [f"{F},1e4,100,1e-2,1\n" for F in np.linspace(1, 20, 20)]

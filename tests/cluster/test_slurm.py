@@ -131,6 +131,7 @@ def log(slurm: Slurm) -> str:
     return "".join(path.read_text() for path in sorted(slurm.directory.glob("rodsweep*.log")))
 
 
+@pytest.mark.long
 def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path, loaded):
     """Without Slurm: what the script does in it, with a `scontrol` that only notes how it is called."""
     clone_in(tmp_path)
@@ -255,6 +256,7 @@ def test_srun_starts_the_ranks_where_it_can(slurm, expected):
     assert read_view(slurm.directory / "c.h5").attributes["ranks"] == 2
 
 
+@pytest.mark.long
 def test_job_out_of_time_is_warned_and_requeues_itself(slurm, out_of_time, expected):
     slurm.directory, job = out_of_time
     assert slurm.end(job) == "COMPLETED 0:0", log(slurm)

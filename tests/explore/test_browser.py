@@ -318,6 +318,7 @@ def test_a_page_that_was_left_ends_its_solves_and_the_way_back_leads_to_a_page_t
         assert other.complaints() == []
 
 
+@pytest.mark.long
 def test_an_address_opens_the_same_page_and_an_arm_has_si_units(url, opened):
     opened.open(f"{url}?tab=arm&length=12+cm&pressure=5+kPa&F_max=60")
     opened.wait_for("Bokeh.documents[0].get_model_by_name('numbers').text.match('period_si.*pressure_hopf')")

@@ -282,6 +282,7 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     assert "diagram" not in {question.kind for question in solvers.questions}
 
 
+@pytest.mark.long
 def test_a_search_that_finds_no_folds_says_so_above_the_diagram_as_fine_as_before():
     page = page_with(ImmediateSolvers(("diagram", "cycles")), "F_max=30")
     run_callbacks(page.document, seconds=True)

@@ -62,6 +62,7 @@ def answers() -> dict[str, str | int]:
     return asyncio.run(run())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("origin", OWN)
 def test_the_page_itself_may_connect(answers, origin):
     assert "ACK" in answers[origin]
@@ -118,6 +119,7 @@ def descendants(pid: int) -> list[int]:
     return [*children, *(each for child in children for each in descendants(child))]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", few([signal.SIGINT, signal.SIGTERM], 1))
 def test_ctrl_c_ends_the_server_with_all_its_processes(number):
     process, _ = started()
@@ -134,6 +136,7 @@ def test_ctrl_c_ends_the_server_with_all_its_processes(number):
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_a_port_in_use_is_refused(command):
     with socket.socket() as other:
         other.bind((LISTEN_ADDRESS, 0))
@@ -154,6 +157,7 @@ def test_without_bokeh_the_extra_is_named():
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "text"),
     few(

@@ -122,6 +122,7 @@ def test_stored_branches_are_drawn_and_solved_again_by_their_button_only(command
     assert "branch" in asked(solvers)
 
 
+@pytest.mark.long
 def test_stored_curves_of_folds_are_drawn_in_the_diagram(command):
     page, solvers = opened_page(command, PLANE)
     data = rs.open(command.directory / "result.h5")
@@ -171,6 +172,7 @@ BRANCH_OF_ARM = f"task: branch\nparameters: {{arm: {{{OF_ARM.replace('[8 cm, 10 
 BRANCH_OF_ARM += "branch: {start: 30, stop: 40}\naccuracy: 1.0e-4\n"
 
 
+@pytest.mark.long
 def test_stored_cycles_of_arms_are_drawn_and_not_solved_again(command):
     page, solvers = opened_page(command, CYCLES_OF_ARMS)
     arms = rs.open(command.directory / "result.h5").sel(length=0.1)
@@ -204,6 +206,7 @@ def test_stored_thresholds_of_arms_are_the_diagram(command):
     assert set(drawn["y"]) == {8, 10}
 
 
+@pytest.mark.long
 def test_a_stored_branch_of_an_arm_is_drawn(command):
     page, solvers = opened_page(command, BRANCH_OF_ARM)
     data = rs.open(command.directory / "result.h5").squeeze()

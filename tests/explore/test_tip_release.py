@@ -115,6 +115,7 @@ def test_every_place_of_the_pointer_bends_the_arm(place):
     assert np.isfinite([found["x"], found["y"]]).all()
 
 
+@pytest.mark.long
 def test_the_film_shows_the_shapes_of_a_period():
     page = page_with(ImmediateSolvers(("film",)))
     given = []

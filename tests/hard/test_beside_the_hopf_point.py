@@ -62,6 +62,7 @@ def test_the_hopf_point_leads_to_the_same_cycle_however_near(rod):
         assert start.measures.period == pytest.approx(mode.measures.period, rel=2 * ACCURACY)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("distance", few([-1e-8, -1e-5, -1e-7], 2))
 @pytest.mark.parametrize("rod", RODS)
 def test_a_rod_below_is_straight(rod, distance):

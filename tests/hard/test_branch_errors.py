@@ -131,6 +131,7 @@ def test_cycles_of_a_branch_are_as_near_to_the_true_ones_at_their_force_as_they_
     assert broken_promises(case) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, RODS, BATCH))
 def test_branches_of_random_rods_keep_their_promises(first):
     wrong = {index: broken_promises(random_case(index)) for index in range(first, min(first + BATCH, RODS))}

@@ -46,6 +46,7 @@ def test_a_trillionth_of_a_force_changes_the_spectrum_by_its_first_derivative(co
             assert abs(w - w0 - first) <= 1e-5 * abs(first) + 2e-15 * abs(w0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("modes", [1, 2, 3, 40])
 @pytest.mark.parametrize(
     "rod",

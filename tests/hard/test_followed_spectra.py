@@ -13,6 +13,7 @@ GRID_ROWS = max(1, LINES // 40)
 """Lines of each grid."""
 
 
+@pytest.mark.long
 def test_random_lines_are_as_single_points():
     rng, comparison = np.random.default_rng(2026), Comparison()
     for number in range(LINES):

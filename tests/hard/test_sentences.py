@@ -53,6 +53,7 @@ LEAST_MARKS = 10
 """Marks of a figure, on average, below which the reader no longer reads."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, SWEEPS, BATCH))
 def test_no_text_and_no_mark_of_a_figure_is_wrong(first):
     wrong, marks, drawn = [], 0, 0
@@ -141,6 +142,7 @@ UNITS_OFF = 3
 """Units of its last digit by which a number is wrong that has to be found; a third of it, where more."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", OF_ARMS)
 def test_the_reader_finds_a_number_of_an_arm_that_is_wrong(task, monkeypatch):
     """The first number of every line in the arm's units, one after another."""

@@ -804,6 +804,7 @@ def test_a_changed_setting_reaches_compiled_functions():
     assert box_from_amplification(0.0, 1.0) == before
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "field"), [each for each in FIELDS[FIRST::EACH] if ALL or each[0] not in READ_BY_MOST]
 )

@@ -57,6 +57,7 @@ def test_the_count_falls_by_the_runaway_modes_in_the_limit_and_nothing_is_proved
     assert abs(found.eigenvalues[0] / complex(leading(rod, 1)[0]) - 1) < 1e-14
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("gamma3", few([1e-6, 1e-14], 1))
 def test_next_to_the_limit_numbers_are_right_or_withheld(gamma3):
     """The layers outgrow every mesh in the end; the mode that is then missing must not go unnoticed."""

@@ -48,6 +48,7 @@ def test_exponentially_small_eigenvalues_lie_within_their_errors(rod):
     assert check_errors(*rod)
 
 
+@pytest.mark.long
 def test_eigenvalues_under_random_pulls_lie_within_their_errors():
     rng = np.random.default_rng(31)
     solved = [check_errors(*random_pull(rng)) for _ in range(max(RODS, 20))]

@@ -60,6 +60,7 @@ def disagreement(rod):
     return f"period {found.measures.period:.9g} is {period:.1e} off, largest y {height:.1e}; marched: {other}"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, RODS, BATCH))
 def test_marching_in_time_comes_to_the_same_end(first):
     rods = [random_rod(index) for index in range(first, min(first + BATCH, RODS))]

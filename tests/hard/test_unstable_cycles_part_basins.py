@@ -66,6 +66,7 @@ def test_rod_inside_the_unstable_cycle_goes_to_rest(unstable):
     assert marched(unstable, 1 - BESIDE).word == "straight"
 
 
+@pytest.mark.long
 def test_rod_outside_the_unstable_cycle_goes_to_the_stable_one(unstable, stable):
     found = marched(unstable, 1 + BESIDE)
     assert found.word == "cycle"

@@ -100,6 +100,7 @@ def printed(code):
     return done.stdout
 
 
+@pytest.mark.long
 def test_numbers_do_not_depend_on_what_was_loaded_before():
     """Of a compiled function and its copies in others a process would take the one that it loaded first."""
     alone = printed(PASSES_COUNTED + SOLVED + PASSES_TOLD)
@@ -219,6 +220,7 @@ print(outer.values())
 """
 
 
+@pytest.mark.long
 def test_a_full_disk_costs_the_cache_and_nothing_else(made, tmp_path):
     """A limit on the size of files fails in `write` as a full disk does."""
     made()

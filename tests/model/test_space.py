@@ -55,6 +55,7 @@ def equations(x, rod, grid):
     return np.append(G.ravel(), out[len(G) * grid.nodes :])
 
 
+@pytest.mark.long
 @ALL
 @pytest.mark.parametrize("kept", [(), (2,)], ids=["eliminated", "kept"])
 def test_compiled_functions_do_what_their_loops_do(material, kept):

@@ -215,6 +215,7 @@ def test_every_figure_is_drawn_in_every_format(tmp_path, what, suffix, gamma1):
     assert output.stat().st_size > 5000
 
 
+@pytest.mark.long
 def test_animation_has_a_frame_for_each_shape_and_repeats_for_ever(tmp_path):
     output = tmp_path / "f.gif"
     assert f"{SHAPES} frames" in draw(two_cycles(), output)
@@ -234,6 +235,7 @@ def test_mp4_without_ffmpeg_says_what_is_missing(tmp_path, monkeypatch):
     assert not (tmp_path / "f.mp4").exists()
 
 
+@pytest.mark.long
 def test_first_cycles_are_drawn_unless_points_are_chosen(tmp_path):
     view = make_view(SWEEP, SWEPT)
     assert [c.number for c in chosen_cycles(view, (), ()).cycles] == [3, 4, 5]

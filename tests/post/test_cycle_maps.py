@@ -210,6 +210,7 @@ def test_a_list_that_forms_a_grid_is_drawn_as_maps():
     assert figure_name(FigureRequest([make_list()], Path("f.png"))) == "maps"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", few(["pdf", "png"], 1))
 def test_a_hundred_by_a_hundred_points_are_drawn_with_some_missing(tmp_path, suffix):
     numbers = np.random.default_rng(2).choice(10_000, 300, replace=False)

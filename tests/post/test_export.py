@@ -226,6 +226,7 @@ def test_a_branch_of_an_arm_has_loads_of_special_points_in_si(command):
     assert pressure == pytest.approx(62.5 * F, rel=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", ["modes", "limit_cycle", "list"])
 def test_results_of_every_task_are_exported(command, task):
     configs = {

@@ -160,6 +160,7 @@ CASES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "words", "width"),
     at_widths([(name, words) for name in CASES for words in CASES[name][: None if RODS else 1]], every=2),
@@ -189,6 +190,7 @@ CYCLES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "what", "width"),
     at_widths([(name, what) for name, (_, kinds) in CYCLES.items() for what in kinds], WIDTHS[:2], every=4),
@@ -253,6 +255,7 @@ def test_random_figures_of_cycles_are_whole(seed, width, tmp_path, monkeypatch):
     assert drawn(view, tmp_path, monkeypatch, width, what=what).faults == []
 
 
+@pytest.mark.long
 def test_every_threshold_of_the_first_config_of_the_readme_is_within_its_axes(tmp_path, monkeypatch):
     view = solved("readme")
     stored = sum(

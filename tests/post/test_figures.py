@@ -149,6 +149,7 @@ def test_rows_that_make_no_plane_are_bars(command, drawn):
     assert named == ["monotone", "oscillatory", "flutter"]
 
 
+@pytest.mark.long
 def test_infinite_axis_values_and_odd_titles_are_drawn_or_refused_in_a_sentence(command):
     command.write("c.yaml", LINE)
     both = ["--set", "parameters.k2=[50, 100, .inf]", "--set", "title=cost in $ and \\frac"]
@@ -393,6 +394,7 @@ phase_diagram: {curves: true}
 """
 
 
+@pytest.mark.long
 def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(command, monkeypatch):
     command.write("c.yaml", DIAGRAM)
     command.solved("c.yaml")

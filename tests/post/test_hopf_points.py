@@ -300,6 +300,7 @@ def test_show_tells_the_hopf_point_that_the_task_has_stored(command):
     assert shown.index("beats at 4") < shown.index("status") < shown.index("parameter") < shown.index("BLAS")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("ranks", "gamma1"), [(1, "1"), (2, "[0.5, 1]")])
 def test_show_of_a_sweep_has_the_threshold_of_the_solver(command, ranks, gamma1):
     """The cases of issue 31: forces 10 apart gave 49.764 +- 3e-4."""

@@ -57,6 +57,7 @@ def test_there_is_a_small_file_of_every_task():
     assert CONFIGS.keys() >= TASKS.keys()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", only(KEPT, CONFIGS))
 def test_a_page_of_every_task_is_whole_and_needs_no_network(command, name):
     page = reported(command, name)
@@ -181,6 +182,7 @@ def test_points_that_failed_are_counted_with_their_reason_and_place(command):
     assert sum(row["status"] == "failed" for row in page.table("points")) == 2
 
 
+@pytest.mark.long
 def test_several_files_make_one_page(command):
     solved(command, "thresholds")
     solved(command, "modes")
@@ -255,6 +257,7 @@ def test_colours_are_lightened_until_they_stand_out_on_a_dark_page(colour):
     assert _contrast([int(found[place : place + 2], 16) for place in (0, 2, 4)]) >= MIN_CONTRAST
 
 
+@pytest.mark.long
 @needs_browser
 def test_a_figure_with_a_bitmap_is_dark_on_a_dark_page(command):
     reported(command, "phase_diagram")

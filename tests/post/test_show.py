@@ -32,6 +32,7 @@ def test_the_thresholds_of_the_demo_come_out_of_show(command):
     assert "by a zero of the characteristic determinant" in " ".join(told.split())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("step", [0.5, 7, 45])
 @pytest.mark.parametrize("certify", ["true", "false"])
 def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step, certify):

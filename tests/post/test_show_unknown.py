@@ -5,6 +5,7 @@ import io
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from shown import shown
 
 import rodsweep as rs
@@ -81,6 +82,7 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
         assert where in said
 
 
+@pytest.mark.long
 def test_branches_that_are_cut_short_leave_rods_open(tmp_path):
     whole = told(view_of_sweep(tmp_path, "branch", k2=[1e3, 1e4], **BRANCHES))
     assert f"{BESIDE} at 1 of 2 rods k2" in whole
@@ -88,6 +90,7 @@ def test_branches_that_are_cut_short_leave_rods_open(tmp_path):
     assert f"{BESIDE} at 0 of 2 rods, not known at 2 rods" in cut
 
 
+@pytest.mark.long
 def test_a_list_of_special_points_that_is_full_for_all_rods_states_no_rods(tmp_path):
     lines = told(view_of_sweep(tmp_path, "branch", k2=[1e3, 1e4], special=1, **BRANCHES))
     assert "not known for 2 rods" in lines

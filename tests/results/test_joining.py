@@ -95,6 +95,7 @@ def test_joined_files_are_a_run_of_all_their_points(command, text, parts):
         assert command(*words).returncode == 0
 
 
+@pytest.mark.long
 def test_a_process_that_solves_first_while_it_joins_can_write_the_file(command):
     """The Hopf points of the joined grid start MPI, in a process that had started nothing."""
     names = computed(command, CHAINS, [("[40, 50, 60]", "[40]")], [("[40, 50, 60]", "[60]")])
@@ -143,6 +144,7 @@ def test_points_that_no_file_has_computed_are_missing(command):
     assert same(*(content(command.directory / name) for name in ("m.h5", "c.h5")))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("text", "parts", "sentence"),
     [

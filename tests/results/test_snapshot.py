@@ -126,6 +126,7 @@ def test_file_that_never_stays_is_given_up(tmp_path):
         read_file_and_journals(path, lambda: path.write_bytes(path.read_bytes() + b" "))
 
 
+@pytest.mark.long
 def test_running_limit_cycles_can_be_looked_at(command):
     """Whatever the task: what is done is shown, and what is missing is missing."""
     command.write(

@@ -115,6 +115,7 @@ def points_on_disk(path):
     return int((view.variables["status"] != MISSING_STATUS).sum())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "config",
     [SPECTRA, CHAINS, *([CYCLES, BRANCHES] if KILLS > 1 else [])],

@@ -89,6 +89,7 @@ def test_one_kernel_is_recorded_and_nothing_said(command):
     assert blas() in command("show", "c.h5").stdout
 
 
+@pytest.mark.long
 def test_other_kernel_is_told_on_resume_and_merge_and_gives_the_same_numbers(command, others, monkeypatch):
     command.write("c.yaml", SPECTRA)
     assert command("run", "c.yaml", "-o", "plain.h5").returncode == 0

@@ -110,6 +110,7 @@ def told():
     return seed, *json.loads(done.stdout.splitlines()[-1])
 
 
+@pytest.mark.long
 def test_six_threads_give_the_bits_of_one(told):
     assert told[1] == []
 

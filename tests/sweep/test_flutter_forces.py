@@ -66,6 +66,7 @@ def rods(command):
     return rods_of_flutter(config.parameters.arm)
 
 
+@pytest.mark.long
 def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
     assert len(rods) == RODS
     files = {}
@@ -79,6 +80,7 @@ def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
     assert same(files[1], files[3])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("task", "ranks"), few([("modes", 2), ("spectrum", 0)], 1))
 def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task, ranks):
     """Of the second length in its second plane; all other points are as they are without the failure."""

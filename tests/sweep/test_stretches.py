@@ -95,6 +95,7 @@ def test_of_a_stretch_only_missing_points_are_kept():
     assert asked[1:] == [6, 10]
 
 
+@pytest.mark.long
 def test_any_number_of_ranks_gives_the_same_spectra(command):
     command.write("c.yaml", SPECTRA)
     assert command("run", "c.yaml", "-o", "alone.h5").returncode == 0
@@ -105,6 +106,7 @@ def test_any_number_of_ranks_gives_the_same_spectra(command):
     assert (alone["elements"] == 0).mean() > 0.95
 
 
+@pytest.mark.long
 def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
     command.write("c.yaml", SPECTRA)
     assert command("run", "c.yaml").returncode == 0
@@ -117,6 +119,7 @@ def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
     assert "spectrum.follow is true in the file and false in the config" in refused.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("whole_job", few([True, False], 1), ids=few(["all ranks", "one rank"], 1))
 def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     """Killed while ranks wait behind their third stretch, of 128 or 72 points: what is journalled stays."""
@@ -239,6 +242,7 @@ FEW_FORCES = "F: {start: 0, stop: 49.75, num: 20}"
 """Fewer than values of k2, along which the larger grid is followed then."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("first", "larger", "kept"),
     [

@@ -148,6 +148,7 @@ def test_neighbours_follow_each_other_along_the_load(command):
     assert data.period.sel(length=0.1).values == pytest.approx(alone.period.values.ravel(), rel=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("config", few([CONFIG, CHAINS], 1))
 def test_shards_a_stopped_run_ranks_and_python_give_the_same_file(command, config):
     command.write("a.yaml", config)

@@ -404,6 +404,7 @@ STATUSES = {
 FALSE_IF_NOT_SOLVED = ("does not flutter", "stays straight", "does not beat at 2", "has no branch")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", STATUSES)
 def test_what_is_not_solved_is_not_said_to_stay_straight(command, task):
     """Numbers that are not there are no proof of rest: of every status and task."""

@@ -34,6 +34,7 @@ FOLD = 85.60557673489
 """At k1 = 150, by a run at the accuracy 1e-8."""
 
 
+@pytest.mark.long
 def test_show_tells_branches_special_points_and_where_two_states_coexist(command):
     told = shown(command, CONFIG.format(k1=150, stop=200))
     ends = r"from the Hopf point at F = 67\.38698428\d+ \(\+- \S+\) to that at F = 85\.5693169\d+"
@@ -216,6 +217,7 @@ def test_rods_that_are_missing_are_not_said_to_have_no_branch(command):
     assert "none" not in draw(view, command.directory / "c.png")
 
 
+@pytest.mark.long
 def test_the_straight_rod_is_drawn_up_to_where_it_is_crushed(command, drawn):
     """At k1 = 100 the cycles reach F = 99.99, and the figure a tenth beyond them."""
     command.write(
@@ -227,6 +229,7 @@ def test_the_straight_rod_is_drawn_up_to_where_it_is_crushed(command, drawn):
     assert max(map(np.max, black)) == 100
 
 
+@pytest.mark.long
 def test_branches_without_room_for_their_special_points_are_told_of_and_not_drawn(command):
     command.write("c.yaml", CONFIG.format(k1="[100, 150]", stop=200).replace("stop:", "special: 2, stop:"))
     assert "1 list_full" in command("run", "c.yaml").stdout
@@ -245,6 +248,7 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert "holds no branch with cycles" in " ".join(command("plot", "d.h5").stderr.split())
 
 
+@pytest.mark.long
 def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(command):
     config = "task: branch\nparameters: {k1: 1.0e4, k2: 100, gamma3: 0.01}\naccuracy: 1.0e-4\n"
     command.write("c.yaml", config + "branch: {special: 3, stop: 90}\n")
@@ -324,6 +328,7 @@ def test_rod_answers_in_python():
     assert np.nanmax(answer.branch_F) < FOLD
 
 
+@pytest.mark.long
 def test_config_shows_the_numbers_of_its_head(command):
     with run(command, "branches") as file:
         F_hopf, F_again, fold = stated("branches")
@@ -337,6 +342,7 @@ NEAR, FINER = 1e-3, 1e-8
 accuracy of the branch that stands for it."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("k1", "stop"), few([(150, 140), (175, 150), (1000, 40.5)], 1))
 def test_the_curve_in_the_figure_is_the_branch(k1, stop):
     """Straight pieces between its few cycles miss it by up to a hundredth, next to a Hopf point most."""
@@ -376,6 +382,7 @@ def test_a_branch_arrives_at_its_own_hopf_point_at_every_accuracy():
     assert branch.special_kind[:3].tolist() == ["hopf", "fold", "hopf"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("accuracy", few([1e-5, 1e-3], 1))
 def test_errors_at_special_points_contain_a_finer_branch_and_the_amplitude_of_criticality(accuracy):
     rod = rs.Rod(k1=150, k2=1e4, gamma3=1e-4)

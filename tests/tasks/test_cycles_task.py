@@ -683,6 +683,7 @@ def test_points_without_chains_start_from_the_mode(command):
         assert np.all(file["tip_y_max"][...] == 0.5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("ranks", "direction"), few([(2, "down"), (0, "up")], 1))
 def test_resume_in_the_middle_of_a_chain_gives_the_same_file(command, ranks, direction):
     command.write("c.yaml", CHAINS)

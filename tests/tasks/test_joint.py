@@ -81,6 +81,7 @@ def run_halted(command, name, items, ranks, how):
     return process.returncode, out
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("items", "ranks", "how"),
     [
@@ -119,6 +120,7 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, 
     assert "nothing to do" in whole("run", "c.yaml", "-o", name).stdout
 
 
+@pytest.mark.long
 def test_two_ranks_share_the_halves_of_one_curve(whole):
     """Each waits within its first half until the other is within one."""
     patch = f"""
@@ -144,6 +146,7 @@ DiagramCurves.solve = solve_beside_another
     assert same(content(whole.directory / "shared.h5"), content(whole.directory / "whole.h5"))
 
 
+@pytest.mark.long
 def test_curve_whose_solver_raises_is_none_and_the_diagram_is_finished(whole):
     patch = """
 from rodsweep.tasks.diagram.curves import DiagramCurves

@@ -177,6 +177,7 @@ def test_an_arm_without_flutter_is_a_point_with_a_status():
         grid_of_arms(section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(np.inf))
 
 
+@pytest.mark.long
 def test_shards_ranks_and_an_extension_give_the_same_file(command):
     command.write("a.yaml", OVER_LOADS)
     command.write("less.yaml", OVER_LOADS.replace("[likeliest, most]", "likeliest"))

@@ -27,6 +27,7 @@ def test_report_on_segments_alike_is_that_on_the_uniform_arm():
     assert str(same) == str(rs.Arm(**ARM, pressure="3 kPa").report())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("segments", [["10 cm: radius 5 mm"], ["4 cm: radius 5 mm", "6 cm: radius 5 mm"]])
 def test_segments_alike_beyond_the_limit_of_inertia_get_the_remedies_of_the_uniform_arm(segments):
     fluid = {"young": "100 kPa", "viscosity": "1 mPa s"}
@@ -123,6 +124,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
 def test_cycles_of_an_arm_are_those_of_its_rod(shape):
     """In SI units by the arm, and without dimension by the rod that it is."""
@@ -142,6 +144,7 @@ TASKS_OF_HOPF_POINTS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", TASKS_OF_HOPF_POINTS)
 @pytest.mark.parametrize("tips", ["3 mm", ["3 mm", "4 mm"]])
 def test_every_task_has_the_hopf_points_of_the_cone(task, tips):

@@ -65,6 +65,7 @@ def slopes(curve):
     return np.gradient(np.log(y)) / np.gradient(np.log(at))
 
 
+@pytest.mark.long
 def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilization():
     found = solved(FIG_2C)
     assert (found.status, found.message) == (BranchStatus.ok, "")
@@ -106,6 +107,7 @@ def test_a_fold_needs_no_compilation_beyond_that_of_the_installation(monkeypatch
     assert set(called) == {compiled}
 
 
+@pytest.mark.long
 def test_forward_and_backward_give_the_same_cycle():
     """At F = 100 from the first Hopf point, and from the other one through the fold."""
     forward = solved(FIG_2C, 0.0, 100.0, 1e-9).curves[0]
@@ -121,6 +123,7 @@ def test_forward_and_backward_give_the_same_cycle():
     assert one.multiplier == pytest.approx(other.multiplier, abs=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rod", [pytest.param(FIG_2C, marks=survey_only), SHORT])
 def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
     rough, fine = (only(solved(rod, 0.0, 200.0, a).curves[0], SpecialKind.fold) for a in (1e-5, 1e-8))
@@ -129,6 +132,7 @@ def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
     assert rough.period == pytest.approx(fine.period, rel=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("along", "rod", "ends"),
     [("F", FIG_2C, (0.0, 200.0)), ("k1", Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4), (100.0, 400.0))],
@@ -160,6 +164,7 @@ def test_branch_without_a_fold():
     assert {point.unstable_count for point in curve.points} == {0}
 
 
+@pytest.mark.long
 def test_branch_that_leaves_the_model_ends_where_h1_is_0():
     found = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0)
     (curve,) = found.curves
@@ -296,6 +301,7 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     assert 0.2 < np.interp(0.5 * len(done), work, shares) < 0.8
 
 
+@pytest.mark.long
 def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
     """A prediction over the whole step between the cycles beside it has F > k1."""
     rod = Rod(F=0.0, k1=229.46018, k2=1e4, gamma3=1e-4, gamma1=0.5)

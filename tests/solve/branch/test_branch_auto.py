@@ -83,6 +83,7 @@ def branch_of_this(rod, kind, F):
         here = solve_on_sufficient_mesh(there, ACCURACY) if measurement_due(there) else there
 
 
+@pytest.mark.long
 def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):
     rod = Rod(F=85.5, k1=150.0, k2=1e4, gamma3=1e-4)
     lines, multipliers = branch_of_auto(auto, rod, (14, 15, 0.05, 16), tmp_path)

@@ -74,6 +74,7 @@ def kinds(curve):
     return [point.kind.name for point in curve.special_points]
 
 
+@pytest.mark.long
 def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(symmetric, asymmetric):
     assert kinds(symmetric) == ["hopf", "symmetry_breaking", "end"]
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]

@@ -96,6 +96,7 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
     ]
 
 
+@pytest.mark.long
 def test_cycles_whose_multipliers_are_lost_to_rounding_but_for_their_size_are_unstable():
     """From the sixth Hopf point of a rod, at F = 98.698, with multipliers of 1e13 to 1e16."""
     rod = Rod(F=0.0, k1=1844.51, k2=7.75717, gamma3=0.3, gamma1=0.602896)
@@ -245,6 +246,7 @@ def test_check_says_that_cycles_are_nonlinear(command):
     assert "gravity, inertia no" in told
 
 
+@pytest.mark.long
 def test_cycles_of_a_diagram_are_as_accurate_as_asked_for():
     """At the last force of a row its branch ends on a cycle that `limit_cycle` solves more accurately."""
     rows, beside = [1e3, 1e4], {"k2": 1e2, "gamma3": 1e-2}

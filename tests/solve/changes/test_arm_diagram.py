@@ -57,6 +57,7 @@ def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
         assert found * np.sign(found @ exact) == pytest.approx(exact, abs=3e-10)
 
 
+@pytest.mark.long
 def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     axes = PlaneAxis("F", 20.0, 500.0), PlaneAxis("k1", 350.0, 550.0)
     (fold,) = traced(SWELLING, ChangeKind.hopf, axes).folds
@@ -121,6 +122,7 @@ def cones():
     )
 
 
+@pytest.mark.long
 def test_the_criticality_of_a_diagram_of_cones_is_that_of_each_cone(cones):
     for taper in (0.8, 0.9):
         of_hopf = np.isfinite(cones.curve_criticality.values)
@@ -137,6 +139,7 @@ def test_cones_of_a_diagram_beat_where_they_flutter(cones):
     assert (cones.stable_states.values == np.where(flutter, 2, 1)).all()
 
 
+@pytest.mark.long
 def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
     plane_axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
     fold = 75.3972626336484526, 147.921519683199662, 770.860809443855688
@@ -157,6 +160,7 @@ def test_a_plane_that_is_crushed_everywhere_is_refused():
         rs.sweep("phase_diagram", F=[30.0, 60.0], k1=[50.0, 100.0], taper=0.5, **ROD)
 
 
+@pytest.mark.long
 def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
     text = "task: phase_diagram\nparameters: {F: {start: 0, stop: 450, num: 4}, k1: [360, 400], "
     command.write(

@@ -162,6 +162,7 @@ CYCLES = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("law", "taper", "values"),
     [pytest.param(*case, marks=() if case[0] == 1 else survey_only) for case in CYCLES],

@@ -282,6 +282,7 @@ def test_a_mesh_is_not_refined_for_what_is_left_of_time():
     assert cycle.order * cycle.elements < 60
 
 
+@pytest.mark.long
 def test_within_rounding_of_the_hopf_point_no_cycle_is_claimed():
     cycle = solve_cycle(Rod(F=27.42719413, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), REQUEST)
     assert cycle.status == CycleStatus.not_settled

@@ -46,6 +46,7 @@ def pairs():
     ]
 
 
+@pytest.mark.long
 def test_cycles_are_those_of_collocation_within_their_errors():
     assert any(other.status == MarchedStatus.cycle for _, other in pairs())
     for one, other in pairs():

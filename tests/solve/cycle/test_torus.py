@@ -29,6 +29,7 @@ def rod(F, most_periods):
     return solve_cycle(rod_of(F, *SOFT), CycleRequest(1e-6, 0.1, 3, 16, 4, 5, most_periods))
 
 
+@pytest.mark.long
 def test_a_torus_is_told_with_its_second_frequency_and_the_cycle_that_it_surrounds():
     c = rod(207.0, 400)
     assert c.status == CycleStatus.torus

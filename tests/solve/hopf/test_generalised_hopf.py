@@ -171,6 +171,7 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     assert again.points[0].after in (point.after, point.after + 1)
 
 
+@pytest.mark.long
 def test_a_diagram_tells_shows_and_draws_it(command):
     k1, F = stated("generalised_hopf")[:2]
     axes = "parameters.F.num=18", "parameters.k1.num=6"
@@ -195,6 +196,7 @@ def test_a_diagram_tells_shows_and_draws_it(command):
     assert before[-1].tolist() == beyond[0].tolist()
 
 
+@pytest.mark.long
 def test_it_does_not_depend_on_ranks_or_interruptions_nor_other_variables_on_it(command):
     command.write("c.yaml", DIAGRAM)
     command.write("plain.yaml", DIAGRAM.replace("criticality: true", "curves: true"))
@@ -254,6 +256,7 @@ def over_shear():
     return axes, rs.sweep("phase_diagram", **axes, k2=1e4, **along)
 
 
+@pytest.mark.long
 def test_curve_over_a_third_parameter_has_the_points_of_other_diagrams(over_shear):
     axes, along = over_shear
     k2 = along.bautin_along_k2.values
@@ -266,6 +269,7 @@ def test_curve_over_a_third_parameter_has_the_points_of_other_diagrams(over_shea
             assert found == pytest.approx(other[f"bautin_{name}"].values[0], rel=1e-9)
 
 
+@pytest.mark.long
 def test_curve_over_the_taper_begins_at_the_uniform_rod_and_lies_where_cones_change_side():
     axes = {"F": [60, 85, 110], "k1": [142, 148, 154], "k2": 1e4, "gamma3": 1e-4, "criticality": True}
     along = rs.sweep("phase_diagram", **axes, bautin_along={"taper": [0.9, 1.0]})
@@ -375,6 +379,7 @@ def test_a_third_parameter_that_cannot_be_is_refused(tmp_path, options, sentence
         make_job(path, ())
 
 
+@pytest.mark.long
 def test_curves_over_a_third_parameter_are_shown_drawn_and_the_same_on_two_ranks(command):
     command.write(
         "c.yaml",

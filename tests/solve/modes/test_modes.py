@@ -449,6 +449,7 @@ def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
     assert shears[0] / shears[1] == pytest.approx(10, rel=0.02)
 
 
+@pytest.mark.long
 @pytest.mark.kernel
 @pytest.mark.parametrize(
     "parameters",
@@ -652,6 +653,7 @@ def mode_part(generator, t):
 EARLY = [(10.5, 1e4, 1e4, 1e-4), (11.0, 1e4, 1e8, 1e-8), (9.9, 1e4, 1e2, 1e-2)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("parameters", few(EARLY, 1))
 def test_early_growth_is_that_of_the_exact_propagator(parameters):
     """Abscissae of 2 to 4, peaks at 1e-6 to 1e-4 of S - 1 from 1e-7 to 1e-4: 26 exact modes."""
@@ -667,6 +669,7 @@ def test_early_growth_is_that_of_the_exact_propagator(parameters):
     assert abs(result.growth.transient_growth - scan[1.0]) < 1e-4 * (scan[1.0] - 1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("F", [9.8697, 9.87, 9.88, 9.9, 9.95, 10.0, 10.2, 10.5, 11.0])
 def test_growth_is_as_accurate_as_it_says_where_the_abscissa_is_small(F):
     """Abscissae from 1e-4 to 4; S - 1 below the accuracy is 0 at 0 and covered by the error estimate."""

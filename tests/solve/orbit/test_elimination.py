@@ -111,6 +111,7 @@ def balances(orbit, name, change):
     return np.append(out, -phase_residual(orbit.start, p.rod, p.node_matrices))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NONLINEAR_PARAMETERS)
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):

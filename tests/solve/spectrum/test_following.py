@@ -54,6 +54,7 @@ def test_followed_spectra_are_those_of_single_points(name):
     assert comparison.unstable >= (12 if name == "twelve unstable" else 0)
 
 
+@pytest.mark.long
 def test_random_lines_give_the_spectra_of_single_points():
     rng, comparison = np.random.default_rng(7), Comparison()
     for _ in range(25):
@@ -90,6 +91,7 @@ def wrong_proofs(proves, strips) -> tuple[int, int]:
     return len(proved), sum(a != b for a, b in proved)
 
 
+@pytest.mark.long
 def test_what_crosses_a_moving_line_is_never_overlooked():
     """Where the counts at both ends differ something crosses, in either direction of the path."""
     strips = list(random_strips(100))

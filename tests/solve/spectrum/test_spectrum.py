@@ -287,6 +287,7 @@ def eigenfunction(w, rod, points):
         )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "rod",
     [
