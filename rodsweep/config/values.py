@@ -221,7 +221,9 @@ def _axis_from_range(value: dict) -> Axis:
         raise ValueError(f"num = {short_repr(num)} is not a whole number from 1 to {MOST_VALUES}")
     if abs(start) == inf or abs(stop) == inf:
         raise ValueError("start and stop of a range must be finite; put inf in a list")
-    if (num > 1 and not start < stop) or (num == 1 and start != stop):
+    if num == 1 and start != stop:
+        raise ValueError(f"num = 1 makes one value, but start = {start:g} and stop = {stop:g} differ")
+    if num > 1 and not start < stop:
         raise ValueError(f"start = {start:g} and stop = {stop:g} do not make {num} increasing values")
     if num > 1 and (stop - start) / num <= 4e-16 * max(abs(start), abs(stop)) or stop - start == inf:
         raise ValueError(

@@ -31,6 +31,8 @@ MULTIPLE_OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+
 """Pattern of a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
 PERCENT_FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a distance from the flutter threshold, "20 % above flutter"."""
+LOAD_UNITS = ("Pa", "N")
+"""SI units of the loads that can be given relative to flutter."""
 KINEMATIC_VISCOSITY = "is a kinematic viscosity; multiply it by the density of the fluid"
 """End of the message on a viscosity in units of length^2/time."""
 
@@ -112,6 +114,11 @@ def conversion_factor(subject: str, written: str, unit: str, allowed: str) -> fl
     if len(written) > MAX_UNIT_LENGTH or UNIT_TOKEN.sub("", written) or POWER_OF_POWER.search(written):
         raise InputError(
             f"{subject} has the unit '{written[:MAX_UNIT_LENGTH]}', which is not understood; write {allowed}"
+        )
+    if unit in LOAD_UNITS and written.endswith("flutter"):
+        raise InputError(
+            f"{subject} is not a load relative to flutter; write it like '1.2 of flutter' or "
+            "'20 % below flutter', with a number of 0 or above"
         )
     units = unit_registry()
     from pint.errors import PintError

@@ -71,6 +71,14 @@ class FlutterForces:
         found = self.first(kind)
         return None if found is None else found.at
 
+    @property
+    def second_flutter(self) -> float | None:
+        """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if it does
+        not."""
+        back = self.force(ChangeKind.restabilization)
+        later = (c.at for c in self.thresholds.crossings if c.kind == ChangeKind.hopf)
+        return None if back is None else next((F for F in later if back < F), None)
+
     def unstable_at(self, F: float) -> bool:
         """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
         stability at this end is returned.
@@ -127,6 +135,12 @@ class FlutterRange:
         drag has such a threshold.
         """
         return span_of([f.force(kind) for f in self.forces])
+
+    @property
+    def second_flutter(self) -> Span | None:
+        """Range, over the drags, of the force at which the arm flutters again, in k3/L^2; None if it does not
+        for any drag."""
+        return span_of([f.second_flutter for f in self.forces])
 
     def frequency(self, kind: ChangeKind) -> Span | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no

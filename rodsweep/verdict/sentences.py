@@ -80,10 +80,23 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
         some = "" if back.for_every_drag else ", for part of the range of drag"
-        says.append(f"The straight arm is stable again above {load.of(back)}{some}.")
+        says.append(
+            f"The straight arm is stable again above {load.of(back)}{some}{_second_flutter(found, load)}."
+        )
     else:
         says.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
     return says + _oscillation_sentences(found, load)
+
+
+def _second_flutter(found: FlutterRange, load: Load) -> str:
+    """Clause on the load at which an arm that is stable again flutters a second time; empty if it does not
+    flutter again.
+    """
+    second = found.second_flutter
+    if second is None:
+        return ""
+    some = "" if second.for_every_drag else ", for part of the range of drag"
+    return f", and flutters again above {load.of(second)}{some}"
 
 
 def _flutter_load_text(plane: PlaneOfMotion, flutter: Span) -> str:

@@ -82,6 +82,7 @@ REFUSED = {
     "F: [2, 2]": ["F", "sorted"],
     "F: {start: 3, stop: 2, num: 4}": ["F", "start", "stop"],
     "F: {start: 3, stop: 4}": ["F", "num"],
+    "F: {start: 3, stop: 4, num: 1}": ["F", "num = 1 makes one value, but start = 3 and stop = 4 differ"],
     "F: {start: 3, stop: 4, num: 0}": ["F", "num", "0"],
     "F: {start: 3, stop: 4, num: 2.5}": ["F", "num", "2.5"],
     "F: {start: 3, stop: 4, num: 3, step: 1}": ["F", "step"],

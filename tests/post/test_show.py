@@ -8,6 +8,7 @@ import pytest
 from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
+import rodsweep as rs
 from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
 from rodsweep.post.summary.ranges import number_with_error
@@ -178,6 +179,28 @@ def test_rows_tell_first_changes_apart_from_later_ones_and_what_was_before_them(
     told = command("show", "c.h5").stdout
     assert "at F = 30, where the rows begin, of 2 rows: oscillatory on 2" in told
     assert "onset: on 1 of 2 rows, F = 137.568, k1 = 140\n" in told
+
+
+def test_a_window_of_flutter_between_two_grid_points_is_flutter_of_its_row(command):
+    config = "F: [0, 60, 100], k1: [100, 150, 300], k2: 1.0e4, gamma3: 1.0e-4"
+    text = shown(command, f"task: phase_diagram\nparameters: {{{config}}}\n")
+    assert "restabilization: on 1 of 3 rows, F = 85.5693, k1 = 150" in text
+    assert "flutter on the rows k1 = 150 to 300; no flutter on the rows k1 = 100\n" in text
+
+
+TWO_WINDOWS = {"k1": 179.13147682127965, "k2": 1731.448934345779, "gamma3": 0.0003002436554066619}
+
+
+def test_a_second_window_of_flutter_is_in_the_answer(command):
+    rod = ", ".join(f"{name}: {value!r}" for name, value in TWO_WINDOWS.items())
+    text = shown(command, f"task: thresholds\nparameters: {{{rod}}}\n")
+    assert "beats from F = 49.785, stable again from F = 161.376, beats again from F = 174; " in text
+    answer = " ".join(str(rs.Rod(**TWO_WINDOWS).thresholds()).split())
+    again = "stable again from F = 161.376 k3/L^2, flutters again from F = 174 k3/L^2 "
+    assert again in answer
+    one = " ".join(str(rs.Rod(**TWO_WINDOWS | {"k1": 170.0}).thresholds(F_max=165)).split())
+    assert "again from" in one
+    assert "flutters again" not in one
 
 
 def test_thresholds_tell_where_they_rise_and_fall(command):

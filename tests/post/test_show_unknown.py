@@ -52,6 +52,15 @@ def test_a_cycle_of_time_integration_has_no_verdict_of_multipliers(command):
     assert "below 1" not in lines
 
 
+def test_a_cycle_of_a_rod_whose_leading_mode_is_real_has_no_ratio_of_frequencies(tmp_path):
+    """As of soft segments of rubber far beyond flutter, whose two leading eigenvalues are real."""
+    view = view_of_sweep(tmp_path, "limit_cycle", F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, accuracy=1e-3)
+    assert "times the frequency of the leading mode" in told(view)
+    real = told(changed(view, linear_frequency=np.zeros_like(view.variables["linear_frequency"])))
+    assert "rad/tau2; the leading mode does not oscillate" in real
+    assert "times the frequency" not in real
+
+
 BRANCHES = {"k1": 200.0, "gamma3": 1e-4, "stop": 190.0}
 """The rod of k2 = 1e4 has stable cycles beside a stable straight rod from F = 155.6 on."""
 

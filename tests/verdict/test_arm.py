@@ -164,6 +164,7 @@ def test_a_load_relative_to_flutter_is_read_as_people_write_it(given, share):
             {"viscosity": "30 cSt"},
             ".* is a kinematic viscosity; multiply it by",
         ),
+        ({"pressure": "-1.2 of flutter"}, "pressure = '-1.2 of flutter' is not a load .* of 0 or above"),
         ({"pressure": "100 % below flutter"}, "pressure = '100 % below flutter' has the unit"),
         ({"length": ""}, "length = '' is not a number with a unit"),
         ({"length": "1e400 m"}, "length = '1e400 m' is not a finite number"),
@@ -316,6 +317,16 @@ def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
     other = [(25.0, ChangeKind.hopf, 2), (45.0, ChangeKind.restabilization, 0)] if second else []
     told = " ".join(verdict(arm(viscosity=1e3), window, found(2.0, *other)))
     assert all(words in told for words in sentences)
+
+
+def test_a_second_window_of_flutter_is_told():
+    window = ((20.0, ChangeKind.hopf, 2), (40.0, ChangeKind.restabilization, 0))
+    twice = found(1.0, *window, (60.0, ChangeKind.hopf, 2), (70.0, ChangeKind.hopf, 4))
+    told = " ".join(verdict(arm(viscosity=1e3), twice, twice))
+    assert "is stable again above 2.5 kPa, and flutters again above 3.75 kPa." in told
+    told = " ".join(verdict(arm(viscosity=1e3), found(1.0, *window), twice))
+    assert "flutters again above 3.75 kPa, for part of the range of drag." in told
+    assert "again above 3.75" not in " ".join(verdict(arm(viscosity=1e3), found(1.0, *window)))
 
 
 def test_thresholds_without_proof_are_told_with_the_doubt():

@@ -54,7 +54,10 @@ def build_of(arm: "ArmSection") -> Build:
 
     Raises ValueError if the arms of a grid of parameters have different profiles.
     """
-    alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
+    try:
+        alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
+    except ValueError as error:
+        raise ValueError(f"parameters.arm.{error}") from None
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
         return alike
     if arm.is_grid and len(set(builds_of(arm))) > 1:

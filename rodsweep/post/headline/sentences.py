@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...wording import counted
+from ..summary.thresholds import later_flutter_changes
 from .one_rod import OneRod
 
 
@@ -51,8 +52,19 @@ def threshold_sentence(rod: OneRod) -> str:
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
             parts.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
+    parts += _later_flutter(rod)
     none = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
     return (", ".join(parts) or none) + _early_end_clause(rod)
+
+
+def _later_flutter(rod: OneRod) -> list[str]:
+    """Clauses on the starts and ends of all windows of flutter after the first."""
+    verbs = {"hopf": "flutters again from", "restabilization": "stable again from"}
+    crossings = rod.lists["crossings"]
+    kinds = rod.words("crossings", "crossing_kind")
+    name = rod.preferred_name(crossings, "crossing_F")
+    load = name.removeprefix("crossing_")
+    return [f"{verbs[kinds[i]]} {load} = {crossings.short(name, i)}" for i in later_flutter_changes(kinds)]
 
 
 def hopf_sentence(rod: OneRod) -> str:

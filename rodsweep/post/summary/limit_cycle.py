@@ -162,8 +162,6 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
     h1 of the cycles. v: variables of the file. beats: mask of the points with a cycle.
     """
-    ratio = v["frequency"][beats] / v["linear_frequency"][beats]
-    times = span_text(ratio, ratio * v["period_error"][beats])
     tips = (
         f"{what} {known_range_text(v, f'tip_{name}', beats)} {unit}"
         for what, name, unit in (
@@ -171,7 +169,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         )
     )  # fmt: skip
     frequency = known_range_text(v, "frequency", beats)
-    lines = [f"frequency {frequency} rad/tau2, {times} times the frequency of the leading mode"]
+    lines = [f"frequency {frequency} rad/tau2{_relative_frequency_clause(v, beats)}"]
     if "period_tau1" in v:
         lines.append(f"period: {known_range_text(v, 'period_tau1', beats)} tau1")
     return [
@@ -181,6 +179,22 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         f"multiplier: {known_range_text(v, 'multiplier', beats)}; periods integrated: "
         f"{span_text(v['periods'][beats])}; least stretch: {known_range_text(v, 'least_stretch', beats)}",
     ]
+
+
+def _relative_frequency_clause(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
+    """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
+    no frequency of a leading mode is known. v: variables of the file. beats: mask of the points with a cycle.
+    """
+    oscillates = beats & (np.abs(v["linear_frequency"]) > 0)
+    monotone = beats & (v["linear_frequency"] == 0)
+    clause = ""
+    if oscillates.any():
+        ratio = v["frequency"][oscillates] / v["linear_frequency"][oscillates]
+        times = span_text(ratio, ratio * v["period_error"][oscillates])
+        clause = f", {times} times the frequency of the leading mode"
+    if monotone.any():
+        clause += f"; the leading mode does not oscillate{_at_count(monotone, beats)}"
+    return clause
 
 
 def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:

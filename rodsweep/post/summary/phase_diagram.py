@@ -152,8 +152,9 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
         on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
         lines.append(f"undecided: {on_rows}, {row} = {span_text(of_row[rows])}")
-    flutters = (v["class"] == flutter).any(axis=-1)
-    never = ~flutters & (v["class"] != unknown_class).all(axis=-1)
+    # A window of flutter may lie between two grid points: the located crossings show it.
+    flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
+    never = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
         with_it, without = (span_text(of_row[done & mask]) for mask in (flutters, never))
         lines.append(f"flutter on the rows {row} = {with_it}; no flutter on the rows {row} = {without}")

@@ -1,5 +1,7 @@
 """Thresholds of the straight rod in `rodsweep show`: positions, completeness, and cost of the search."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...model.parameters import PARAMETERS
@@ -28,6 +30,23 @@ FIRST_CROSSING_WORDS = {
     "restabilization": "stable again from",
 }
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
+
+
+LATER_CROSSING_WORDS = {"hopf": "beats again from", "restabilization": "stable again from"}
+"""Phrase before the force of a later window of flutter: of its start and of its end."""
+
+
+def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
+    """Places, in a list of crossings, of the starts and ends of all windows of flutter after the first
+    window. kinds: kinds of the crossings, in the order of the force.
+    """
+    places = []
+    expected = "restabilization"
+    for place, kind in enumerate(kinds):
+        if kind == expected:
+            places.append(place)
+            expected = "hopf" if expected == "restabilization" else "restabilization"
+    return places[1:]  # the first is the end of the first window
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -93,7 +112,9 @@ def crossing_lines(view: View) -> list[str]:
     end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
-        words = ", ".join(f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F))
+        changes = [f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F)]
+        later = ((LATER_CROSSING_WORDS[kinds[i]], v["crossing_F"][i]) for i in later_flutter_changes(kinds))
+        words = ", ".join([*changes, *(f"{word} F = {F:.6g}" for word, F in later)])
         count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
         return ["; ".join(filter(None, (words, count))), *meanings]
