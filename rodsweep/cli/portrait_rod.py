@@ -39,10 +39,16 @@ def rod_of_options(
     from .arm_report import as_options
 
     own = _options_that_are_set(parameters)
+    for name, value in own.items():
+        allowed = PARAMETERS[name].allowed
+        if not allowed.contains(value):
+            raise InputError(f"--{name} = {value:g} is not {allowed.description}")
     words = _options_that_are_set(material)
     of_arm = _options_that_are_set(quantities)
     if of_arm:
         of_arm |= {name: words.pop(name) for name in ("law", "section") if name in words}
+        if "viscosity" not in of_arm:
+            raise InputError("--viscosity is missing; an arm needs the viscosity of its fluid")
         try:
             SlenderArm(**of_arm)
         except InputError as error:

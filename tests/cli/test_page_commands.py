@@ -74,8 +74,10 @@ def test_a_portrait_is_drawn_and_said(command):
         ),
         (
             ("--k1", "-3", "--k2", "1", "--gamma3", "1"),
-            "parameters.k1 = -3 is not allowed; it must be a number above 0, or inf for an inextensible rod",
+            "--k1 = -3 is not a number above 0, or inf for an inextensible rod",
         ),
+        ((*ROD, "--gamma1", "-1"), "--gamma1 = -1 is not a finite number above 0"),
+        ((*ROD, "--poisson", "0.3"), "--viscosity is missing; an arm needs the viscosity of its fluid"),
         (("--k1", "x", "--k2", "1", "--gamma3", "1"), "Invalid value for '--k1': 'x' is not a valid float."),
     ],
 )

@@ -55,7 +55,10 @@ def branch_sentences(view, page, keywords, fine):
     else:
         found += _grid(view, page, fine, own, true)
     found += ranges(
-        page, "^followed in F from RANGE to RANGE;", [keywords.get("start", 0.0)], [keywords["stop"]]
+        page,
+        "^followed in F from RANGE to RANGE(?:, where the force does not crush the rod)?;",
+        [keywords.get("start", 0.0)],
+        [keywords["stop"]],
     )
     proved = (view.variables["certified"].sum(), len(rods))
     return found + counts(page, r"list of Hopf points is proved complete at NUMBER of NUMBER rod", *proved)

@@ -442,6 +442,9 @@ def test_all_stored_roots_are_drawn_where_asked(command, drawn):
     command.write("c.yaml", LINE + "spectrum: {modes: 5}\n")
     command.solved("c.yaml")
     view = read_view(command.directory / "c.h5")
+    modes = replace(view, attributes={**view.attributes, "task": "modes"})
+    with pytest.raises(InputError, match="--roots is for results of spectrum, and this is a result of modes"):
+        draw(modes, command.directory / "f.png", roots="all")
     assert "all stored roots" in draw(view, command.directory / "f.png", roots="all")
     real = next(line for line in drawn[0].axes[0].lines if line.get_marker() == "o")
     assert sorted(real.get_ydata()) == sorted(view.variables["growth_rate"].ravel())

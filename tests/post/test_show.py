@@ -266,3 +266,16 @@ def test_all_statuses_are_listed_on_request(command):
 )
 def test_a_number_has_the_digits_that_its_error_leaves(value, error, text):
     assert number_with_error(value, error) == text
+
+
+@pytest.mark.parametrize(
+    ("branch", "told"),
+    [
+        ("start: 300, stop: 400", "the force crushes the rod everywhere in the range of F"),
+        ("stop: 70", "from 0 to 70, where the force does not crush the rod; the list"),
+    ],
+)
+def test_a_branch_is_told_to_be_followed_where_the_rod_is_not_crushed(command, branch, told):
+    rod = "{k1: 60, k2: 1.0e3, gamma3: 1.0e-3}"
+    text = shown(command, f"task: branch\nparameters: {rod}\nbranch: {{{branch}}}\n")
+    assert told in text

@@ -145,6 +145,18 @@ def test_the_motion_is_that_of_the_task(task, more):
         assert point.neglected_excess.item() == pytest.approx(expected, rel=1e-12)
 
 
+def test_an_arm_that_becomes_straight_is_judged_by_the_mode_that_decays():
+    arm = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1 Pa s"}
+    loaded = rs.Arm(**arm, pressure="0.9 of flutter")
+    cycle, modes = loaded.cycle(accuracy=1e-3), loaded.modes()
+    assert cycle.status == "straight"
+    assert cycle.neglected_effect == modes.neglected_effect == "inertia_of_the_arm"
+    assert cycle.neglected_excess == pytest.approx(modes.neglected_excess, rel=1e-6)
+    assert cycle.model_applies == modes.model_applies == "does_not_apply"
+    record = {"frequency": np.nan, "tip_y_max": np.nan, "linear_frequency": 2.0, "status": 2}
+    assert np.isnan(MOTION_OF_TASK["limit_cycle"](record).frequency)  # a motion that has not settled
+
+
 def test_the_leading_mode_that_oscillates_is_not_always_the_first():
     frequency = np.array([[0, 3, -3], [2, -2, 0], [0, 0, 0]])
     motion = MOTION_OF_TASK["spectrum"]({"frequency": frequency}).frequency

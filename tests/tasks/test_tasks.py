@@ -12,6 +12,7 @@ from contents import content
 from faults import small
 from surveyed import few
 
+import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
 from rodsweep.post.summary.diagram_curves import cycle_curve_lines
@@ -450,3 +451,20 @@ def test_a_taper_of_one_that_is_written_changes_nothing(command, task):
     for name, values in plain.items():
         found = with_taper[name].reshape(values.shape)
         assert np.array_equal(found, values, equal_nan=values.dtype.kind == "f"), name
+
+
+@pytest.mark.parametrize(
+    ("F", "rod"),
+    [
+        ([-10, 10], {"k1": 200, "k2": 10, "gamma3": 1}),
+        ([-20, 38.28], {"k1": 7856.848286153369, "k2": 2.1820335055771563, "gamma3": 2.6767801241727e-05}),
+        ([-100, 17.77, 57.03], {"k1": 60.02633652773619, "k2": 98.98712508871238, "gamma3": 3.8e-4}),
+        ([-100, 94.04], {"k1": 295.9739015462506, "k2": 3485.7553076279214, "gamma3": 4.676964350129872}),
+    ],
+)
+def test_an_onset_between_forces_far_from_each_other_is_located(F, rod):
+    """Newton's method alone leaves the interval, or finds eigenvalues that merge behind the leading one."""
+    data = rs.sweep("spectrum", F=F, modes=4, progress=False, **rod)
+    kinds = [CROSSING_KINDS[kind] for kind in data.change_kind.values]
+    (found,) = data.change_F.values[[kind == "onset" for kind in kinds]]
+    assert found == pytest.approx(rs.Rod(**rod).thresholds(F_max=50).F_onset, rel=1e-12)

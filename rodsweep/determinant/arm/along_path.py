@@ -88,7 +88,8 @@ class ArmAlongPath:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
         reach: expected distance of p from the guess. Returns `FAILED_ZERO` if p moves by more than twice
-        `reach`, if the sign of x changes, if the Jacobian is singular, or without convergence.
+        `reach` or to no valid arm, if the sign of x changes, if the Jacobian is singular, or without
+        convergence.
         """
         start = x
         first = p
@@ -120,7 +121,7 @@ class ArmAlongPath:
             ) / abs(cross)
             x += in_x
             p += in_p
-            if not abs(p - first) <= 2 * reach or not x * start > 0:
+            if not abs(p - first) <= 2 * reach or not x * start > 0 or not self._is_valid_at(p):
                 return FAILED_ZERO
             small = abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
             if small and (abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2):

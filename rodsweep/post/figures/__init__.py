@@ -77,7 +77,12 @@ def _draw_and_describe(request: FigureRequest) -> str:
     """
     if can_draw_arm_map(request):
         return draw_arm_map(request)
-    return FIGURES[request.views[0].task](replace(request, views=[view.as_list for view in request.views]))
+    first = request.views[0]
+    if request.roots and FIGURES[first.task] != draw_spectrum:
+        raise InputError(
+            f"{first.path}: --roots is for results of spectrum, and this is a result of {first.task}"
+        )
+    return FIGURES[first.task](replace(request, views=[view.as_list for view in request.views]))
 
 
 def draw(

@@ -11,17 +11,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
-from ...model.parameters import CRUSHING_PARAMETERS
 from ...results.layouts.variables import MISSING_STATUS
 from ...wording import counted, has_or_have, some_of
 from ..branch_curves import (
     ParameterRange,
     RodBranches,
     StoredBranch,
-    branch_ends,
     followed_parameter,
     stability_runs,
 )
+from ..uncrushed_range import uncrushed_range
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -149,15 +148,10 @@ def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches.
     """
-    low, high = branch_ends(rod.view)
+    low, high = uncrushed_range(rod.view, rod.rod)
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
-    force, stiffness = CRUSHING_PARAMETERS
-    columns = {name: float(values[rod.rod]) for name, values in rod.view.point_columns.items()}
-    along = followed_parameter(rod.view)
-    if along == force:
-        return low, min(high, columns[stiffness])
-    return (max(low, columns[force]) if along == stiffness else low), high
+    return low, high
 
 
 def _draw_pieces(

@@ -8,6 +8,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from ...wording import counted, is_or_are, some_of
 from ..branch_curves import ParameterRange, RodBranches, StoredBranch, branch_ends, followed_parameter
+from ..uncrushed_range import uncrushed_range
 from .errors import known_range_text
 from .ranges import number_with_error, ranges_text, rounded, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
@@ -63,6 +64,10 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known"
     elif not rod.curves:
+        low, high = uncrushed_range(rod.view, rod.rod)
+        if not low < high:
+            yield f"the force crushes the rod everywhere in the range of {along}"
+            return
         yield f"no Hopf point in the range of {along}, so that no branch begins there"
     for number, curve in enumerate(rod.curves, 1):
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
@@ -202,10 +207,12 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points. done:
     mask of the computed points.
     """
-    start, stop = branch_ends(view)
     along = followed_parameter(view)
+    start, stop = branch_ends(view)
+    ranges = np.array([uncrushed_range(view, int(rod)) for rod in np.flatnonzero(done.ravel())])
+    crushed = "" if (ranges == (start, stop)).all() else ", where the force does not crush the rod"
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
-        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {proof_clause(view)} at "
-        f"{proved}; cycles that lie on no branch from a Hopf point are not found"
+        f"followed in {along} from {start:g} to {stop:g}{crushed}; the list of Hopf points "
+        f"{proof_clause(view)} at {proved}; cycles that lie on no branch from a Hopf point are not found"
     )

@@ -2,9 +2,9 @@
 neglects.
 
 The effects depend on the rate of the motion. Depending on the task, the rate is the frequency of the first
-Hopf point, of the leading oscillating mode or of the cycle. For an arm at rest only compression and weight
-are tested. If the solver may have missed a motion, the validity is not known, unless compression or weight
-exceeds its limit.
+Hopf point, of the leading oscillating mode, of the cycle, or of the mode that decays to no cycle. If nothing
+oscillates, only compression and weight are tested. If the solver may have missed a motion, the validity is
+not known, unless compression or weight exceeds its limit.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -27,6 +27,7 @@ from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import CLASSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import STATUS
+from ...solve.cycle.status import CycleStatus
 from ...solve.status import PointStatus
 from ...sweep.points.points import Points
 
@@ -106,8 +107,10 @@ def _motion_at_flutter(record: Record) -> ArmMotion:
 
 
 def _motion_of_cycle(record: Record) -> ArmMotion:
-    """Motion on the limit cycle. If there is no cycle, the amplitude is 0 and the frequency NaN."""
+    """Motion on the limit cycle, or of the leading mode of an arm that becomes straight, with amplitude 0."""
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
+    decays = (record[STATUS.name] == int(CycleStatus.straight)) & (record["linear_frequency"] > 0)
+    frequency = np.where(decays, record["linear_frequency"], frequency)
     return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
@@ -186,9 +189,8 @@ class ArmValidity:
         points = excess.reshape(len(counted), *np.shape(index), -1)  # the last axis: all motions of a point
         largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)
         worst = np.argmax(largest, axis=0)
-        number = np.array([NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted])[
-            worst
-        ]
+        numbers = [NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted]
+        number = np.array(numbers)[worst]
         at_worst = np.max(largest, axis=0)
         applies = validity.reshape(*np.shape(index), -1).max(axis=-1)
         moves = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
@@ -206,10 +208,8 @@ class ArmValidity:
         """
         own = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
-        if F is None:
-            return np.asarray(np.nan)
-        if own is None:
-            return np.asarray(F)
+        if F is None or own is None:
+            return np.asarray(np.nan if F is None else F)
         own = own.reshape(own.shape + (1,) * (np.ndim(F) - own.ndim))
         return np.asarray(F) * (arm.k1 / own)
 

@@ -2,7 +2,8 @@
 
 The forces are computed from the stored eigenvalues after all points are solved, and stored in the file for
 `show` and figures. The computation of one force takes about 30 us: 1 % of the time of spectra followed along
-lines of 512 forces, and 3 to 5 % along lines of 50 forces.
+lines of 512 forces, and 3 to 5 % along lines of 50 forces. An onset between forces far from each other takes
+up to 2 ms.
 """
 
 from collections.abc import Iterator, Mapping
@@ -22,6 +23,9 @@ from ...sweep.points.points import Points, lines_over
 
 MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points whose eigenvalues are read at once; this limits memory for large files."""
+FAR_FORCES = 0.02
+"""Two neighbouring forces are far from each other if their difference exceeds this share of the range of all
+forces."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,17 +101,24 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     """Yields the thresholds on some lines of points, one line after another, as values of variables by
     name."""
     from ...determinant.stability_changes import onset_between, stability_change_between
+    from .onset import locate_onset
 
     F = lines.F.tolist()
     w = lines.eigenvalues
-    onsets = _pairs_by_line(_pairs_at_onset(w))
+    onsets = _pairs_by_line(_pairs_at_onset(lines.F, w))
     changes = _pairs_by_line(_sign_changes(w))
     for number in sorted(onsets.keys() | changes.keys()):
         fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
         here = w[number]
         rods = rod.coefficients, rod.direction("F")
-        tried = (onset_between(rods, (F[i], F[j]), here[i], here[j]) for i, j in onsets.get(number, ()))
+        far = FAR_FORCES * (F[-1] - F[0])
+        tried = (
+            locate_onset(rods, rod, (F[i], F[j]), here[i], here[j])
+            if F[j] - F[i] > far
+            else onset_between(rods, (F[i], F[j]), here[i], here[j])
+            for i, j in onsets.get(number, ())
+        )
         found = [next(filter(None, tried), None)]
         for i, j in changes.get(number, ()):
             counted = lines.unstable_counts[number, [i, j]]
@@ -137,16 +148,19 @@ def _sign_changes(w: Complex) -> NeighbourPairs:
     return np.stack([line, before, behind], axis=-1)[differ]
 
 
-def _pairs_at_onset(w: Complex) -> NeighbourPairs:
-    """Pairs of neighbouring points between which two leading real eigenvalues become a complex pair.
+def _pairs_at_onset(F: Array, w: Complex) -> NeighbourPairs:
+    """Pairs of neighbouring points between which two leading real eigenvalues can become a complex pair: the
+    leading eigenvalue is real at the first point and complex at the second.
 
-    w: eigenvalues, (lines, n, modes).
+    Between forces that are close to each other, the second eigenvalue at the first point is real too;
+    otherwise a complex pair overtakes a real eigenvalue. F: forces, (n,). w: eigenvalues, (lines, n, modes).
     """
     if w.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
-    real = (w[..., :2].imag == 0).all(axis=-1)
+    real = w[..., :2].imag == 0
     line, before, behind = _neighbouring_points(np.isfinite(w[..., :2].real).all(axis=-1))
-    begins = real[line, before] & (w[line, behind, 0].imag > 0)
+    far = F[behind] - F[before] > FAR_FORCES * np.ptp(F)
+    begins = real[line, before, 0] & (real[line, before, 1] | far) & (w[line, behind, 0].imag > 0)
     return np.stack([line, before, behind], axis=-1)[begins]
 
 

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from surveyed import RODS, survey_only
 
+import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
+from rodsweep.results.layouts.phase_diagram import CLASSES
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -135,3 +137,19 @@ def test_leaders_of_random_arms_are_those_of_spectra(seed):
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
+
+
+def test_newton_for_a_double_eigenvalue_ends_where_there_is_no_arm():
+    """Along the drag of a cone the method steps to a negative drag: no point of the row failed for that."""
+    data = rs.sweep(
+        "phase_diagram", F=40.0, k1=300.0, k2=100.0, gamma3=[0.01, 2.0], taper=[1.0, 2.0], progress=False
+    )
+    assert data.status.values.ravel().tolist() == [0, 0]
+    classes = data["class"].values.reshape(2, 2)
+    for i, taper in enumerate((1.0, 2.0)):
+        for j, gamma3 in enumerate((0.01, 2.0)):
+            rod = rs.Rod(F=40.0, k1=300.0, k2=100.0, gamma3=gamma3, taper=taper)
+            spectrum = rod.spectrum(modes=2)
+            word = dict(CLASSES)[classes[i, j]]
+            assert (spectrum.growth_rate[0] > 0) == (word == "flutter")
+            assert (spectrum.frequency[0] > 0) == (word in ("flutter", "oscillatory"))

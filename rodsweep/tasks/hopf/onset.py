@@ -1,0 +1,67 @@
+"""Onset of oscillation between two forces, far from each other, of a file of spectra.
+
+Newton's method for the double eigenvalue needs a good guess. Where it fails, or finds other eigenvalues than
+the leading ones, the leading eigenvalues at the middle force, on a mesh, halve the interval. Only NumPy is
+needed, so that files can be merged without PETSc.
+"""
+
+import numpy as np
+
+from ...arrays import Complex
+from ...determinant.stability_changes import CoefficientsOverForce, ForceChange, onset_between
+from ...discretization.elements.resolution import expected_wave_number, resolution_for
+from ...discretization.straight.dense_form import dense_form
+from ...discretization.straight.transverse_mesh import pencil_on
+from ...model.dispersion import most_amplified_wave
+from ...model.rod import Rod
+from ...solve.modes.propagator import shifted_inverse
+
+MAX_HALVINGS = 8
+"""Maximum number of halvings of the interval. Without an onset in the interval, because a complex pair
+overtakes the leading real eigenvalue, no number of halvings is sufficient."""
+LEADING_TOLERANCE = 0.01
+"""A double eigenvalue is the leading eigenvalue if its relative distance from the mean of the two leading
+eigenvalues on the mesh is at most this number."""
+MESH_ACCURACY = 1e-6
+"""Relative accuracy of eigenvalues on a mesh: sufficient to tell real eigenvalues from a complex pair."""
+
+
+def locate_onset(
+    rods: CoefficientsOverForce, rod: Rod, ends: tuple[float, float], before: Complex, after: Complex
+) -> ForceChange | None:
+    """The force between the forces `ends` at which the two leading real eigenvalues merge into a pair; None
+    if no such force is found.
+
+    rods: coefficients of `rod` at F = 0, and their derivative by F. before, after: leading eigenvalues at the
+    first and second force, (modes,); the leading eigenvalue is real at the first force and complex at the
+    second.
+    """
+    low, high = ends
+    for _ in range(1 + MAX_HALVINGS):
+        if not before[:2].imag.any():
+            change = onset_between(rods, (low, high), before, after)
+            if change is not None and _leads(rod, change):
+                return change
+        middle = (low + high) / 2
+        eigenvalues = leading_pair_on_mesh(rod.with_coordinate("F", middle))
+        if eigenvalues[0].imag:
+            high, after = middle, eigenvalues
+        else:
+            low, before = middle, eigenvalues
+    return None
+
+
+def _leads(rod: Rod, change: ForceChange) -> bool:
+    """Whether the double eigenvalue `change` is the leading eigenvalue of the rod at this force. Between two
+    forces far from each other, other eigenvalues can merge too."""
+    pair = leading_pair_on_mesh(rod.with_coordinate("F", change.F))
+    return bool(abs(pair.mean() - change.growth_rate) <= LEADING_TOLERANCE * abs(change.growth_rate))
+
+
+def leading_pair_on_mesh(rod: Rod) -> Complex:
+    """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of accuracy MESH_ACCURACY."""
+    wave_number = expected_wave_number(2, most_amplified_wave(rod)[1])
+    form = dense_form(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
+    inverses = np.linalg.eigvals(shifted_inverse(form.A, form.B, 0.0)).astype(complex)
+    w = 1 / inverses[inverses != 0]
+    return w[np.lexsort((-w.imag, -w.real))[:2]]
