@@ -15,7 +15,12 @@ from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
 from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
-from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
+from rodsweep.solve.branch.special.special_curves import (
+    CurveEndReason,
+    CurvePoint,
+    HalfCurve,
+    TracedHalfCurve,
+)
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
@@ -191,7 +196,7 @@ def half(items, item):
     near = {i: 0.0 for i, other in enumerate(items.special) if other.at == one.at}
     low, high = sorted((one.row_value, last))
     near = {i: d for i, d in near.items() if low <= items.special[i].row_value <= high}
-    return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
+    return TracedHalfCurve(HalfCurve(points, CurveEndReason.edge), near).arrays()
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3, 8])

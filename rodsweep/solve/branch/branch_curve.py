@@ -10,7 +10,7 @@ from ...model.floquet import min_unstable_multipliers
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
-from .arc import ArcPoint
+from .arc import BranchCycle
 from .special.point import SpecialPoint
 from .symmetry import SymmetryBreaking
 
@@ -33,7 +33,7 @@ class BranchPoint:
     within its error."""
 
     @classmethod
-    def from_cycle(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
+    def from_cycle(cls, point: BranchCycle, accuracy: float) -> "BranchPoint":
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle
@@ -56,7 +56,7 @@ class BranchPoint:
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
-def _multiplier_modulus_error(point: ArcPoint) -> float:
+def _multiplier_modulus_error(point: BranchCycle) -> float:
     """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle

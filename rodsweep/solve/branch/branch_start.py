@@ -14,18 +14,18 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import stages_for, wanted_mesh
+from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..point import Unsolvable
-from .arc import ArcPoint
+from .arc import BranchCycle
 from .bordered.condition import BorderCondition
-from .bordered.scale import Scale, deflection_of
+from .bordered.scale import ArcLengthScale, deflection_of
 from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
@@ -41,7 +41,8 @@ class BranchStartSettings:
     |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
     inaccurate."""
     min_deflection_amplitude: float = 0.1
-    """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a `Scale`."""
+    """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a
+    `ArcLengthScale`."""
     amplitude_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
@@ -124,7 +125,7 @@ class HopfBranchStart:
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
+def hopf_branch_start(path: Path, crossing: Crossing) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
@@ -157,7 +158,7 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     )
 
 
-def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
+def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> BranchCycle:
     """The first cycle of the branch from the Hopf point `hopf`, to a relative accuracy; raises Unsolvable.
 
     workspace: memory of Newton's matrices.
@@ -182,7 +183,7 @@ def _cycle_of_amplitude(
     finer: bool,
     accuracy: float,
     workspace: NewtonWorkspace,
-) -> ArcPoint:
+) -> BranchCycle:
     """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
     L, solved to the relative `accuracy`; raises Unsolvable.
 
@@ -192,9 +193,9 @@ def _cycle_of_amplitude(
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = wanted_mesh(start, aim, stages_for(aim)).interpolated_orbit(start)
+        start = mesh_from_tails(start, aim, cheapest_stage_count(aim)).interpolated_orbit(start)
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = Scale.at_orbit(start, hopf.name, least)
+    scale = ArcLengthScale.at_orbit(start, hopf.name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
@@ -205,8 +206,8 @@ def _cycle_of_amplitude(
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
+    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
+    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, born, accuracy)
 

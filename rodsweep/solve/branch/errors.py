@@ -20,14 +20,20 @@ from ..cycle.accuracy.calibration import MULTIPLIER_INDEX, Calibration, calibrat
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
-from ..cycle.along_parameter import carried_change
+from ..cycle.along_parameter import interpolated_change
 from ..orbit.measures import CyclePath
-from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
+from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
+from ..orbit.path_differences import (
+    LARGEST_Y_INDEX,
+    PATH_INDEX,
+    PERIOD_INDEX,
+    WORST_EXTREMUM_INDEX,
+    path_differences,
+)
 from .bordered.condition import BorderCondition, moved_orbit
-from .bordered.scale import Scale
+from .bordered.scale import ArcLengthScale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +67,7 @@ BRANCH_ERROR_SETTINGS = BranchErrorSettings()
 class BranchDerivatives:
     """Derivatives of a branch with respect to arc length at a cycle, in the units of `scale`."""
 
-    scale: Scale
+    scale: ArcLengthScale
     tangent: Array
     """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
     coordinate."""
@@ -138,14 +144,14 @@ class BranchCalibration:
         steep = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
         parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
         for part, own in zip(parts, self.parameter_errors, strict=True):
-            part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
+            part[PERIOD_INDEX] = max(part[PERIOD_INDEX], own)
         return replace(self.at_parameter, space=parts[0], time=parts[1])
 
     @cached_property
     def _parameter_errors_only(self) -> Calibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
-        numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
+        numbers = [PERIOD_INDEX, LARGEST_Y_INDEX, WORST_EXTREMUM_INDEX, PATH_INDEX]
         parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = own
@@ -181,7 +187,7 @@ def _interpolated_errors(one: Array, other: Array, share: float) -> Array:
     return bounded
 
 
-def measured_errors(
+def measured_branch_calibration(
     found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
@@ -193,7 +199,7 @@ def measured_errors(
     finer, share = finer_meshes(mesh)
     condition = BorderCondition.at_arc_length(derivatives.scale, derivatives.unit_tangent, orbit)
     rough = CyclePath(orbit)
-    multipliers = multipliers_of(found)[0]
+    multipliers = multipliers_and_trivial_error(found)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
     for part, target in zip(parts, finer, strict=True):
         fine = condition.on_mesh(
@@ -221,10 +227,10 @@ def _differences_between_meshes(
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
     length = derivatives.arc_length_for_change(off)
     target = mesh_of(fine.orbit)
-    along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
+    along = np.append(interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
     slid = moved_orbit(fine.orbit, scale.parameter, length * along)
-    change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
+    change = largest_multiplier_difference(multipliers, multipliers_and_trivial_error(fine)[0]) + abs(
         length * derivatives.multiplier_rate
     )
     by_deflection = abs(derivatives.unit_tangent[0])

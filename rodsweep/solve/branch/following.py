@@ -11,17 +11,17 @@ from ...wording import counted
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
+from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
-from .branch_record import BranchRecord, end_point
+from .branch_record import BranchRecord, branch_end_point
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
-from .mesh_choice import measurement_due
+from .mesh_choice import is_measurement_due
 from .range_end import cycle_at_range_end, range_end_condition
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
-from .special.points import special_points
+from .special.points import special_points_between
 from .symmetry import (
     BRANCH_END_SETTINGS,
     SymmetryBreaking,
@@ -65,13 +65,13 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add_special_point(replace(breaking.point, message="", orbit=None))
 
-    def first() -> ArcPoint:
+    def first() -> BranchCycle:
         return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
 
     return _follow_to_end(curve, limits, first)
 
 
-def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
+def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], BranchCycle]) -> BranchCurve:
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
     solves the first cycle."""
     if limits.max_cycles < 1:
@@ -89,18 +89,18 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
     return follow_from_cycle(curve, start, limits)
 
 
-def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
+def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimits) -> BranchCurve:
     """The branch `curve`, followed to its end from its first cycle `first`, which has measured errors."""
     trail = BranchRecord(curve, limits.accuracy, first)
-    going: ArcPoint | BranchEnd = first
-    while isinstance(going, ArcPoint):
+    going: BranchCycle | BranchEnd = first
+    while isinstance(going, BranchCycle):
         report(partial(_branch_progress, curve, going, limits))
         going = _append_next_cycle(trail, going, limits)
     trail.end(going)
     return curve
 
 
-def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
+def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
     name = start.scale.parameter
     # The end of the range towards which the parameter moves at present.
@@ -127,7 +127,7 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
     )
 
 
-def _index_of_passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
+def _index_of_passed_range_end(point: BranchCycle, limits: BranchLimits) -> int:
     """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
     low, high = limits.ends
     if point.coordinate < low:
@@ -135,15 +135,17 @@ def _index_of_passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
     return 1 if point.coordinate > high else -1
 
 
-def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _append_next_cycle(
+    record: BranchRecord, start: BranchCycle, limits: BranchLimits
+) -> BranchCycle | BranchEnd:
     """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
     the last cycle, from which the branch continues, or the end of the branch. If a step to the mirror image
     is too long, nothing is appended, and `start` with half the step length is returned."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
+        return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
-        end = next_point(start, limits.accuracy)
+        end = next_cycle(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
@@ -161,31 +163,33 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
             )
         _add_special_points(curve, start, end, limits)
         record.append(end)
-        last = record.assign_errors(range_end) if range_end is not None or measurement_due(end) else end
+        last = record.assign_errors(range_end) if range_end is not None or is_measurement_due(end) else end
     except Unsolvable as why:
         message = f"no further cycle of the branch is found: {why}"
-        return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.parameter)
     error = BRANCH_END_SETTINGS.range_end_error * abs(at)
-    return BranchEnd(replace(end_point(last, limits.reasons[outside]), error=error), complete=True)
+    return BranchEnd(replace(branch_end_point(last, limits.reasons[outside]), error=error), complete=True)
 
 
-def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
+def _add_special_points(
+    curve: BranchCurve, start: BranchCycle, end: BranchCycle, limits: BranchLimits
+) -> None:
     """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
     step = partial(cycle_at_length, accuracy=limits.accuracy)
-    curve.add_special_points(*special_points(start, end, step, limits.accuracy))
+    curve.add_special_points(*special_points_between(start, end, step, limits.accuracy))
 
 
-def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
+def _passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
     """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
     if start.orbit.is_symmetric:
         return passed_hopf_point(start, end)
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
-def _step_hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
+def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step, and the step is too long for a figure of the
     corner.
 
@@ -197,7 +201,7 @@ def _step_hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
     return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
 
 
-def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
+def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
@@ -207,12 +211,12 @@ def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
     return float(one @ layout.stress_field(end.orbit.start, "m3")) < 0
 
 
-def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
     `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
-        if shorter < ARC_STEPS.min_length:
+        if shorter < ARC_STEP_CONTROL.min_length:
             raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
         return replace(start, next_arc_length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
@@ -231,10 +235,10 @@ def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoi
         if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
 
 
-def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
     near), or `start` with half the step, if `start` is too asymmetric to extrapolate. Raises Unsolvable."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
@@ -245,4 +249,4 @@ def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> Ar
         special = replace(breaking.point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric, but no known symmetry breaking is near"
-    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)

@@ -14,19 +14,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit, node_times
-from ..orbit.orbit_mesh import stages_for, wanted_mesh
+from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_length_between
+from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
-from .bordered.scale import Scale, deflection_of
+from .bordered.scale import ArcLengthScale, deflection_of
 from .branch_start import ALONG_DEFLECTION
 from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
@@ -136,13 +136,13 @@ def _bending_moments(states: Array, orbit: Orbit) -> Array:
 
 def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
-) -> ArcPoint:
+) -> BranchCycle:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
     relative accuracy; raises Unsolvable. The cycle has a larger largest tip y than its mirror image."""
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.point.orbit)
-    scale = Scale.at_orbit(whole, name, 0.0)
+    scale = ArcLengthScale.at_orbit(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
@@ -159,7 +159,7 @@ def first_asymmetric_cycle(
     raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
 
 
-def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
+def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> BranchCycle:
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
 
     whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
@@ -175,13 +175,13 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
     if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
-    mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
+    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
+    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 
 def reaches_symmetric_cycle(
-    start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
+    start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> bool:
     """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles.
 
@@ -194,35 +194,35 @@ def reaches_symmetric_cycle(
     lost = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
     if float(asymmetry(other) @ reference) < lost:
         return True
-    turns_back = start.parameter_rate * end.parameter_rate < 0 and _nearly_symmetric(start)
+    turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
     return turns_back and _nearest_symmetry_breaking(start, known, accuracy) >= 0
 
 
-def _relative_asymmetry(start: ArcPoint) -> float:
+def _relative_asymmetry(start: BranchCycle) -> float:
     """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
     return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.points, orbit)).max())
 
 
-def _nearly_symmetric(start: ArcPoint) -> bool:
+def _is_nearly_symmetric(start: BranchCycle) -> bool:
     return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry
 
 
 def symmetry_breaking_between(
-    start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
+    start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
     does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
     needed. Raises Unsolvable if no shorter step is allowed."""
-    which = _nearest_symmetry_breaking(start, known, accuracy) if _nearly_symmetric(start) else -1
+    which = _nearest_symmetry_breaking(start, known, accuracy) if _is_nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
         return which
-    if arc_length_between(start, end) / 2 < ARC_STEPS.min_length:
+    if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
         raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 
 
-def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
+def _nearest_symmetry_breaking(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
     """Index of the symmetry breaking in `known` with the parameter and period at which the extrapolated
     asymmetry of the branch vanishes; -1 if no symmetry breaking in `known` agrees within the tolerances."""
     orbit = start.orbit

@@ -15,9 +15,9 @@ from ...arrays import Array
 from ...discretization.stress.form import StressForm
 from ..continuation.follower import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_orbit_matrix
+from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_matrix_within_distance
 from ..orbit.normalised import (
-    normalised,
+    normalised_orbit_values,
     normalised_tangent,
     polynomial_weights,
     predicted_normalised_values,
@@ -49,7 +49,7 @@ class CyclePredictionSettings:
 CYCLE_PREDICTION_SETTINGS = CyclePredictionSettings()
 
 
-PARAMETER_STEPS = StepControl(
+PARAMETER_STEP_CONTROL = StepControl(
     first_length=0.5,
     max_length=1.0,
     min_length=2.0**-6,
@@ -86,8 +86,8 @@ class CyclePredictor:
 
     @cached_property
     def values(self) -> Array:
-        """Values of the solved orbit as in `normalised`, (N + 1,)."""
-        return normalised(self.orbit)
+        """Values of the solved orbit as in `normalised_orbit_values`, (N + 1,)."""
+        return normalised_orbit_values(self.orbit)
 
     def weights(self, step: float) -> Array:
         """Weights, (m,), of the data in the predicted change over a step of the parameter coordinate; see
@@ -116,11 +116,11 @@ class CyclePredictor:
         """This predictor with the solved orbit and all data interpolated to the mesh `target`."""
         if target == mesh_of(self.orbit):
             return self
-        data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
+        data = [np.append(interpolated_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
         return replace(self, orbit=target.interpolated_orbit(self.orbit), data=np.array(data))
 
 
-def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
+def interpolated_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
     (N of the target,)."""
     return target.interpolated_orbit(replace(orbit, values=change)).values
@@ -193,7 +193,7 @@ def orbit_in_steps(
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)
     share = 0.0
-    length = PARAMETER_STEPS.first_length
+    length = PARAMETER_STEP_CONTROL.first_length
     predictor = start
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
@@ -203,9 +203,9 @@ def orbit_in_steps(
         found = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(found, _prediction_error(predicted, found), 1.0)
 
-    for _ in range(PARAMETER_STEPS.max_solutions):
+    for _ in range(PARAMETER_STEP_CONTROL.max_solutions):
         try:
-            ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEPS)
+            ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEP_CONTROL)
         except Unsolvable as why:
             raise Unsolvable(
                 "the branch of cycles cannot be followed: the branch ends or has a fold"
@@ -214,11 +214,11 @@ def orbit_in_steps(
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(
-            with_orbit_matrix(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_tangent_distance, name),
+            with_matrix_within_distance(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_tangent_distance, name),
             predictor,
             name,
         )
-        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
+        length = PARAMETER_STEP_CONTROL.next_length(length, ahead, PARAMETER_STEP_CONTROL.prediction_order)
     raise Unsolvable(
-        f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.max_solutions} steps"
+        f"the branch of cycles was not followed to its end in {PARAMETER_STEP_CONTROL.max_solutions} steps"
     )

@@ -29,21 +29,21 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
-from .accuracy.integration_errors import errors_of_pair
+from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
 from .settled_motion import NoCycleFound, SettledMotion
 from .status import MarchedStatus
-from .straight_rod import straight_rod
-from .transient.from_motion import form_states
+from .straight_rod import straight_rod_stability
+from .transient.from_motion import collocation_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURN_SETTINGS,
     early_end,
-    repetition,
+    limit_after_returns,
+    returns_per_period_and_distance,
     section_crossings,
     tip_angle_row,
-    until_returns,
     why_not_settled,
 )
 
@@ -74,7 +74,9 @@ class _MarchedMotion:
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
-        w = straight_rod(self.limiting_rod).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
+        w = straight_rod_stability(
+            self.limiting_rod
+        ).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
             z = relax_fast_components(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
@@ -87,7 +89,7 @@ class _MarchedMotion:
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
                 path = self._path(settled)
-                errors = errors_of_pair(
+                errors = errors_of_two_integrations(
                     before, path, MARCHING_SETTINGS.settled_distance * self.request.accuracy
                 )
                 if errors.largest_error <= enough:
@@ -126,7 +128,7 @@ class _MarchedMotion:
                 z,
                 MARCHING_SETTINGS.max_run_duration * MARCHING_SETTINGS.returns_per_test * self.mode.period,
                 step,
-                until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
+                limit_after_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
@@ -138,7 +140,7 @@ class _MarchedMotion:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
-            turns, distance = repetition(list(past))
+            turns, distance = returns_per_period_and_distance(list(past))
             noise = MARCHING_SETTINGS.return_noise * self.scheme.tolerance
             # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
@@ -184,7 +186,7 @@ class _MarchedMotion:
     def _path(self, settled: SettledMotion) -> CyclePath:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.turns + 2
-        limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
+        limit = limit_after_returns(tip_angle_row(self.beam), settled.z, returns)
         tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measured_tolerance)
         duration = MARCHING_SETTINGS.max_run_duration * returns * self.mode.period
         scheme = replace(self.scheme, tolerance=tolerance)
@@ -202,7 +204,7 @@ class _MarchedMotion:
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
-            Orbit.from_states(form, NO_SYMMETRY, period, form_states(self.beam, form, states), stages)
+            Orbit.from_states(form, NO_SYMMETRY, period, collocation_states(self.beam, form, states), stages)
         )
 
     def _limit_errors(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
@@ -219,7 +221,7 @@ class _MarchedMotion:
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relax_fast_components(self.beam, settled.z, self.mode.period)
-        more = errors_of_pair(path, self._path(self._integrate_until_settled(z)), 0.0)
+        more = errors_of_two_integrations(path, self._path(self._integrate_until_settled(z)), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,
             errors.amplitude_error + more.amplitude_error,

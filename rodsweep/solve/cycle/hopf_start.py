@@ -20,15 +20,15 @@ from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import newton, with_orbit_matrix
+from ..orbit.newton import newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
 from .along_parameter import orbit_in_steps, predictor_from
-from .straight_rod import straight_rod
-from .transient.motion_mesh import coarse_mesh
+from .straight_rod import straight_rod_stability
+from .transient.motion_mesh import coarse_mesh_along_branch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +89,7 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
     near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search.
     """
-    found = straight_rod(rod, None if near is None else np.array([near]), certify=False)
+    found = straight_rod_stability(rod, None if near is None else np.array([near]), certify=False)
     if isnan(found.error):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
     return found.w
@@ -174,7 +174,7 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces")
     if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
-    coarse = replace(form, mesh=coarse_mesh(rod))
+    coarse = replace(form, mesh=coarse_mesh_along_branch(rod))
     for distance in HOPF_START_SETTINGS.start_distances:
         try:
             return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
@@ -183,7 +183,7 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     raise why
 
 
-def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
+def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """Approximate orbit, by the normal form, to which a motion from the leading mode converges near a Hopf
     point.
 
@@ -218,7 +218,7 @@ def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace
     raises Unsolvable."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.branch_tolerance
-    found = with_orbit_matrix(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    found = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.squared_y_and_frequency(F)[0]
     least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
     if not least < found.orbit.form.tip_coordinates(found.orbit.start)[1] ** 2 / squared < most:

@@ -20,14 +20,19 @@ from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, with_orbit_matrix
+from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
-from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
+from .accuracy.refinement import (
+    cycle_with_calibrated_errors,
+    cycle_with_measured_errors,
+    max_matrix_distance,
+    newton_tolerance,
+)
 from .along_parameter import (
     CyclePredictor,
     orbit_in_steps,
@@ -57,7 +62,7 @@ NEXT_MESH_SETTINGS = NextMeshSettings()
 
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
 """Value of `Neighbour.eigenvalues` if the eigenvalues are not known."""
-Arrays = dict[str, Array]
+CheckpointArrays = dict[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +94,7 @@ class Neighbour:
         branch = predictor_from(found.converged, before.predictor if before else None, name)
         return cls(branch, *_next_mesh_and_calibration(found, before, name, accuracy), eigenvalues)
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> CheckpointArrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
         orders (m,), eigenvalues (n,), meshes, symmetry, rod with its build, and calibration; N, m: as in
         `CyclePredictor`."""
@@ -110,7 +115,7 @@ class Neighbour:
         } | self.calibration.arrays()
 
     @classmethod
-    def from_arrays(cls, arrays: Arrays) -> "Neighbour":
+    def from_arrays(cls, arrays: CheckpointArrays) -> "Neighbour":
         """The neighbour from the named arrays that `Neighbour.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["mesh"])
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
@@ -174,10 +179,10 @@ def cycle_from_neighbour(
         found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     )
     if known.is_valid:
-        cycle = with_calibrated_errors(known, found, accuracy)
+        cycle = cycle_with_calibrated_errors(known, found, accuracy)
         if cycle.errors.largest_error <= accuracy:
             return cycle
-    return calibrated_cycle(found, known, accuracy, name)
+    return cycle_with_measured_errors(found, known, accuracy, name)
 
 
 def _cycle_on_next_mesh(
@@ -195,4 +200,4 @@ def _cycle_on_next_mesh(
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.predictor.on_mesh(target.coarser), form, name, tolerance, workspace)
         found = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
-    return with_orbit_matrix(found, matrix_distance(accuracy), name)
+    return with_matrix_within_distance(found, max_matrix_distance(accuracy), name)

@@ -39,7 +39,7 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True, slots=True)
-class StraightRod:
+class StraightRodStability:
     """Leading eigenvalue w of the straight rod, Im w >= 0, and its error estimate, in 1/tau2; w and error are
     NaN if w is not known.
 
@@ -84,7 +84,9 @@ class StraightRod:
         return f"{rate}, so the straight rod is unstable, although the integrated motion decays"
 
 
-def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) -> StraightRod:
+def straight_rod_stability(
+    rod: Rod, near: Complex | None = None, certify: bool = True
+) -> StraightRodStability:
     """The leading eigenvalue of a rod with its error estimate.
 
     near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
@@ -93,15 +95,15 @@ def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) ->
     request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
     leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
     if leader is not None:
-        return StraightRod(leader.w, leader.error, followed=leader.eigenvalues)
+        return StraightRodStability(leader.w, leader.error, followed=leader.eigenvalues)
     found = solve_spectrum(rod, request)
     if isnan(found.error_estimate[0]):
-        return StraightRod(complex(nan, nan), nan, found.message)
+        return StraightRodStability(complex(nan, nan), nan, found.message)
     w = complex(found.eigenvalues[0])
-    return StraightRod(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))
+    return StraightRodStability(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))
 
 
-def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
+def eigenvalues_to_follow(rod: Rod, found: StraightRodStability) -> Complex:
     """Eigenvalues of `rod`, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
     can be followed. found: leading eigenvalue of `rod`."""
     if len(found.followed):

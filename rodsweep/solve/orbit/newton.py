@@ -34,7 +34,7 @@ class OrbitNewtonSettings:
 ORBIT_NEWTON_SETTINGS = OrbitNewtonSettings()
 
 
-class HasMultipliers(Protocol):
+class NewtonMatrix(Protocol):
     """Newton's matrix of an orbit with a method for the Floquet multipliers. tangent: derivative of the orbit
     values with respect to a parameter coordinate, (N,), or None. workspace: memory of the matrix."""
 
@@ -52,7 +52,7 @@ class ConvergedOrbit:
     `orbit` from the iterate at which `matrix` was assembled."""
 
     orbit: Orbit
-    matrix: HasMultipliers
+    matrix: NewtonMatrix
     matrix_distance: float
 
     @property
@@ -111,7 +111,9 @@ def newton(
     )
 
 
-def with_orbit_matrix(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
+def with_matrix_within_distance(
+    found: ConvergedOrbit, distance: float, parameter: str | None = None
+) -> ConvergedOrbit:
     """The orbit `found`, after one more Newton step if its matrix was assembled at a relative distance of
     more than `distance` from the orbit. parameter: as in `newton`."""
     if found.matrix_distance <= distance:
@@ -127,7 +129,7 @@ def newton_step(found: ConvergedOrbit, parameter: str | None = None) -> Converge
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
-def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
+def multipliers_and_trivial_error(found: ConvergedOrbit) -> tuple[Complex, float]:
     """Returns (multipliers, distance): nontrivial Floquet multipliers by descending modulus, (rank - 1,), and
     the distance of the computed trivial multiplier from 1."""
     values = found.matrix.multipliers()
@@ -137,7 +139,7 @@ def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
     return others, float(abs(values[trivial] - 1))
 
 
-def multiplier_change(multipliers: Complex, others: Complex) -> float:
+def largest_multiplier_difference(multipliers: Complex, others: Complex) -> float:
     """Error of the largest multiplier, from the multipliers on two meshes: the distance of `multipliers[0]`
     from the nearest of `others`, or the difference of the two largest moduli, whichever is larger; 0 if a
     list is empty.

@@ -42,7 +42,7 @@ def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArra
     )
 
 
-def normalised(orbit: Orbit) -> Array:
+def normalised_orbit_values(orbit: Orbit) -> Array:
     """Normalised values of an orbit, (N + 1,): the orbit values, in which all components that change sign
     under the reflection are divided by the size of the orbit; at the end, the squared size."""
     values: Array = normalised_values(orbit.values, reflection_arrays(orbit))
@@ -58,7 +58,8 @@ def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
 
 @compiled_for_vectors
 def normalised_values(values: Array, r: ReflectionArrays) -> Array:
-    """Compiled `normalised`: normalised values, (N + 1,), of the orbit with the given `values`, (N,)."""
+    """Compiled `normalised_orbit_values`: normalised values, (N + 1,), of the orbit with the given `values`,
+    (N,)."""
     squared = moment_inner_product(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values

@@ -162,14 +162,14 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
     return OrbitMesh(grid.edges, grid.order, orbit.intervals, orbit.stages)
 
 
-def stages_for(accuracy: float) -> int:
+def cheapest_stage_count(accuracy: float) -> int:
     """Number of collocation stages with the smallest cost for the relative accuracy `accuracy`."""
     return ORBIT_MESH_SETTINGS.fewest_stages + sum(
         accuracy <= limit for limit in ORBIT_MESH_SETTINGS.stage_accuracies
     )
 
 
-def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
+def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
     the tails of the nearby orbit `orbit`; finer than the mesh of `orbit` at most by `max_more_orders` and
     `max_interval_ratio`."""

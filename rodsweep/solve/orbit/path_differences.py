@@ -8,7 +8,7 @@ from ...model.rod import Rod
 from .measures import CyclePath
 from .orbit import Orbit
 
-PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
+PERIOD_INDEX, LARGEST_Y_INDEX, WORST_EXTREMUM_INDEX, PATH_INDEX = range(4)
 """Indices into the array that `path_differences` returns."""
 
 

@@ -13,9 +13,9 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
 from rodsweep.solve.branch import following
-from rodsweep.solve.branch.arc import next_point
+from rodsweep.solve.branch.arc import next_cycle
 from rodsweep.solve.branch.branch_curve import BranchCurve
-from rodsweep.solve.branch.branch_start import hopf_point
+from rodsweep.solve.branch.branch_start import hopf_branch_start
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
 from rodsweep.solve.branch.following import (
     BranchLimits,
@@ -47,7 +47,7 @@ def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     path = Path(straight, "F")
-    hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
+    hopf = hopf_branch_start(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
@@ -110,7 +110,7 @@ def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmet
 def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
-    orbit = next_point(here, ROUGH).orbit
+    orbit = next_cycle(here, ROUGH).orbit
     p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
@@ -137,7 +137,7 @@ def turned_back(here):
 def test_followed_back_the_branch_ends_where_it_was_born(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
-        here = next_point(here, ROUGH)
+        here = next_cycle(here, ROUGH)
     curve = follow_from_cycle(
         BranchCurve(start_hopf=-1), turned_back(solve_on_sufficient_mesh(here, ROUGH)), known
     )

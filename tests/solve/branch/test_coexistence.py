@@ -19,14 +19,14 @@ from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.bordered.scale import Scale
+from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.special_curves import (
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
     SpecialPointCurve,
@@ -141,7 +141,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end))
     curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
-    assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
+    assert curve.ends == (CurveEndReason.hopf, CurveEndReason.edge)
     last = curve.points[-1]
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
@@ -157,7 +157,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
-    scale = Scale.at_orbit(fold.orbit, "F", 0.0)
+    scale = ArcLengthScale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
     ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)

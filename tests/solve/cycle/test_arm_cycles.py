@@ -30,7 +30,7 @@ from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.neighbour import Neighbour
-from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -246,7 +246,7 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + (factors,) * 2)
     rod = Rod(**values, gamma1=gamma1, build=Build(*names, profile))
     memory = NewtonWorkspace()
-    form = StressForm(rod, coarse_mesh(rod))
+    form = StressForm(rod, coarse_mesh_along_branch(rod))
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
     orbit = found.orbit
     finer = mesh_with_edges(orbit.form.mesh.edges, orbit.form.mesh.order + 8)

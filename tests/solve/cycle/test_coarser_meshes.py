@@ -10,14 +10,14 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
-from rodsweep.solve.cycle.accuracy.refinement import refined_at_period
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle_at_given_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
-from rodsweep.solve.orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, path_differences
+from rodsweep.solve.orbit.path_differences import LARGEST_Y_INDEX, PATH_INDEX, PERIOD_INDEX, path_differences
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
@@ -66,7 +66,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
         true = path_differences(
             CyclePath(found), CyclePath(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
         )
-        for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
+        for which in (PERIOD_INDEX, LARGEST_Y_INDEX, PATH_INDEX):
             assert true[which] <= CALIBRATION_SETTINGS.safety_factor * parts[which] + 1e-12
 
 
@@ -90,13 +90,19 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
         raise Unsolvable(why)
 
     monkeypatch.setattr(CoarserMeshes, "predicted", spoilt)
-    alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
+    alone, first = (
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY),
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
+    )
     assert np.array_equal(alone.orbit.values, first.orbit.values)
     assert alone.errors == first.errors
 
 
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
-    alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
+    alone, first = (
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY),
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
+    )
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
     assert alone.converged.matrix.tangent is None and first.converged.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
@@ -108,8 +114,8 @@ def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     """Orders 19 and 21 have nearly the same period of this cone, which is off by 1.9 times the accuracy."""
     accuracy = 1e-4
     rod = Rod(F=40.20452, k1=float("inf"), k2=149.6991, gamma3=0.0, gamma1=0.2582922, taper=0.5194033)
-    start = orbit_from_hopf(StressForm(rod, coarse_mesh(rod)), hopf_point_below(rod), MEMORY)
-    found = refined_at_period(start, accuracy, MEMORY)
+    start = orbit_from_hopf(StressForm(rod, coarse_mesh_along_branch(rod)), hopf_point_below(rod), MEMORY)
+    found = refined_cycle_at_given_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
     finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
     exact = newton(finer.interpolated_orbit(found.orbit), 1e-10, MEMORY).orbit

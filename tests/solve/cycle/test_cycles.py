@@ -18,9 +18,9 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.solve.cycle.accuracy import refinement
 from rodsweep.solve.cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS
 from rodsweep.solve.cycle.accuracy.minimal_period import (
-    common_divisor,
-    over_minimal_period,
-    undecided_divisor,
+    common_harmonic_divisor,
+    possible_period_divisor,
+    restricted_to_minimal_period,
 )
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.reference_rod import warm_up
@@ -29,10 +29,10 @@ from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
-from rodsweep.solve.orbit.newton import newton, with_orbit_matrix
+from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
-from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
+from rodsweep.solve.orbit.tails import legendre_analysis_matrix, tails_of
 from rodsweep.solve.point import Unsolvable
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -341,10 +341,12 @@ def test_three_periods_are_recognised_and_cut_to_one():
     half = newton(orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
-    assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
-    assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
-    assert over_minimal_period(half) is half
-    once = with_orbit_matrix(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
+    assert [common_harmonic_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
+    assert [possible_period_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
+    assert restricted_to_minimal_period(half) is half
+    once = with_matrix_within_distance(
+        newton(restricted_to_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0
+    )
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 
@@ -401,7 +403,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
     stresses = half.form.stresses(half.states[:, -1])
-    analysis = legendre_analysis(2 * uniform_mesh(1, order).positions - 1)
+    analysis = legendre_analysis_matrix(2 * uniform_mesh(1, order).positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]
@@ -427,7 +429,7 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
     harmonics = np.zeros(32)
     for k, size in sizes.items():
         harmonics[k - 1] = size
-    assert undecided_divisor(SimpleNamespace(bending_harmonics=harmonics), error) == divisor
+    assert possible_period_divisor(SimpleNamespace(bending_harmonics=harmonics), error) == divisor
 
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
@@ -481,7 +483,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
     orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stages)
     with pytest.raises(Unsolvable):
-        refinement.refined_at_period(orbit, 1e-6, NewtonWorkspace())
+        refinement.refined_cycle_at_given_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes
 
 

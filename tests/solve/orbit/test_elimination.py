@@ -11,7 +11,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.bordered.scale import Scale
+from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.elimination import eliminate_newton_matrix
 from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert_matrix
 from rodsweep.solve.orbit.matrix.linearisation import closing_residual, parameter_derivatives
@@ -156,7 +156,7 @@ def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth)
         {"n1": np.ones(8)}
     )  # beside the straight rod, which is unstable
     orbit, border = Orbit.from_states(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
-    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
+    matrix = BorderedMatrix(orbit, ArcLengthScale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
     assert np.linalg.norm(matrix.propagator) > growth
     A, right = whole_matrix(matrix)
     tangent = matrix.direction(border)

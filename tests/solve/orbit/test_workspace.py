@@ -10,7 +10,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.bordered.scale import Scale
+from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import WORKSPACE_SETTINGS, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
@@ -36,7 +36,7 @@ def matrix_of_a_cycle(orbit, workspace):
 
 def matrix_of_a_branch(orbit, workspace):
     """The same with the force as a further unknown."""
-    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 1.0), workspace)
+    matrix = BorderedMatrix(orbit, ArcLengthScale.at_orbit(orbit, "F", 1.0), workspace)
     return matrix, lambda: matrix.correction(orbit, MOMENT, 0.0)
 
 

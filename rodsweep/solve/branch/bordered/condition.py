@@ -16,7 +16,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...point import Unsolvable
 from .matrix import BorderedMatrix
-from .scale import Scale
+from .scale import ArcLengthScale
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +24,13 @@ class BorderCondition:
     """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`.
     border: row vector, (3,)."""
 
-    scale: Scale
+    scale: ArcLengthScale
     border: Array
     value: float
 
     @classmethod
     def at_arc_length(
-        cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0
+        cls, scale: ArcLengthScale, border: Array, orbit: Orbit, length: float = 0.0
     ) -> "BorderCondition":
         """The condition that a new orbit lies farther along `border`, (3,), than the given `orbit`, by the
         arc length `length`. scale: units of the components."""

@@ -15,7 +15,7 @@ from ...orbit.matrix.linearisation import (
     reduced_residuals,
     reduced_variations,
 )
-from ...orbit.matrix.multipliers import multipliers_over_period, partial_multipliers
+from ...orbit.matrix.multipliers import multipliers_over_period, multipliers_over_solved_part
 from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
 from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
@@ -23,7 +23,7 @@ from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from .scale import Scale, deflection_row
+from .scale import ArcLengthScale, deflection_row
 
 
 class BorderedMatrix:
@@ -34,7 +34,7 @@ class BorderedMatrix:
     another matrix was assembled in the same workspace; multipliers stay valid.
     """
 
-    def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
+    def __init__(self, orbit: Orbit, scale: ArcLengthScale, workspace: NewtonWorkspace) -> None:
         self.orbit = orbit
         self.scale = scale
         self.workspace = workspace
@@ -128,7 +128,7 @@ class BorderedMatrix:
         """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
         the reflection for a symmetric orbit."""
         if len(self._shooting_intervals.flow_maps) == 1:
-            return partial_multipliers(self.propagator, self.orbit)
+            return multipliers_over_solved_part(self.propagator, self.orbit)
         return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:

@@ -3,9 +3,8 @@ parameter.
 
 The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
 deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus. Both
-divisors are those of one cycle, for which a `Scale` is made. At a Hopf point the deflection passes linearly
-through 0, so that arc length stays
-regular.
+divisors are those of one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes
+linearly through 0, so that arc length stays regular.
 
 The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; s is the position
 on the rod and c the bending compliance of the arm's profile. For small cycles of a rod without taper the
@@ -30,7 +29,7 @@ from ...orbit.orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class ArcLengthScale:
     """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
     `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter
     `parameter`."""
@@ -41,7 +40,7 @@ class Scale:
     min_deflection_unit: float
 
     @classmethod
-    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "Scale":
+    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "ArcLengthScale":
         """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
         the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
         deflection, in L."""

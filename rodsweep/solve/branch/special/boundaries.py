@@ -12,15 +12,15 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curve_problem import END_SETTINGS, SpecialCurveProblem
+from .curve_problem import CURVE_END_SETTINGS, SpecialCurveProblem
 from .on_curve import SolvedPoint
 from .point import RowSpecialPoint, SpecialKind, SpecialPoint
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
-    Arrays,
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
+    HalfCurveArrays,
     SpecialPointCurve,
     TracedHalfCurve,
 )
@@ -42,7 +42,7 @@ class SpecialBoundaries:
     rows: PlaneAxis
     special: Sequence[RowSpecialPoint]
 
-    def items_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
+    def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
         curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
@@ -52,14 +52,14 @@ class SpecialBoundaries:
             likely += curves.possible_items(search)
         return needed + likely if needed else []
 
-    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[SpecialPointCurve]:
+    def curves(self, results: Mapping[int, HalfCurveArrays]) -> Boundaries[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
         return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
 
     def _searches(
-        self, results: Mapping[int, Arrays]
+        self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
@@ -69,7 +69,7 @@ class SpecialBoundaries:
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
-    ) -> Arrays:
+    ) -> HalfCurveArrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         # The number is twice the index of the special point, plus 1 for the half to smaller values.
@@ -107,7 +107,7 @@ class _CurvesOfKind:
     line: PlaneAxis
     rows: PlaneAxis
     special: Sequence[RowSpecialPoint]
-    results: Mapping[int, Arrays]
+    results: Mapping[int, HalfCurveArrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
         """Index, from `left`, of the median special point: both halves of its curve have similar lengths."""
@@ -121,7 +121,7 @@ class _CurvesOfKind:
             return [item for item in (ahead, behind) if item not in self.results]
         half = TracedHalfCurve.from_arrays(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
-        on = half is not None and half.end is not CurveEnd.closed
+        on = half is not None and half.end is not CurveEndReason.closed
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
@@ -138,7 +138,7 @@ class _CurvesOfKind:
         ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if ahead.half is None:
             return None
-        closed = ahead.half.end is CurveEnd.closed
+        closed = ahead.half.end is CurveEndReason.closed
         behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
@@ -173,7 +173,7 @@ class _CurvesOfKind:
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
-        if one.tip_y_max >= END_SETTINGS.min_amplitude:
+        if one.tip_y_max >= CURVE_END_SETTINGS.min_amplitude:
             return False
         for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:

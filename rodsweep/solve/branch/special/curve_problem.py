@@ -26,10 +26,10 @@ from .on_curve import (
     arc_lengths,
     line_across,
     orbit_with_parameters,
-    with_larger_errors,
+    with_parameter_errors,
 )
 from .point import SpecialKind, SpecialPoint
-from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
+from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEndReason, lagrange_weights
 
 CURVE_STEP_CONTROL = StepControl(
     first_length=0.01,
@@ -68,11 +68,16 @@ class CurveEndSettings:
     the angle between multiplier and real axis is below this number at the last point."""
 
 
-END_SETTINGS = CurveEndSettings()
+CURVE_END_SETTINGS = CurveEndSettings()
 
-ROW_EDGES = (2, 3)
+ROW_EDGE_MARGINS = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
-END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+END_BY_MARGIN = (
+    *4 * (CurveEndReason.edge,),
+    CurveEndReason.crushed,
+    CurveEndReason.left_the_model,
+    CurveEndReason.hopf,
+)
 """Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""
 
 
@@ -88,20 +93,24 @@ class SpecialCurveProblem:
     workspace: NewtonWorkspace
     direction: float = 1.0
 
-    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
+    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEndReason]:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
         curve); raises Unsolvable. row: value of the row parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
-        return with_larger_errors(curve.solutions), self._end_reason(curve)
+        return with_parameter_errors(curve.solutions), self._end_reason(curve)
 
-    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEnd:
+    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEndReason:
         """Reason for the end of the curve `curve`, as stored in the result file."""
         if curve.end is CurveStop.margin:
             return END_BY_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
-            return CurveEnd.closed
-        return self._lost_end(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
+            return CurveEndReason.closed
+        return (
+            self._lost_end(curve.solutions[-1])
+            if curve.end is CurveStop.lost
+            else CurveEndReason.not_followed
+        )
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
@@ -157,11 +166,11 @@ class SpecialCurveProblem:
             at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
             values = {**rod.values, self.line.name: at, self.rows.name: self.rows.value(at_row)}
             load = rod.build.relative_load(values["F"], values["k1"], values["taper"])
-            return 1 - END_SETTINGS.crushing_margin / 2 - load
+            return 1 - CURVE_END_SETTINGS.crushing_margin / 2 - load
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=END_SETTINGS.crushing_accuracy))
+        return float(brentq(distance, 0.0, step, rtol=CURVE_END_SETTINGS.crushing_accuracy))
 
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
@@ -181,9 +190,11 @@ class SpecialCurveProblem:
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
-        crushing = 1 - END_SETTINGS.crushing_margin - rod.build.relative_load(rod.F, rod.k1, rod.taper)
+        crushing = 1 - CURVE_END_SETTINGS.crushing_margin - rod.build.relative_load(rod.F, rod.k1, rod.taper)
         stretch = least_stretch_of_orbit(point.orbit)
-        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
+        return np.array(
+            [x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CURVE_END_SETTINGS.min_amplitude]
+        )
 
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
@@ -191,14 +202,14 @@ class SpecialCurveProblem:
         """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
         this point is not found or is `behind[-1]` itself. For the margin of the amplitude: `outer`."""
         inner = behind[-1]
-        if END_BY_MARGIN[margin] is CurveEnd.hopf:
+        if END_BY_MARGIN[margin] is CurveEndReason.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= END_SETTINGS.max_edge_distance:
+        if ends[0] <= CURVE_END_SETTINGS.max_edge_distance:
             return None
         try:
-            if margin in ROW_EDGES:
-                point = self.point_on_row(inner, outer, float(margin - ROW_EDGES[0]))
+            if margin in ROW_EDGE_MARGINS:
+                point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGINS[0]))
             else:
                 point = self._zero_of_margin(inner, outer, margin, ends)
         except Unsolvable:
@@ -215,7 +226,9 @@ class SpecialCurveProblem:
             found[share] = self.point_near_chord(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
-        return found[zero_along_step(left, ends, 1.0, END_SETTINGS.edge_bracket, END_SETTINGS.edge_bracket)]
+        return found[
+            zero_along_step(left, ends, 1.0, CURVE_END_SETTINGS.edge_bracket, CURVE_END_SETTINGS.edge_bracket)
+        ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether the step from `behind[-1]` to `point` passes the first point of the curve, and the curve
@@ -226,7 +239,7 @@ class SpecialCurveProblem:
         # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-        return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
+        return len(behind) > CURVE_END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
@@ -241,10 +254,10 @@ class SpecialCurveProblem:
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
-    def _lost_end(self, last: SolvedPoint) -> CurveEnd:
+    def _lost_end(self, last: SolvedPoint) -> CurveEndReason:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
-            if pair is None or abs(pair.imag) < END_SETTINGS.min_sine_at_resonance * abs(pair):
-                return CurveEnd.resonance
-        return CurveEnd.not_followed
+            if pair is None or abs(pair.imag) < CURVE_END_SETTINGS.min_sine_at_resonance * abs(pair):
+                return CurveEndReason.resonance
+        return CurveEndReason.not_followed

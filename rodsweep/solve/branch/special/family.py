@@ -17,11 +17,11 @@ from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import smooth_tails
 from ...point import Unsolvable
 from ..bordered.matrix import BorderedMatrix
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 from .augmented.functions import FoldFunction, TorusFunction
 from .on_curve import (
     CURVE_SECANT_SETTINGS,
-    CurveErrors,
+    MeasuredCurveError,
     NormalDerivatives,
     SearchLine,
     SolvedPoint,
@@ -42,7 +42,7 @@ class CycleFamily:
 
     kind: SpecialKind
     rows: PlaneAxis
-    scale: Scale
+    scale: ArcLengthScale
     border: Array
     has_small_cycles: bool
     workspace: NewtonWorkspace
@@ -124,7 +124,7 @@ class CycleFamily:
                 fine.parameter
             )
             if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine.parameter):
-                errors = CurveErrors(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
+                errors = MeasuredCurveError(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
                 return replace(last, errors=errors)
             last = fine
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")

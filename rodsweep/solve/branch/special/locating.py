@@ -16,12 +16,12 @@ from ...continuation.follower import zero_along_step
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, mesh_of
 from ...point import Unsolvable
-from ..arc import ArcPoint
+from ..arc import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 from .augmented.functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
@@ -34,7 +34,7 @@ def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
     return SpecialKind.symmetry_breaking if orbit.is_symmetric else SpecialKind.period_doubling
 
 
-def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
+def test_function_value(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
     """Value of the test function that is zero at special points of a kind, at the cycle `found`, the last
     cycle that `segment` solved; raises Unsolvable."""
     if kind == SpecialKind.fold:
@@ -64,7 +64,7 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     return float(beyond[np.argmin(np.abs(beyond))])
 
 
-def _test_value_at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
+def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, ahead: Array, point: BranchCycle) -> float:
     """Value of the test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
     scale, ahead: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
@@ -76,7 +76,9 @@ def _test_value_at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: Arc
     return multiplier_test_function(kind, point.partial_multipliers)
 
 
-def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
+def special_point_between(
+    kind: SpecialKind, start: BranchCycle, end: BranchCycle, accuracy: float
+) -> SpecialPoint:
     """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
     and `SPECIAL_POINT_SETTINGS.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. A
     point that cannot be located has a message, and the parameter difference of the two cycles as error."""
@@ -87,7 +89,7 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
         length, slope = _bracketed_zero(kind, segment)
         mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
-        mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
+        mesh = replace(mesh, stages=max(mesh.stages, cheapest_stage_count(aim)))
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
             segment.set_mesh(mesh)
@@ -126,7 +128,7 @@ def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
 
 
 def _with_mesh_errors(
-    point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint
+    point: SpecialPoint, last: SpecialPoint, start: BranchCycle, end: BranchCycle
 ) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
     safety factor.
@@ -172,7 +174,7 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
     )
 
 
-def _unlocated_point(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
+def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
     """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
     the differences between the two cycles as errors. message: cause of the failure."""
     name = start.scale.parameter
@@ -200,7 +202,7 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
     values = {at: _test_value_at_end(kind, start.scale, start.unit_tangent, point) for at, point in known}
 
     def kept(length: float) -> float:
-        values[length] = test_function(kind, segment, segment.cycle_at(length))
+        values[length] = test_function_value(kind, segment, segment.cycle_at(length))
         return values[length]
 
     ends = values[0.0], values[segment.length]
@@ -228,7 +230,7 @@ def _zero_by_secants(
     step = np.inf
     before = None
     for _ in range(SPECIAL_POINT_SETTINGS.max_secants):
-        f = test_function(kind, segment, segment.cycle_at(at))
+        f = test_function_value(kind, segment, segment.cycle_at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
         last = abs(step)

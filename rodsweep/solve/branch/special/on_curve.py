@@ -13,7 +13,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
 from ...point import Unsolvable
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +112,7 @@ class NormalDerivatives:
 
 
 @dataclass(frozen=True, eq=False)
-class CurveErrors:
+class MeasuredCurveError:
     """Measured error of a point of a curve. At the next points the error is used again, scaled with the
     squared coefficient tails.
 
@@ -140,7 +140,7 @@ class CurveErrors:
         return recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)
 
     @property
-    def for_next_point(self) -> "CurveErrors":
+    def for_next_point(self) -> "MeasuredCurveError":
         """The same measured error for the next point of the curve, with `reuse_count` increased by 1."""
         return replace(self, reuse_count=self.reuse_count + 1)
 
@@ -150,7 +150,7 @@ class SolvedPoint:
     """A solved point of a curve of special points: cycle, and values of the two parameters of the plane."""
 
     orbit: Orbit
-    scale: Scale
+    scale: ArcLengthScale
     branch_direction: Array
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
@@ -161,8 +161,8 @@ class SolvedPoint:
     row_parameter: float
     """Value of the row parameter."""
     error: float = nan
-    """Absolute error of `parameter`; NaN before `with_larger_errors` sets it."""
-    errors: CurveErrors | None = None
+    """Absolute error of `parameter`; NaN before `with_parameter_errors` sets it."""
+    errors: MeasuredCurveError | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
     secant_error: float = 0.0
     """Absolute error of `parameter` at fixed row parameter, by the tolerance of the secant method."""
@@ -188,7 +188,7 @@ class SolvedPoint:
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
-def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
+def with_parameter_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     """The points of a curve, in order, with the field `error` set: the error by the mesh plus the error of
     the secant method.
 
@@ -197,7 +197,7 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     if a point has no error estimate.
     """
     found: list[SolvedPoint] = []
-    behind: CurveErrors | None = None
+    behind: MeasuredCurveError | None = None
     # In reverse order, so that the next measurement after each point is known.
     for point in reversed(points):
         if point.errors is None:

@@ -20,7 +20,7 @@ from ...orbit.orbit_mesh import mesh_of
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 from .augmented.functions import AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
 from .on_curve import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
@@ -187,7 +187,7 @@ class SecantSearch:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
-        scale = Scale.at_orbit(orbit, family.scale.parameter, family.scale.min_deflection_unit)
+        scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,

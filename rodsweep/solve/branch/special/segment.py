@@ -4,7 +4,7 @@ from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
-from ..arc import ArcPoint, arc_length_between
+from ..arc import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import bordered_matrix_of
 from .augmented.functions import FoldFunction, correct_until_converged
@@ -15,7 +15,7 @@ class BranchSegment:
     """Segment of a branch from the cycle `start` to the next cycle `end`, on which cycles are solved at any
     arc length."""
 
-    def __init__(self, start: ArcPoint, end: ArcPoint) -> None:
+    def __init__(self, start: BranchCycle, end: BranchCycle) -> None:
         self.start = start
         self.end = end
         self.length = arc_length_between(start, end)

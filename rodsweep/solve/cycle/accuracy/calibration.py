@@ -16,10 +16,10 @@ from ....determinant.exponents import EXPONENT_SETTINGS
 from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
-from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
+from ...orbit.path_differences import LARGEST_Y_INDEX, PATH_INDEX, PERIOD_INDEX, WORST_EXTREMUM_INDEX
 from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
-from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
+from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_weighted_error
 
 MULTIPLIER_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
@@ -72,14 +72,14 @@ class Calibration:
         tails = _tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
-        growth = _growth_factors(self.tails, tails)
+        growth = _error_growth_factors(self.tails, tails)
         return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
         after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0)
-        return replace(self, error_growth=_growth_factors(self.tails, after))
+        return replace(self, error_growth=_error_growth_factors(self.tails, after))
 
     @property
     def rates_only(self) -> "Calibration":
@@ -99,7 +99,7 @@ class Calibration:
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        shrinkage = np.minimum(_tail_growth(self.tails, _tails_and_size(orbit)), 1.0)
+        shrinkage = np.minimum(_squared_tail_growth(self.tails, _tails_and_size(orbit)), 1.0)
         in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * shrinkage
         return in_space * self.space, in_time * self.time
 
@@ -132,14 +132,14 @@ class Calibration:
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
         # than the distance of the tip's paths, and errors in time with the smallest order.
-        least = np.minimum(self.fall, self.fall[WHOLE_PATH])
+        least = np.minimum(self.fall, self.fall[PATH_INDEX])
         fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
         space = self.space[:, None] * np.exp(fall * (present.order - orders))
         # The order was measured on coarser meshes; for finer meshes the smallest order is taken.
         power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
         time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error * accuracy
+        enough = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error * accuracy
         meshes = [
             replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
@@ -151,16 +151,16 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
     safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
     whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
-    apart = space[WHOLE_PATH] + time[WHOLE_PATH]
-    in_time = CALIBRATION_SETTINGS.min_error_share_in_time * time[WHOLE_PATH]
-    parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
+    apart = space[PATH_INDEX] + time[PATH_INDEX]
+    in_time = CALIBRATION_SETTINGS.min_error_share_in_time * time[PATH_INDEX]
+    parts = [np.maximum(part[PERIOD_INDEX], part[LARGEST_Y_INDEX]) for part in (space, time)]
     either = CALIBRATION_SETTINGS.mutual_bound * (parts[0] + parts[1])
-    of_period = CALIBRATION_SETTINGS.min_period_error_share * space[WHOLE_PATH] + in_time
-    of_height = CALIBRATION_SETTINGS.min_height_error_share * space[WHOLE_PATH] + in_time
+    of_period = CALIBRATION_SETTINGS.min_period_error_share * space[PATH_INDEX] + in_time
+    of_height = CALIBRATION_SETTINGS.min_height_error_share * space[PATH_INDEX] + in_time
     stated = [
-        np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
-        np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM], CALIBRATION_SETTINGS.min_extrema_error_share * apart),
+        np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
+        np.maximum(np.maximum(whole[LARGEST_Y_INDEX], of_height), either),
+        np.maximum(whole[WORST_EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_share * apart),
         whole[MULTIPLIER_INDEX],
     ]
     least = max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
@@ -173,7 +173,7 @@ def _tails_and_size(orbit: Orbit) -> Array:
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
 
 
-def _growth_factors(before: Array, after: Array) -> Array:
+def _error_growth_factors(before: Array, after: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
     before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
@@ -183,11 +183,13 @@ def _growth_factors(before: Array, after: Array) -> Array:
     predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
-    growth: Array = np.maximum(_tail_growth(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
+    growth: Array = np.maximum(_squared_tail_growth(before, after), 1.0) * max(
+        (before[2] / after[2]) ** 2, 1.0
+    )
     return growth
 
 
-def _tail_growth(before: Array, after: Array) -> Array:
+def _squared_tail_growth(before: Array, after: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
     after: relative tails and size, (3,) each."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
@@ -213,13 +215,13 @@ def calibration_of(
     fall = before.fall
     power = before.power
     if previous.order != mesh.order and previous.edges == mesh.edges:
-        fall = _space_rate(before.space, space, mesh.order - previous.order)
+        fall = _measured_space_decay(before.space, space, mesh.order - previous.order)
     if previous.intervals != mesh.intervals:
-        power = _time_order(before.time, time, previous, mesh)
+        power = _measured_time_order(before.time, time, previous, mesh)
     return Calibration(mesh, space, time, fall, power, tails, 0.0)
 
 
-def _space_rate(before: Array, after: Array, orders: int) -> Array:
+def _measured_space_decay(before: Array, after: Array, orders: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
     on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
     return _limited_space_decay(_log_ratio(before, after) / orders)
@@ -232,7 +234,7 @@ def _limited_space_decay(decay: Array) -> Array:
     return limited
 
 
-def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
+def _measured_time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of convergence of the errors in time, (5,). before, after: errors in time, (5,) each, on the
     meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import multiplier_change, newton
+from ...orbit.newton import largest_multiplier_difference, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import path_differences
@@ -62,7 +62,7 @@ class CoarserMeshes:
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. near: an orbit near
         the cycle, on any mesh. accuracy: requested relative accuracy."""
-        fewer = _fewer_orders(near)
+        fewer = _order_difference(near)
         order = max(
             mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_fewer_orders
         )
@@ -96,7 +96,7 @@ class CoarserMeshes:
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
-        of_multipliers = multiplier_change(space.multipliers, time.multipliers)
+        of_multipliers = largest_multiplier_difference(space.multipliers, time.multipliers)
         in_space = np.append(self._errors_of_finer_mesh(space, by_orders), 0.0)
         in_time = np.append(self._errors_of_finer_mesh(time, by_intervals), of_multipliers)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
@@ -130,7 +130,7 @@ def _pessimistic_space_decay(orbit: Orbit) -> float:
     return min(max(slowest, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
 
 
-def _fewer_orders(near: Orbit) -> int:
+def _order_difference(near: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
     needed = ceil(COARSER_MESH_SETTINGS.min_space_decay / _pessimistic_space_decay(near))
     return min(max(needed, COARSER_MESH_SETTINGS.min_fewer_orders), COARSER_MESH_SETTINGS.max_fewer_orders)

@@ -44,10 +44,10 @@ class CycleErrors:
     def largest_error(self) -> float:
         """The error that is compared with the requested accuracy: the largest of the error of the period, the
         error of the largest y, and the error of the other extrema divided by `extrema_tolerance_ratio`."""
-        return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
+        return float(largest_weighted_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
-def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
+def largest_weighted_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
     """`CycleErrors.largest_error` for errors of the period, the largest y (`amplitude`) and the
     other extrema: numbers, or arrays of a common shape."""
     largest: Array = np.maximum(

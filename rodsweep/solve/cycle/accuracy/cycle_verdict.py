@@ -11,7 +11,7 @@ from ...orbit.orbit import Orbit
 from ..status import CycleStatus
 from .calibration import Calibration
 from .cycle_errors import CycleErrors
-from .minimal_period import undecided_divisor
+from .minimal_period import possible_period_divisor
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class RefinedCycle:
     @property
     def undecided_divisor(self) -> int:
         """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal."""
-        return undecided_divisor(self.path, self.errors.extrema_error)
+        return possible_period_divisor(self.path, self.errors.extrema_error)
 
     @property
     def modulus_error(self) -> float:

@@ -12,7 +12,13 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
-from ...orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of, newton, with_orbit_matrix
+from ...orbit.newton import (
+    ConvergedOrbit,
+    largest_multiplier_difference,
+    multipliers_and_trivial_error,
+    newton,
+    with_matrix_within_distance,
+)
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import path_differences
 from .calibration import Calibration, calibration_of
@@ -81,10 +87,13 @@ class ComparedCycle:
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers of the cycle, (rank - 1,), by descending modulus."""
-        return multipliers_of(with_orbit_matrix(self._found, FINER_MESH_SETTINGS.matrix_distance))[0]
+        return multipliers_and_trivial_error(
+            with_matrix_within_distance(self._found, FINER_MESH_SETTINGS.matrix_distance)
+        )[0]
 
     def difference(self, fine: "ComparedCycle") -> Array:
         """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four
-        differences of `path_differences`, and `multiplier_change` of the nontrivial multipliers."""
-        change = multiplier_change(self.multipliers, fine.multipliers)
+        differences of `path_differences`, and `largest_multiplier_difference` of the nontrivial
+        multipliers."""
+        change = largest_multiplier_difference(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.path, fine.path), change)

@@ -7,7 +7,7 @@ from ..marching_settings import MARCHING_SETTINGS
 from .cycle_errors import CycleErrors
 
 
-def errors_of_pair(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
+def errors_of_two_integrations(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     """Error estimates from the cycles `one` and `other` of two time integrations; NaN for the multiplier.
     share: relative distance of a settled motion from the cycle, which is added to the error estimates."""
     a = one.extrema

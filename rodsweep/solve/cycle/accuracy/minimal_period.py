@@ -35,7 +35,7 @@ class MinimalPeriodSettings:
 MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
-def common_divisor(path: CyclePath, present: float) -> int:
+def common_harmonic_divisor(path: CyclePath, present: float) -> int:
     """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest
     harmonic; 0 if all harmonics are 0."""
     return int(_divisor_from_harmonic_sizes(path.bending_harmonics, present))
@@ -43,7 +43,8 @@ def common_divisor(path: CyclePath, present: float) -> int:
 
 @compiled
 def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
-    """`common_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit `present`."""
+    """`common_harmonic_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit
+    `present`."""
     divisor = 0
     least = present * sizes.max()
     for k in range(len(sizes)):
@@ -53,13 +54,13 @@ def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
     return divisor
 
 
-def undecided_divisor(path: CyclePath, error: float) -> int:
+def possible_period_divisor(path: CyclePath, error: float) -> int:
     """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
     minimal.
 
     error: relative error of the extrema.
     """
-    return common_divisor(
+    return common_harmonic_divisor(
         path,
         max(
             MINIMAL_PERIOD_SETTINGS.certain_harmonic_ratio * error,
@@ -68,9 +69,9 @@ def undecided_divisor(path: CyclePath, error: float) -> int:
     )
 
 
-def over_minimal_period(orbit: Orbit) -> Orbit:
+def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the minimal period that its large harmonics show, as a start for Newton's method."""
-    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic)
+    g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic)
     if g == 1:
         return orbit
     times = node_times(orbit.intervals, orbit.stages)

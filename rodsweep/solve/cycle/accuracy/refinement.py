@@ -16,28 +16,30 @@ from ...orbit.measures import CyclePath, measures_of
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
-    multipliers_of,
+    multipliers_and_trivial_error,
     newton,
     newton_step,
-    with_orbit_matrix,
+    with_matrix_within_distance,
 )
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
+from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails
 from ...point import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
 from .finer_meshes import measured_calibration
-from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_divisor, over_minimal_period
+from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refinement_settings import REFINEMENT_SETTINGS
 
 
-def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
+def cycle_with_calibrated_errors(
+    calibration: Calibration, found: ConvergedOrbit, accuracy: float
+) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
     scaled to this orbit. accuracy: requested relative accuracy."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
-    multipliers, trivial_error = multipliers_of(found)
+    multipliers, trivial_error = multipliers_and_trivial_error(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
     by_matrix = (
@@ -60,7 +62,7 @@ def _multiplier_per_exponent(multipliers: Complex) -> float:
     return modulus * abs(log(modulus)) if modulus else 0.0
 
 
-def refined_at_period(
+def refined_cycle_at_given_period(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
     """The cycle near an approximate orbit, to a relative accuracy or on the finest allowed mesh; raises
@@ -80,22 +82,22 @@ def refined_at_period(
                 newton(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace), orbit.size
             )
             near = rough.orbit
-            stages = stages_for(accuracy)
+            stages = cheapest_stage_count(accuracy)
             if parameter is None:
-                first = wanted_mesh(near, REFINEMENT_SETTINGS.first_mesh_accuracy * aim, stages)
+                first = mesh_from_tails(near, REFINEMENT_SETTINGS.first_mesh_accuracy * aim, stages)
                 first = replace(
                     first, intervals=max(first.intervals, REFINEMENT_SETTINGS.min_intervals_for_prediction)
                 )
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
-            found = _solve_on_mesh(wanted_mesh(near, aim, stages), rough, aim, parameter)
-            return calibrated_cycle(found, None, accuracy, parameter)
+            found = _solve_on_mesh(mesh_from_tails(near, aim, stages), rough, aim, parameter)
+            return cycle_with_measured_errors(found, None, accuracy, parameter)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
             if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
                 raise
             aim = max(REFINEMENT_SETTINGS.retry_accuracy_factor * aim, REFINEMENT_SETTINGS.finest_accuracy)
-            mesh = wanted_mesh(orbit, aim, orbit.stages)
+            mesh = mesh_from_tails(orbit, aim, orbit.stages)
             if mesh.intervals * mesh.unknowns**3 > REFINEMENT_SETTINGS.max_retry_work:
                 raise
             start = mesh.interpolated_orbit(orbit)
@@ -136,12 +138,14 @@ def _predicted_cycle(
         REFINEMENT_SETTINGS.max_prediction_distance * accuracy, REFINEMENT_SETTINGS.min_prediction_distance
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    return with_calibrated_errors(
-        known, with_orbit_matrix(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)), accuracy
+    return cycle_with_calibrated_errors(
+        known,
+        with_matrix_within_distance(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)),
+        accuracy,
     )
 
 
-def calibrated_cycle(
+def cycle_with_measured_errors(
     found: ConvergedOrbit, before: Calibration | None, accuracy: float, parameter: str | None
 ) -> RefinedCycle:
     """The solved orbit `found` as a cycle with measured errors, solved again on finer meshes if necessary;
@@ -154,7 +158,7 @@ def calibrated_cycle(
     last = inf
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         before = measured_calibration(found, accuracy, before)
-        cycle = with_calibrated_errors(before, found, accuracy)
+        cycle = cycle_with_calibrated_errors(before, found, accuracy)
         if best is None or cycle.errors.largest_error < best.errors.largest_error:
             best = cycle
         if cycle.errors.largest_error <= accuracy or cycle.errors.largest_error > last:
@@ -201,12 +205,14 @@ def refined_cycle(
     computed, or None. If the stability is undecided, the cycle is solved again for a hundredth of the
     accuracy.
     """
-    found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic) > 1:
-        found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
+    found = refined_cycle_at_given_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
+    if common_harmonic_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic) > 1:
+        found = refined_cycle_at_given_period(
+            restricted_to_minimal_period(found.orbit), accuracy, workspace, parameter
+        )
     # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
     if found.stable is None:
-        found = refined_at_period(
+        found = refined_cycle_at_given_period(
             found.orbit,
             max(
                 accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.finest_accuracy
@@ -224,7 +230,7 @@ def newton_tolerance(accuracy: float) -> float:
     )
 
 
-def matrix_distance(accuracy: float) -> float:
+def max_matrix_distance(accuracy: float) -> float:
     """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
     for multipliers and tangent of the relative accuracy `accuracy`."""
     return min(

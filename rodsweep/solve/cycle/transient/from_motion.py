@@ -58,7 +58,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     duration = period / symmetry.period_parts
     at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     at = np.where(at > run.times[-1], at - period, at)
-    states = form_states(beam, form, spline(at))
+    states = collocation_states(beam, form, spline(at))
     return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 
@@ -70,7 +70,7 @@ def relative_asymmetry(beam: Beam, states: Array) -> float:
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
-def form_states(beam: Beam, form: StressForm, z: Array) -> Array:
+def collocation_states(beam: Beam, form: StressForm, z: Array) -> Array:
     """States of the collocation problem `form`, (m, unknowns), from states z of the integrated beam, (m,
     unknowns of the beam), on the same mesh."""
     S = beam.stresses(z)

@@ -95,7 +95,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
         yield grid
 
 
-def coarse_mesh(rod: Rod) -> Mesh:
+def coarse_mesh_along_branch(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
     wave_number = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
     if rod.standard:

@@ -48,7 +48,7 @@ def tip_angle_row(beam: Beam) -> Array:
     return beam.layout.state_with_stresses({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
-def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
+def limit_after_returns(row: Array, z: Array, returns: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
     RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
@@ -129,7 +129,7 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
     return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
 
 
-def repetition(moments: Sequence[Array]) -> tuple[int, float]:
+def returns_per_period_and_distance(moments: Sequence[Array]) -> tuple[int, float]:
     """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
     distance. distance: relative distance between the last return and the m-th return before it. (1, inf) if
     the last moments are rounding errors.

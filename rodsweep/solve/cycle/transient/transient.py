@@ -26,11 +26,18 @@ from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle import CycleRequest
 from ..status import CycleStatus
-from ..straight_rod import StraightRod, straight_rod
+from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
-from .returns import RETURN_SETTINGS, early_end, repetition, section_crossings, tip_angle_row, until_returns
+from .returns import (
+    RETURN_SETTINGS,
+    early_end,
+    limit_after_returns,
+    returns_per_period_and_distance,
+    section_crossings,
+    tip_angle_row,
+)
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
@@ -50,7 +57,7 @@ class Transient:
     def __init__(
         self,
         form: StressForm,
-        straight: StraightRod,
+        straight: StraightRodStability,
         request: CycleRequest,
         along: str | None,
         unstable: RefinedCycle | None,
@@ -173,7 +180,7 @@ class Transient:
         """
         if self.beam.rod == self.form.rod:
             return rate
-        return straight_rod(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
+        return straight_rod_stability(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
@@ -193,7 +200,7 @@ class Transient:
         expected time per return."""
         returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
-        limit = until_returns(self.tip_angle_row, z, returns)
+        limit = limit_after_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
         duration = TRANSIENT_SETTINGS.max_run_duration * returns * max(self.mode.period, last)
@@ -209,7 +216,9 @@ class Transient:
         None, also until the next attempt is due: the returns between attempts double with each attempt. After
         too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
         states = [state for _, state in self.past_returns]
-        turns, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
+        turns, distance = returns_per_period_and_distance(
+            states[-1 - RETURN_SETTINGS.max_returns_per_period :]
+        )
         often_failed = self.failed_starts >= TRANSIENT_SETTINGS.max_failed_starts
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (

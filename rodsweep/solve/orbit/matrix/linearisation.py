@@ -15,7 +15,7 @@ from ..orbit import Orbit
 from ..semidiscrete import SemidiscreteEquations
 from .elimination import eliminate_newton_matrix
 from .inversion import INVERSION_SETTINGS, invert_matrix
-from .multipliers import multipliers_over_period, partial_multipliers
+from .multipliers import multipliers_over_period, multipliers_over_solved_part
 from .phase import phase_residual, phase_right_side, write_phase_row
 from .right_sides import ParameterDerivatives, write_right_sides, write_stage_residuals, write_variation_sides
 from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
@@ -58,7 +58,9 @@ class Linearisation:
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return multipliers_over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
+        return multipliers_over_period(
+            multipliers_over_solved_part(self._memory.propagator, self.orbit), self.orbit
+        )
 
 
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:

@@ -11,7 +11,7 @@ from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
-from ...bordered.scale import Scale
+from ...bordered.scale import ArcLengthScale
 from .functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 
 
@@ -23,7 +23,7 @@ class CycleFamilyInterface(Protocol):
     Newton's matrices."""
 
     @property
-    def scale(self) -> Scale: ...
+    def scale(self) -> ArcLengthScale: ...
     @property
     def border(self) -> Array: ...
     @property
