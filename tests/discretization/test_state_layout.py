@@ -72,7 +72,9 @@ def test_the_reflection_is_the_one_of_the_mixed_form(form):
     x, layout = states(form.layout), MixedForm(form.rod, form.mesh).layout
     X = states(layout)
     assert np.array_equal(REFLECTION.apply(X, layout), MixedForm(form.rod, form.mesh).reflection_signs * X)
-    assert np.array_equal(REFLECTION.is_reversed(form.layout) * x, (x - REFLECTION.apply(x, form.layout)) / 2)
+    assert np.array_equal(
+        REFLECTION.reversal_mask(form.layout) * x, (x - REFLECTION.apply(x, form.layout)) / 2
+    )
 
 
 @pytest.mark.parametrize("layout", [StateLayout(3, 4, (2,)), StateLayout(6, 3)], ids=["plane", "space"])

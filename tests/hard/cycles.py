@@ -92,8 +92,8 @@ def chain_of(case, parameter, ratio, points):
 def finer(orbit):
     """The same cycle on a mesh that is far finer, converged to rounding, with its matrix."""
     here = mesh_of(orbit)
-    grid = uniform_mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
-    intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
+    grid = uniform_mesh(here.element_count, here.order + ceil(FINER_ORDER / here.element_count))
+    intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.interval_count))
     return with_matrix_within_distance(
         newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0
     )

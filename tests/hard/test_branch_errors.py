@@ -108,8 +108,10 @@ def broken_promises(case: Case) -> list[str]:
     wrong = []
     for point in islice(cycles_of(case), 0, None, EACH):
         stored, mesh = BranchPoint.from_cycle(point, case.accuracy), mesh_of(point.orbit)
-        longer = ceil(1.7 * mesh.intervals) + 1
-        fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
+        longer = ceil(1.7 * mesh.interval_count) + 1
+        fine = replace(
+            mesh, order=mesh.order + 6, interval_count=longer, stage_count=min(mesh.stage_count + 1, 6)
+        )
         exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
         extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.sensitivity
         y, multipliers = extrema["tip_y_max"], multipliers_and_trivial_error(exact)[0]
@@ -123,7 +125,9 @@ def broken_promises(case: Case) -> list[str]:
         }
         rounding = ROUNDING * max(1.0, slope)
         wrong += [f"{name} at {stored.at!r}: {a} > {b}" for name, (a, b) in off.items() if a > b + rounding]
-        if stored.at_error > case.accuracy or (slope <= STEEP and errors.largest_error > case.accuracy):
+        if stored.at_error > case.accuracy or (
+            slope <= STEEP and errors.largest_weighted_error > case.accuracy
+        ):
             wrong.append(f"errors at {stored.at!r}: {stored.at_error}, {errors}, slope {slope}")
     return wrong
 

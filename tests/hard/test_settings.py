@@ -312,7 +312,7 @@ def curves_of_changes(accuracy: float) -> Answer:
         found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings)
         seeds += [seed for seed in found if seed is not None]
     curves = curves_through(plane, seeds)
-    if curves.untraced:
+    if curves.untraced_count:
         return None
     answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}
     for number, curve in enumerate(curves.curves):

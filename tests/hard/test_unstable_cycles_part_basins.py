@@ -50,7 +50,7 @@ def stable(unstable):
 def marched(unstable, share):
     """Where the rod goes from the unstable cycle, its distance from rest in units of the cycle's."""
     rod = Displaced(unstable.coordinate, *STIFFNESS, 1.0, ORDER)
-    on_cycle = CyclePath(unstable.orbit).shapes(1, ORDER + 1)[:, 0, 1:].ravel()
+    on_cycle = CyclePath(unstable.orbit).shapes_from_mean_crossing(1, ORDER + 1)[:, 0, 1:].ravel()
     start = share * (on_cycle - rod.straight)
     return march_from(rod, start, PERIODS * unstable.orbit.period, 1e-6, 1e-8)
 

@@ -193,11 +193,11 @@ def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
     extra = errors | {"order": float(cycle.elements * cycle.order)}
-    extra["estimate"] = cycle.errors.largest_error
+    extra["estimate"] = cycle.errors.largest_weighted_error
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
         extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
-        extra |= {"intervals": orbit.intervals, "stages": orbit.stages}
+        extra |= {"intervals": orbit.interval_count, "stages": orbit.stage_count}
     return {"error": max(errors.values()), "extra": extra}
 
 

@@ -33,7 +33,7 @@ ARC_STEP_CONTROL = StepControl(
     max_error=0.1,
     prediction_order=4,
     max_angle=0.45,
-    max_ratio=2.0,
+    max_length_ratio=2.0,
 )
 """Control of the arc-length steps along a branch. Arc length is dimensionless (`ArcLengthScale`): on a step
 of 0.1 the deflection, the period and the parameter each change by at most about a tenth."""
@@ -90,7 +90,7 @@ class BranchCycle:
     @property
     def workspace(self) -> NewtonWorkspace:
         """Memory of Newton's matrices, in which the matrix of this cycle was assembled."""
-        return self.cycle.converged.workspace
+        return self.cycle.converged_orbit.workspace
 
     @property
     def coordinate(self) -> float:
@@ -113,7 +113,7 @@ class BranchCycle:
         """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
-        values = bordered_matrix_of(self.cycle.converged).partial_multipliers
+        values = bordered_matrix_of(self.cycle.converged_orbit).partial_multipliers
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def arc_length_condition(self, length: float) -> BorderCondition:

@@ -61,7 +61,7 @@ def _multiplier_modulus_error(point: BranchCycle) -> float:
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_error
+    return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
 
 
 @dataclass(frozen=True, slots=True)

@@ -164,9 +164,9 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
     workspace: memory of Newton's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    usual = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
+    usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
-    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.first_accuracy, True)):
+    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
         for share in BRANCH_START_SETTINGS.first_amplitudes:
             amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_share * a)
             try:
@@ -199,9 +199,9 @@ def _cycle_of_amplitude(
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace)
+    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
     near = rough.orbit
-    y = float(near.form.tip_coordinates(near.start)[1])
+    y = float(near.form.tip_coordinates(near.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:

@@ -119,14 +119,14 @@ class BranchCalibration:
         the relative accuracy."""
         return max(
             CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
-            CYCLE_ERROR_SETTINGS.min_error_share * accuracy,
+            CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy,
             CYCLE_ERROR_SETTINGS.rounding_error,
         )
 
     def largest_error(self, accuracy: float) -> float:
         """The error that must not exceed the relative accuracy: the larger of the parameter error and the
         largest error at equal parameter, divided by max(1, sensitivity/max_sensitivity of the settings)."""
-        return self._limiting_errors.errors(accuracy).largest_error
+        return self._limiting_errors.errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh for a relative accuracy of the cycle; the next finer mesh if none suffices."""
@@ -142,20 +142,20 @@ class BranchCalibration:
         the parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
         steep = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
-        parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
+        parts = [self.at_parameter.space_errors / steep, self.at_parameter.time_errors / steep]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[PERIOD_INDEX] = max(part[PERIOD_INDEX], own)
-        return replace(self.at_parameter, space=parts[0], time=parts[1])
+        return replace(self.at_parameter, space_errors=parts[0], time_errors=parts[1])
 
     @cached_property
     def _parameter_errors_only(self) -> Calibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
         numbers = [PERIOD_INDEX, LARGEST_Y_INDEX, WORST_EXTREMUM_INDEX, PATH_INDEX]
-        parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
+        parts = [self.at_parameter.space_errors.copy(), self.at_parameter.time_errors.copy()]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = own
-        return replace(self.at_parameter, space=parts[0], time=parts[1])
+        return replace(self.at_parameter, space_errors=parts[0], time_errors=parts[1])
 
     def interpolate(
         self, other: "BranchCalibration", share: float, sensitivity: float
@@ -167,12 +167,12 @@ class BranchCalibration:
         mean = [
             _interpolated_errors(one, another, share)
             for one, another in (
-                (self.at_parameter.space, other.at_parameter.space),
-                (self.at_parameter.time, other.at_parameter.time),
+                (self.at_parameter.space_errors, other.at_parameter.space_errors),
+                (self.at_parameter.time_errors, other.at_parameter.time_errors),
                 (self.parameter_errors, other.parameter_errors),
             )
         ]
-        known = replace(self.at_parameter, space=mean[0], time=mean[1], error_growth=np.ones(2))
+        known = replace(self.at_parameter, space_errors=mean[0], time_errors=mean[1], error_growth=np.ones(2))
         return BranchCalibration(known, mean[2], sensitivity)
 
 
@@ -206,7 +206,7 @@ def measured_branch_calibration(
             target,
             found,
             BRANCH_ERROR_SETTINGS.newton_tolerance_share * accuracy,
-            FINER_MESH_SETTINGS.matrix_distance,
+            FINER_MESH_SETTINGS.max_matrix_distance,
         )
         part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.

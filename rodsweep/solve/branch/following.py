@@ -206,9 +206,9 @@ def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start, "m3")
+    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
     # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
-    return float(one @ layout.stress_field(end.orbit.start, "m3")) < 0
+    return float(one @ layout.stress_field(end.orbit.start_state, "m3")) < 0
 
 
 def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:

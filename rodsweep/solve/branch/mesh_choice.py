@@ -96,7 +96,7 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
     before = point.calibration.at_parameter
     return with_calibration(
         point,
-        measured_branch_calibration(point.cycle.converged, point.derivatives, accuracy, before),
+        measured_branch_calibration(point.cycle.converged_orbit, point.derivatives, accuracy, before),
         accuracy,
     )
 
@@ -104,7 +104,7 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
 def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
     """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
     interpolated at this cycle. In the result the number of unmeasured steps is 0."""
-    cycle = cycle_with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
+    cycle = cycle_with_calibrated_errors(calibration.at_parameter, point.cycle.converged_orbit, accuracy)
     return replace(
         point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
     )
@@ -143,7 +143,7 @@ def solved_on_mesh(
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
     found = condition.on_mesh(
-        mesh, point.cycle.converged, newton_tolerance(accuracy), max_matrix_distance(accuracy)
+        mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), max_matrix_distance(accuracy)
     )
     tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))
     known = point.derivatives

@@ -113,20 +113,22 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
 def extended_to_whole_period(orbit: Orbit) -> Orbit:
     """A symmetric orbit, which stores half a period, extended by its symmetry to the whole period and to
     twice as many time intervals."""
-    intervals = 2 * orbit.intervals
-    times = 2 * node_times(intervals, orbit.stages)
+    intervals = 2 * orbit.interval_count
+    times = 2 * node_times(intervals, orbit.stage_count)
     later = times > 1
     points = orbit.states_at(np.where(later, times - 1, times))
     # The second half of the period is the mirror image of the first.
     points[later] = orbit.symmetry.apply(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
-    return replace(orbit, symmetry=NO_SYMMETRY, intervals=intervals, values=values)
+    return replace(orbit, symmetry=NO_SYMMETRY, interval_count=intervals, values=values)
 
 
 def asymmetry(orbit: Orbit) -> Array:
     """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
     for a symmetric orbit."""
-    return _bending_moments(orbit.start, orbit) + _bending_moments(orbit.states_at(np.array([0.5]))[0], orbit)
+    return _bending_moments(orbit.start_state, orbit) + _bending_moments(
+        orbit.states_at(np.array([0.5]))[0], orbit
+    )
 
 
 def _bending_moments(states: Array, orbit: Orbit) -> Array:
@@ -168,13 +170,13 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, whole.workspace)
+    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
-    aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
+    aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
     first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
@@ -189,7 +191,7 @@ def reaches_symmetric_cycle(
     in `known`, because a mesh without the symmetry of the cycle perturbs the crossing of the branches.
     """
     reference = asymmetry(start.orbit)
-    other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
+    other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
     lost = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
     if float(asymmetry(other) @ reference) < lost:
@@ -201,7 +203,7 @@ def reaches_symmetric_cycle(
 def _relative_asymmetry(start: BranchCycle) -> float:
     """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
-    return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.points, orbit)).max())
+    return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.all_states, orbit)).max())
 
 
 def _is_nearly_symmetric(start: BranchCycle) -> bool:

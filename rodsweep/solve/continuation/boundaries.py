@@ -37,12 +37,13 @@ class BoundaryProblem(Protocol[Curve]):
 
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
-    """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
-    curve, divided by the length of a row. untraced: number of seed points that lie on no traced curve."""
+    """All curves through the seed points of a plane. largest_seed_distance: largest distance of a seed point
+    from its curve, divided by the length of a row. untraced_count: number of seed points that lie on no
+    traced curve."""
 
     curves: tuple[Curve, ...]
-    agreement: float
-    untraced: int
+    largest_seed_distance: float
+    untraced_count: int
 
 
 @dataclass(slots=True)

@@ -35,7 +35,7 @@ from .transient.motion_mesh import coarse_mesh_along_branch
 class HopfStartSettings:
     """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
 
-    scan_step: float = 0.07
+    force_scan_ratio: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
     min_force: float = 1e-2
     """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
@@ -45,10 +45,10 @@ class HopfStartSettings:
     at this point. Bisection ends at this relative width of the interval of the force."""
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
-    converged_growth: float = 4.0
+    converged_growth_in_errors: float = 4.0
     """Newton's method for the Hopf point has converged if |Re w| <= converged_growth times the error estimate
     of w."""
-    converged_step: float = 1e-15
+    converged_force_step: float = 1e-15
     """Newton's method for the Hopf point has also converged if |step of F| <= converged_step |F|."""
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
@@ -63,9 +63,9 @@ class HopfStartSettings:
     max_direct_distance: float = 1e-2
     """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
     form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
-    intervals: int = 8
+    coarse_intervals: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
-    stages: int = 3
+    coarse_stages: int = 3
     """Number of collocation stages per interval of the coarse mesh."""
     branch_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
@@ -102,7 +102,7 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     above = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:
         # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
-        lower = F * (1 - HOPF_START_SETTINGS.scan_step)
+        lower = F * (1 - HOPF_START_SETTINGS.force_scan_ratio)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _hopf_point_between(rod, (lower, below), (F, above))
@@ -149,9 +149,9 @@ def _newton_hopf_point(
         if not (slope.real and isfinite(slope.real)):
             return None
         step = -w.real / slope.real
-        if abs(w.real) <= HOPF_START_SETTINGS.converged_growth * error or abs(
+        if abs(w.real) <= HOPF_START_SETTINGS.converged_growth_in_errors * error or abs(
             step
-        ) <= HOPF_START_SETTINGS.converged_step * abs(F):
+        ) <= HOPF_START_SETTINGS.converged_force_step * abs(F):
             return HopfPointBelow(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
@@ -221,7 +221,7 @@ def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace
     found = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.squared_y_and_frequency(F)[0]
     least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
-    if not least < found.orbit.form.tip_coordinates(found.orbit.start)[1] ** 2 / squared < most:
+    if not least < found.orbit.form.tip_coordinates(found.orbit.start_state)[1] ** 2 / squared < most:
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
@@ -237,7 +237,7 @@ def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
-    times = node_times(HOPF_START_SETTINGS.intervals, HOPF_START_SETTINGS.stages)
+    times = node_times(HOPF_START_SETTINGS.coarse_intervals, HOPF_START_SETTINGS.coarse_stages)
     X = normal.cycle_states(amplitude, np.pi * times)
     S, V = normal.form.stresses_and_velocities(X)
     source = normal.form.mesh
@@ -245,4 +245,6 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     states = form.layout.state(
         interpolate_stress(form.rod, S, source, target), V @ interpolation_matrix(source, target).T
     )
-    return Orbit.from_states(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.stages)
+    return Orbit.from_states(
+        form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.coarse_stages
+    )

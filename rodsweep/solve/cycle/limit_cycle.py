@@ -101,14 +101,14 @@ def _solve_cycle_or_raise(
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
         with suppress(Unsolvable):
             found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
-    elif neighbour is None and not request.is_traced:
+    elif neighbour is None and not request.is_recorded:
         found = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), found, request)
         return _with_neighbour(cycle, found, neighbour, along, request.accuracy, stability)
     by_mode = neighbour is None and request.tip is None
     decays = reason_for_decay(rod, w, request.amplitude) if by_mode else ""
-    if decays and not request.is_traced:
+    if decays and not request.is_recorded:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
     for mesh in motion_meshes(rod, request.transient > 0):
@@ -177,7 +177,7 @@ def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> C
     the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
-    return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability)
+    return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability_text)
 
 
 def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRodStability) -> Cycle:
@@ -224,7 +224,7 @@ def _outcome_of_motion(
         start = request.amplitude * transient.mode.z.real
     else:
         orbit = neighbour.predictor.orbit
-        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start))
+        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start_state))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 
@@ -244,6 +244,6 @@ def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
         cycle,
         multiplier=found.largest_multiplier,
         multipliers=mu,
-        trivial_multiplier_error=found.trivial_error,
+        trivial_multiplier_error=found.trivial_multiplier_error,
         errors=replace(cycle.errors, multiplier_error=found.errors.multiplier_error),
     )

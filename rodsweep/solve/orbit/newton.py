@@ -26,7 +26,7 @@ class OrbitNewtonSettings:
     first is longer than this number and longer than the step before."""
     max_iterations: int = 12
     """Maximum number of iterations; slower convergence means that there is no orbit near the start."""
-    quadratic_error: float = 1e5
+    quadratic_error_factor: float = 1e5
     """Bound of the relative error after a Newton step with the matrix at the iterate, divided by the squared
     relative step. Nearly neutral orbits come close to this bound."""
 
@@ -93,7 +93,9 @@ def newton(
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
         left = (
-            ORBIT_NEWTON_SETTINGS.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
+            ORBIT_NEWTON_SETTINGS.quadratic_error_factor * change**2
+            if fresh
+            else change * min(1.0, change / last)
         )
         if left <= tolerance:
             return ConvergedOrbit(orbit, matrix, distance)

@@ -38,7 +38,7 @@ def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArrays:
     return ReflectionArrays(
-        REFLECTION.is_reversed(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
+        REFLECTION.reversal_mask(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
     )
 
 
@@ -123,7 +123,7 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
 
 @compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
-    """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
+    """Compiled `tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
     values and derivative of the orbit values, (N,)."""
     squared = moment_inner_product(values, values, r)
     change = 2 * moment_inner_product(values, tangent, r)

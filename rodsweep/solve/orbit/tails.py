@@ -45,12 +45,12 @@ COEFFICIENT_TAIL_SETTINGS = CoefficientTailSettings()
 @dataclass(frozen=True, slots=True)
 class Tails:
     """Tails of an orbit. space: size of the last Legendre coefficients in space, divided by the largest
-    coefficient. time: size of the last coefficient in time, divided by the largest value. decay: decrease of
-    the natural logarithm of the coefficients in space per order."""
+    coefficient. time: size of the last coefficient in time, divided by the largest value. space_decay:
+    decrease of the natural logarithm of the coefficients in space per order."""
 
     space: float
     time: float
-    decay: float
+    space_decay: float
 
 
 def tails_of(orbit: Orbit) -> Tails:
@@ -87,7 +87,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, over all elements and the ends
     of all time intervals, (3, p + 1), p: order of the elements."""
     grid = orbit.form.mesh
-    ends = np.ascontiguousarray(orbit.states[:, -1])
+    ends = np.ascontiguousarray(orbit.stage_states[:, -1])
     if not orbit.form.has_continuous_stresses:
         c = np.abs(_stresses_by_element(orbit, ends) @ _analysis_matrix_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
@@ -132,13 +132,13 @@ def smooth_tails(orbit: Orbit) -> Array:
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
-        fields = _stresses_by_element(orbit, orbit.points)
+        fields = _stresses_by_element(orbit, orbit.all_states)
         ends = np.linalg.norm(fields @ _last_columns_of_analysis_matrix(grid.order), axis=-1).max(axis=(1, 2))
         largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
         in_space = float((ends / largest).max())
     else:
         in_space = largest_tail_in_space(
-            orbit.points, grid.elements, _last_columns_of_analysis_matrix(grid.order)
+            orbit.all_states, grid.elements, _last_columns_of_analysis_matrix(grid.order)
         )
     return np.array([in_space, _tail_in_time(orbit)])
 
@@ -191,7 +191,9 @@ def largest_tail_in_space(points: Array, elements: int, analysis: Array) -> floa
 
 def _tail_in_time(orbit: Orbit) -> float:
     """Largest relative tail in time of n1, n2 and m3 (see `largest_tail_in_time`)."""
-    return largest_tail_in_time(orbit.points, _last_coefficient_weights(orbit.stages), orbit.form.mesh.nodes)
+    return largest_tail_in_time(
+        orbit.all_states, _last_coefficient_weights(orbit.stage_count), orbit.form.mesh.nodes
+    )
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

@@ -55,7 +55,7 @@ def curve_record(
     values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
         declared, "fold", "fold_", folds
     )
-    values |= {"curve_agreement": found.agreement, "curves_untraced": found.untraced}
+    values |= {"curve_agreement": found.largest_seed_distance, "curves_untraced": found.untraced_count}
     return _filled_variables(declared, values | more)
 
 
@@ -114,8 +114,8 @@ def cycle_curve_record(
     declared = cycle_curve_variables(*plane)
     values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
-        "cycle_curve_agreement": found.agreement,
-        "cycle_curves_untraced": found.untraced,
+        "cycle_curve_agreement": found.largest_seed_distance,
+        "cycle_curves_untraced": found.untraced_count,
     }
     return _filled_variables(declared, values)
 
@@ -216,4 +216,4 @@ def with_hopf_ends(
 
     known = [point for curve in criticalities for point in curve.points]
     curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)
-    return replace(found, curves=curves, untraced=found.untraced + unstored)
+    return replace(found, curves=curves, untraced_count=found.untraced_count + unstored)

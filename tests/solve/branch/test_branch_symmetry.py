@@ -111,7 +111,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_cycle(here, ROUGH).orbit
-    p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
+    p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.nodes
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
     def rate(_, x):
@@ -119,13 +119,13 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
         return F / p.mass
 
     times = orbit.period * np.array([0.5, 1.0])
-    size = np.abs(orbit.points).max()
-    found = solve_ivp(rate, (0, times[1]), orbit.start, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
+    size = np.abs(orbit.all_states).max()
+    found = solve_ivp(rate, (0, times[1]), orbit.start_state, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
     half, whole = found.y.T
-    assert np.abs(whole - orbit.start).max() < 0.01 * size
+    assert np.abs(whole - orbit.start_state).max() < 0.01 * size
     assert np.abs(half - orbit.states_at(np.array([0.5]))[0]).max() < 0.01 * size
     moments = slice(2 * nodes, 3 * nodes)
-    assert np.abs(half + orbit.start)[moments].max() > 0.05 * np.abs(orbit.start[moments]).max()
+    assert np.abs(half + orbit.start_state)[moments].max() > 0.05 * np.abs(orbit.start_state[moments]).max()
 
 
 def turned_back(here):

@@ -184,7 +184,7 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
         lambda u: (rod.gamma1, 1.0, rod.gamma3 * radius(u) ** 2),
         Law(build.law, build.section),
     )
-    strains = orbit.form.mesh.evaluation_matrix(arm.u[:-1]) @ orbit.form.strains(orbit.start).T
+    strains = orbit.form.mesh.evaluation_matrix(arm.u[:-1]) @ orbit.form.strains(orbit.start_state).T
     period, y = arm.cycle(strains.T.ravel(), found.measures.period)
     assert period == pytest.approx(found.measures.period, rel=2e-8)
     assert y == pytest.approx(found.measures.tip_y_max, rel=2e-7)
@@ -214,7 +214,7 @@ def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(se
     segments = Segments(
         rod.F, (0.0, 0.4, 1.0), (stiffness, outer[0]), (drag, outer[1]), Law(build.law, section), order=14
     )
-    shape = orbit.form.mesh.evaluation_matrix(segments.u) @ orbit.form.shape(orbit.start).T
+    shape = orbit.form.mesh.evaluation_matrix(segments.u) @ orbit.form.shape(orbit.start_state).T
     period, y = segments.cycle(shape.T, found.measures.period, turns=1)
     assert period == pytest.approx(found.measures.period, rel=1e-7)
     assert y == pytest.approx(found.measures.tip_y_max, rel=3e-7)
@@ -250,7 +250,7 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
     orbit = found.orbit
     finer = mesh_with_edges(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
-    start = orbit.on_mesh(finer, 2 * orbit.intervals, orbit.stages + 1)
+    start = orbit.on_mesh(finer, 2 * orbit.interval_count, orbit.stage_count + 1)
     exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
 

@@ -45,11 +45,11 @@ def off(orbit, exact):
 
 def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
     coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY, MEMORY)
-    orbit, _ = coarser.predicted(FINE)
+    orbit, _ = coarser.predicted_orbit_and_errors(FINE)
     exact = newton(orbit, 1e-13, MEMORY).orbit
     between = [
         replace(coarser.coarse_mesh, order=FINE.order),
-        replace(coarser.coarse_mesh, intervals=FINE.intervals),
+        replace(coarser.coarse_mesh, interval_count=FINE.interval_count),
     ]
     errors = [
         off(FINE.interpolated_orbit(newton(m.interpolated_orbit(exact), 1e-13, MEMORY).orbit), exact)
@@ -59,9 +59,9 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
 
 
 def test_finer_meshes_differ_by_no_more_than_is_stated(near):
-    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted(FINE)
+    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted_orbit_and_errors(FINE)
     found = newton(orbit, 1e-12, MEMORY).orbit
-    for field, parts in (("order", known.space), ("intervals", known.time)):
+    for field, parts in (("order", known.space_errors), ("interval_count", known.time_errors)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(
             CyclePath(found), CyclePath(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
@@ -73,7 +73,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
 def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
     coarser = CoarserMeshes(FINE, near, ACCURACY, MEMORY)
     assert coarser.can_predict(FINE) and coarser.can_predict(
-        replace(FINE, order=FINE.order + 2, intervals=20)
+        replace(FINE, order=FINE.order + 2, interval_count=20)
     )
     for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"edges": (0.0, 0.5, 1.0)}, {"stages": 5}):
         assert not coarser.can_predict(replace(FINE, **other))
@@ -81,7 +81,7 @@ def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
 
 @pytest.mark.parametrize("why", ["no coarse cycle", "far off"])
 def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why, monkeypatch):
-    predicted = CoarserMeshes.predicted
+    predicted = CoarserMeshes.predicted_orbit_and_errors
 
     def spoilt(self, mesh):
         orbit, known = predicted(self, mesh)
@@ -89,7 +89,7 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
             return replace(orbit, values=orbit.values * (1 + 1e-4)), known
         raise Unsolvable(why)
 
-    monkeypatch.setattr(CoarserMeshes, "predicted", spoilt)
+    monkeypatch.setattr(CoarserMeshes, "predicted_orbit_and_errors", spoilt)
     alone, first = (
         refined_cycle_at_given_period(near, ACCURACY, MEMORY),
         refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
@@ -104,10 +104,12 @@ def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
         refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
     )
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
-    assert alone.converged.matrix.tangent is None and first.converged.matrix.tangent is not None
+    assert alone.converged_orbit.matrix.tangent is None and first.converged_orbit.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
     assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
-    assert alone.errors.largest_error <= ACCURACY and alone.converged.matrix_distance <= ACCURACY
+    assert (
+        alone.errors.largest_weighted_error <= ACCURACY and alone.converged_orbit.matrix_distance <= ACCURACY
+    )
 
 
 def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
@@ -117,6 +119,6 @@ def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     start = orbit_from_hopf(StressForm(rod, coarse_mesh_along_branch(rod)), hopf_point_below(rod), MEMORY)
     found = refined_cycle_at_given_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
-    finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
+    finer = replace(own, order=own.order + 8, interval_count=2 * own.interval_count)
     exact = newton(finer.interpolated_orbit(found.orbit), 1e-10, MEMORY).orbit
     assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= accuracy

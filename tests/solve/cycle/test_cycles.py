@@ -409,7 +409,7 @@ def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, or
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]
     upper = np.arange(order + 1)[(order + 1) // 2 :]
     slope = np.polyfit(upper, np.log(envelope[upper]), 1)[0]
-    assert tails_of(half).decay == pytest.approx(-slope, rel=1e-9)
+    assert tails_of(half).space_decay == pytest.approx(-slope, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def ended(point, amplitude=0.1, most_periods=400, **more):
 def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, growth, doubt):
     rod = StraightRodStability(w, error, "no mesh")
     assert (rod.stable, rod.growth_rate(7.0)) == (stable, growth)
-    assert doubt in rod.unproved_stability and bool(rod.unproved_stability) != bool(rod.stable)
+    assert doubt in rod.unproved_stability_text and bool(rod.unproved_stability_text) != bool(rod.stable)
 
 
 def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
@@ -88,7 +88,7 @@ def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
         found = straight_rod_stability(here, near)
         w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
         assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
-        count += len(found.followed) > 0
+        count += len(found.followed_eigenvalues) > 0
         near = eigenvalues_to_follow(here, found)
     assert count >= followed * steps
 

@@ -117,8 +117,8 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
 def test_a_released_workspace_keeps_what_most_rods_need():
     workspace = NewtonWorkspace()
     for numbers, kept in (
-        (WORKSPACE_SETTINGS.kept_numbers, True),
-        (WORKSPACE_SETTINGS.kept_numbers + 1, False),
+        (WORKSPACE_SETTINGS.max_kept_buffer_size, True),
+        (WORKSPACE_SETTINGS.max_kept_buffer_size + 1, False),
     ):
         memory = MatrixMemory(workspace, numbers, 1, 1)
         buffer = memory.factors.eliminated_blocks.base

@@ -39,16 +39,16 @@ class BorderedMatrix:
         self.scale = scale
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
-        p = orbit.semidiscrete
+        p = orbit.semidiscrete_equations
         along = parameter_derivatives(orbit.form, scale.parameter)
-        K, s, n = orbit.states.shape
+        K, s, n = orbit.stage_states.shape
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
-        write_right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, self._columns)
         ends = eliminate_newton_matrix(
-            orbit.points, V, orbit.duration, p, self._memory.factors, self._columns
+            orbit.all_states, V, orbit.solved_duration, p, self._memory.factors, self._columns
         )
         self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
         m = len(self._shooting_intervals.flow_maps)
@@ -66,11 +66,11 @@ class BorderedMatrix:
             own = slice(c, c + 1)
             self._matrix[:-2, place] = -self.closing_sides(np.zeros(n), self._columns[:, :, own], ends[own])
         row = np.empty(n)
-        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
+        write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
         self._matrix[-2, :n] = row
         # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
         # plus.
-        self._matrix[-2, -1] = -phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
+        self._matrix[-2, -1] = -phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
         self._closing_sides = self._closing_and_phase_sides(orbit, self._columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
@@ -82,8 +82,10 @@ class BorderedMatrix:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
         factors of this matrix; border, length: as in `step`."""
         factors = self._memory.factors
-        p = self.orbit.semidiscrete
-        columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
+        p = self.orbit.semidiscrete_equations
+        columns, ends = reduced_residuals(
+            orbit.all_states, orbit.solved_duration, orbit.semidiscrete_equations, p, factors
+        )
         right = np.append(self._closing_and_phase_sides(orbit, columns, ends), length)
         return self.solve(border, right, columns[:, :, 0], 1.0)
 
@@ -102,8 +104,8 @@ class BorderedMatrix:
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
         along = parameter_derivatives(orbit.form, self.scale.parameter)
-        equations = orbit.semidiscrete
-        p = self.orbit.semidiscrete
+        equations = orbit.semidiscrete_equations
+        p = self.orbit.semidiscrete_equations
         changed: tuple[Array, Array] = reduced_variations(
             orbit.values, equations, along, variations, p, self._memory.factors
         )
@@ -113,7 +115,7 @@ class BorderedMatrix:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
         state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
-        substitute_stages(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
+        substitute_stages(starts, columns, self.orbit.semidiscrete_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
@@ -155,7 +157,7 @@ class BorderedMatrix:
         stages, (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a
         fixed start, (1, n).
         """
-        p = self.orbit.semidiscrete
+        p = self.orbit.semidiscrete_equations
         sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
@@ -165,9 +167,9 @@ class BorderedMatrix:
         and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages, (K, s, 1,
         n). ends: change of the end of the last shooting interval caused by `columns` for a fixed start, (1,
         n)."""
-        p = orbit.semidiscrete
-        right = self.closing_sides(closing_residual(orbit.points, p), columns, ends)
-        return np.append(right, -phase_residual(orbit.start, p.rod, p.node_matrices))
+        p = orbit.semidiscrete_equations
+        right = self.closing_sides(closing_residual(orbit.all_states, p), columns, ends)
+        return np.append(right, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
@@ -176,7 +178,7 @@ class BorderedMatrix:
         right: right-hand sides of the closing conditions, of the phase condition and of the border, (m n +
         2,). sides: right-hand sides of the stages, (K, s, n). share: factor on `sides`.
         """
-        n = len(self.orbit.start)
+        n = len(self.orbit.start_state)
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_row(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
@@ -187,12 +189,14 @@ class BorderedMatrix:
         """Change of orbit values and parameter, (N + 1,). found: changes of the starts of the shooting
         intervals, of the period and of the parameter, (m n + 2,). sides: right-hand sides of the stages, (K,
         s, n). share: factor on `sides`."""
-        n = len(self.orbit.start)
+        n = len(self.orbit.start_state)
         stages = found[-2] * self._columns[:, :, 0] + share * sides + found[-1] * self._columns[:, :, 2]
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._shooting_intervals.stage_changes(factors, starts, columns, self.orbit.semidiscrete)
+        out = self._shooting_intervals.stage_changes(
+            factors, starts, columns, self.orbit.semidiscrete_equations
+        )
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 

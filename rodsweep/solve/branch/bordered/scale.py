@@ -44,7 +44,7 @@ class ArcLengthScale:
         """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
         the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
         deflection, in L."""
-        largest = float(np.abs(orbit.points @ deflection_row(orbit)).max())
+        largest = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
         # `least` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
@@ -64,7 +64,7 @@ class ArcLengthScale:
 
 def deflection_of(orbit: Orbit) -> float:
     """Deflection of an orbit in L at t = 0, when the tip's y is largest; linear in the state."""
-    return float(deflection_row(orbit) @ orbit.start)
+    return float(deflection_row(orbit) @ orbit.start_state)
 
 
 def deflection_row(orbit: Orbit) -> Array:

@@ -56,7 +56,9 @@ class SpecialBoundaries:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
-        return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
+        return Boundaries(
+            curves, max(one.largest_seed_distance for one in found), sum(one.untraced_count for one in found)
+        )
 
     def _searches(
         self, results: Mapping[int, HalfCurveArrays]

@@ -39,7 +39,7 @@ CURVE_STEP_CONTROL = StepControl(
     max_error=0.1,
     prediction_order=CURVE_IDENTITY_SETTINGS.max_interpolated_points,
     max_angle=0.55,
-    max_ratio=2.0,
+    max_length_ratio=2.0,
     max_solutions=400,
 )
 """Step length control along a curve of special points. Steps have four components: the three components of
@@ -102,13 +102,13 @@ class SpecialCurveProblem:
 
     def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEndReason:
         """Reason for the end of the curve `curve`, as stored in the result file."""
-        if curve.end is CurveStop.margin:
-            return END_BY_MARGIN[curve.margin]
-        if curve.end is CurveStop.closed:
+        if curve.end_reason is CurveStop.zero_margin:
+            return END_BY_MARGIN[curve.margin_index]
+        if curve.end_reason is CurveStop.closed:
             return CurveEndReason.closed
         return (
             self._lost_end(curve.solutions[-1])
-            if curve.end is CurveStop.lost
+            if curve.end_reason is CurveStop.no_further_solution
             else CurveEndReason.not_followed
         )
 

@@ -50,8 +50,8 @@ def first_point_of_curve(
     rough = replace(
         mesh,
         order=ceil(CURVE_START_SETTINGS.order_ratio * mesh.order),
-        intervals=ceil(CURVE_START_SETTINGS.interval_ratio * mesh.intervals),
-        stages=cheapest_stage_count(CURVE_SECANT_SETTINGS.accuracy),
+        interval_count=ceil(CURVE_START_SETTINGS.interval_ratio * mesh.interval_count),
+        stage_count=cheapest_stage_count(CURVE_SECANT_SETTINGS.accuracy),
     )
     orbit = rough.interpolated_orbit(orbit)
     least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max

@@ -109,8 +109,8 @@ class CycleFamily:
             return replace(last, errors=previous.errors.for_next_point)
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(last.orbit)
-            longer = ceil(CURVE_SECANT_SETTINGS.more_intervals * mesh.intervals)
-            finer = replace(mesh, order=mesh.order + CURVE_SECANT_SETTINGS.more_orders, intervals=longer)
+            longer = ceil(CURVE_SECANT_SETTINGS.more_intervals * mesh.interval_count)
+            finer = replace(mesh, order=mesh.order + CURVE_SECANT_SETTINGS.more_orders, interval_count=longer)
             if not finer.is_allowed:
                 break
             known = last.normal_derivatives

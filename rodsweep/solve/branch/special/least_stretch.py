@@ -51,7 +51,7 @@ def least_stretch_of_orbit(orbit: Orbit) -> float:
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
     """
-    rough = orbit.form.least_stretch(orbit.points)
+    rough = orbit.form.least_stretch(orbit.all_states)
     if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return rough
     return least_stretch(CyclePath(orbit), LEAST_STRETCH_SETTINGS.safe_sampled_stretch)

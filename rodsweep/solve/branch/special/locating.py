@@ -89,7 +89,7 @@ def special_point_between(
         length, slope = _bracketed_zero(kind, segment)
         mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
         # At least the number of stages with the smallest cost at this accuracy.
-        mesh = replace(mesh, stages=max(mesh.stages, cheapest_stage_count(aim)))
+        mesh = replace(mesh, stage_count=max(mesh.stage_count, cheapest_stage_count(aim)))
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
             segment.set_mesh(mesh)
@@ -116,7 +116,7 @@ def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
-    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_by_stages * mesh.stages))
+    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_by_stages * mesh.stage_count))
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )
@@ -124,7 +124,7 @@ def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
         max(ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_more_orders),
         SPECIAL_POINT_SETTINGS.max_more_orders,
     )
-    return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
+    return replace(mesh, order=mesh.order + more, interval_count=ceil(growth * mesh.interval_count))
 
 
 def _with_mesh_errors(

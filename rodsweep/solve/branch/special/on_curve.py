@@ -172,7 +172,7 @@ class SolvedPoint:
     @property
     def tip_y_max(self) -> float:
         """Largest tip y of the cycle, in L: the modulus of the tip's y at t = 0."""
-        return abs(float(self.orbit.form.tip_coordinates(self.orbit.start)[1]))
+        return abs(float(self.orbit.form.tip_coordinates(self.orbit.start_state)[1]))
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter

@@ -19,8 +19,8 @@ def errors_of_two_integrations(one: CyclePath, other: CyclePath, share: float) -
     # Errors of extrema are divided by the largest y; theta may be several times as large as y.
     left = share * max(1.0, abs(b["tip_theta_max"]) / size)
     return CycleErrors(
-        float(MARCHING_SETTINGS.pair_factor * period + share),
-        float(MARCHING_SETTINGS.pair_factor * height + share),
-        float(MARCHING_SETTINGS.pair_factor * worst + left),
+        float(MARCHING_SETTINGS.pair_error_factor * period + share),
+        float(MARCHING_SETTINGS.pair_error_factor * height + share),
+        float(MARCHING_SETTINGS.pair_error_factor * worst + left),
         nan,
     )

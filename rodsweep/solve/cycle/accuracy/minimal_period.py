@@ -21,13 +21,13 @@ from ...orbit.orbit import Orbit, node_times
 class MinimalPeriodSettings:
     """Settings for the test whether a harmonic is nonzero."""
 
-    min_harmonic: float = 1e-3
+    min_harmonic_ratio: float = 1e-3
     """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
     size of the largest harmonic exceeds this."""
-    certain_harmonic_ratio: float = 10.0
+    certain_harmonic_in_errors: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""
-    min_certain_harmonic: float = 1e-6
+    min_certain_harmonic_ratio: float = 1e-6
     """A harmonic is not certainly nonzero if its size divided by the size of the largest harmonic is at most
     this: the error estimate applies to the tip, and the bending strain may have a larger error."""
 
@@ -63,17 +63,17 @@ def possible_period_divisor(path: CyclePath, error: float) -> int:
     return common_harmonic_divisor(
         path,
         max(
-            MINIMAL_PERIOD_SETTINGS.certain_harmonic_ratio * error,
-            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic,
+            MINIMAL_PERIOD_SETTINGS.certain_harmonic_in_errors * error,
+            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_ratio,
         ),
     )
 
 
 def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the minimal period that its large harmonics show, as a start for Newton's method."""
-    g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic)
+    g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
     if g == 1:
         return orbit
-    times = node_times(orbit.intervals, orbit.stages)
+    times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
     return replace(orbit, values=np.append(orbit.states_at(times / g), orbit.period / g))

@@ -74,19 +74,22 @@ def refined_cycle_at_given_period(
     Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
     are then tried.
     """
-    aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
+    aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     start = orbit
     while True:
         try:
             rough = require_similar_size(
-                newton(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace), orbit.size
+                newton(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace), orbit.max_energy_norm
             )
             near = rough.orbit
             stages = cheapest_stage_count(accuracy)
             if parameter is None:
-                first = mesh_from_tails(near, REFINEMENT_SETTINGS.first_mesh_accuracy * aim, stages)
+                first = mesh_from_tails(near, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * aim, stages)
                 first = replace(
-                    first, intervals=max(first.intervals, REFINEMENT_SETTINGS.min_intervals_for_prediction)
+                    first,
+                    interval_count=max(
+                        first.interval_count, REFINEMENT_SETTINGS.min_intervals_for_prediction
+                    ),
                 )
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
@@ -97,8 +100,8 @@ def refined_cycle_at_given_period(
             if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
                 raise
             aim = max(REFINEMENT_SETTINGS.retry_accuracy_factor * aim, REFINEMENT_SETTINGS.finest_accuracy)
-            mesh = mesh_from_tails(orbit, aim, orbit.stages)
-            if mesh.intervals * mesh.unknowns**3 > REFINEMENT_SETTINGS.max_retry_work:
+            mesh = mesh_from_tails(orbit, aim, orbit.stage_count)
+            if mesh.interval_count * mesh.unknown_count**3 > REFINEMENT_SETTINGS.max_retry_cost:
                 raise
             start = mesh.interpolated_orbit(orbit)
 
@@ -115,10 +118,10 @@ def _predicted_cycle(
     """
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
-    orbit, known = best = coarser.predicted(mesh)
+    orbit, known = best = coarser.predicted_orbit_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
-        error = known.errors(accuracy).largest_error
-        if error < best[1].errors(accuracy).largest_error:
+        error = known.errors(accuracy).largest_weighted_error
+        if error < best[1].errors(accuracy).largest_weighted_error:
             best = orbit, known
         if error <= accuracy:
             break
@@ -131,9 +134,9 @@ def _predicted_cycle(
             break
         if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
-        orbit, known = coarser.predicted(mesh)
+        orbit, known = coarser.predicted_orbit_and_errors(mesh)
     orbit, known = best
-    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
+    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.max_energy_norm)
     if found.matrix_distance > max(
         REFINEMENT_SETTINGS.max_prediction_distance * accuracy, REFINEMENT_SETTINGS.min_prediction_distance
     ):
@@ -159,11 +162,11 @@ def cycle_with_measured_errors(
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         before = measured_calibration(found, accuracy, before)
         cycle = cycle_with_calibrated_errors(before, found, accuracy)
-        if best is None or cycle.errors.largest_error < best.errors.largest_error:
+        if best is None or cycle.errors.largest_weighted_error < best.errors.largest_weighted_error:
             best = cycle
-        if cycle.errors.largest_error <= accuracy or cycle.errors.largest_error > last:
+        if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > last:
             break
-        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_error
+        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
         finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
         if not finer.is_allowed:
             break
@@ -180,16 +183,16 @@ def _solve_on_mesh(
     multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
-    last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error) ** 0.5
+    last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
     solution = newton(mesh.interpolated_orbit(found.orbit), last, found.workspace)
-    return newton_step(require_similar_size(solution, found.orbit.size), parameter)
+    return newton_step(require_similar_size(solution, found.orbit.max_energy_norm), parameter)
 
 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
     """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
     if (
         not REFINEMENT_SETTINGS.min_size_ratio * size
-        < found.orbit.size
+        < found.orbit.max_energy_norm
         < REFINEMENT_SETTINGS.max_size_ratio * size
     ):
         raise Unsolvable("the orbit found by Newton's method is far larger or smaller than its start")
@@ -206,7 +209,7 @@ def refined_cycle(
     accuracy.
     """
     found = refined_cycle_at_given_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_harmonic_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic) > 1:
+    if common_harmonic_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
         found = refined_cycle_at_given_period(
             restricted_to_minimal_period(found.orbit), accuracy, workspace, parameter
         )
@@ -226,7 +229,7 @@ def refined_cycle(
 def newton_tolerance(accuracy: float) -> float:
     """Relative tolerance of Newton's method for a cycle of a given relative accuracy."""
     return max(
-        REFINEMENT_SETTINGS.newton_tolerance_share * accuracy, REFINEMENT_SETTINGS.min_newton_tolerance
+        REFINEMENT_SETTINGS.newton_tolerance_ratio * accuracy, REFINEMENT_SETTINGS.min_newton_tolerance
     )
 
 
@@ -234,6 +237,6 @@ def max_matrix_distance(accuracy: float) -> float:
     """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
     for multipliers and tangent of the relative accuracy `accuracy`."""
     return min(
-        max(REFINEMENT_SETTINGS.matrix_distance_share * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
+        max(REFINEMENT_SETTINGS.matrix_distance_ratio * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
         REFINEMENT_SETTINGS.max_matrix_distance,
     )

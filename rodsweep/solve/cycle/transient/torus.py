@@ -115,8 +115,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
     this pair is the only instability of the cycle."""
-    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.modulus_error]
-    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.modulus_error:
+    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.largest_modulus_error]
+    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.largest_modulus_error:
         return None
     return float(abs(np.angle(outside[0])))
 

@@ -35,8 +35,8 @@ class Linearisation:
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
         self.orbit = orbit
         self.workspace = workspace
-        self._memory = MatrixMemory(workspace, orbit.intervals, orbit.stages, orbit.form.unknowns)
-        p = orbit.semidiscrete
+        self._memory = MatrixMemory(workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknowns)
+        p = orbit.semidiscrete_equations
         factors = self._memory.factors
         along = (
             ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
@@ -51,7 +51,7 @@ class Linearisation:
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = newton_step_with_factors(
-            orbit.values, self._period_derivative, orbit.semidiscrete, self._memory.factors
+            orbit.values, self._period_derivative, orbit.semidiscrete_equations, self._memory.factors
         )
         return step
 

@@ -27,7 +27,7 @@ class ShootingIntervalSettings:
     max_growth: float = 1e7
     """Largest norm of the map of a shooting interval; a Newton step then has nine correct digits. Stable
     cycles have norms below 1e3 and a single shooting interval."""
-    sweeps: int = 2
+    sweep_count: int = 2
     """Number of sweeps of the orthogonal iteration over all shooting intervals. The first sweep orders the
     directions by their growth; the second starts with ordered directions."""
     negligible_multiplier: float = 1e-17
@@ -86,7 +86,7 @@ class ShootingIntervals:
         """
         *others, last = self.flow_maps
         ahead = triangle = np.eye(len(last))
-        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweeps):
+        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweep_count):
             # Directions that decay to nothing over a period are dropped, to save time.
             lasting = np.flatnonzero(
                 np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier

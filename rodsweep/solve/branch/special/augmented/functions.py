@@ -87,15 +87,15 @@ class FoldFunction:
         """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
         matrix = self.matrix
         tangent = self.vectors
-        p = orbit.semidiscrete
+        p = orbit.semidiscrete_equations
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.residual_variations(orbit, tangent[None])
-        row = np.empty(len(orbit.start))
-        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
+        row = np.empty(len(orbit.start_state))
+        write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
         along = orbit.form.parameter_derivative(matrix.scale.parameter)
-        shift = phase_right_side(orbit.start, along, p.rod, p.node_matrices)
-        closing = matrix.closing_sides(closing_residual(change.points, p), columns, ends)
-        of_phase = shift * tangent[-1] - row @ change.start
+        shift = phase_right_side(orbit.start_state, along, p.rod, p.node_matrices)
+        closing = matrix.closing_sides(closing_residual(change.all_states, p), columns, ends)
+        of_phase = shift * tangent[-1] - row @ change.start_state
         right = np.array(
             [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
         )
@@ -113,14 +113,14 @@ class TorusFunction:
         if pair is None:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
-        p = matrix.orbit.semidiscrete
+        p = matrix.orbit.semidiscrete_equations
         self.shifted = matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_shift) * pair * p.symmetry
         start = np.ones(len(p.mass), dtype=complex)
         for _ in range(AUGMENTED_SETTINGS.inverse_iterations):
             start = np.linalg.solve(self.shifted, p.symmetry @ start)
             start /= np.linalg.norm(start)
         self.border = start.conj()
-        K, s, n = matrix.orbit.states.shape
+        K, s, n = matrix.orbit.stage_states.shape
         self.vectors = matrix.back_substitute(_real_and_imaginary(start), np.zeros((K, s, 2, n)))
         n = len(start)
         self.bordered = np.zeros((n + 1, n + 1), dtype=complex)
@@ -142,7 +142,9 @@ class TorusFunction:
         columns, ends = self.matrix.residual_variations(orbit, self.vectors)
         n = ends.shape[1]
         start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
-        right = np.append(self.multiplier * (orbit.semidiscrete.symmetry @ start), 1 - self.border @ start)
+        right = np.append(
+            self.multiplier * (orbit.semidiscrete_equations.symmetry @ start), 1 - self.border @ start
+        )
         right[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered, right)
         self.multiplier += complex(change[-1])
