@@ -93,7 +93,7 @@ def cycles_of(case: Case) -> Iterator[BranchCycle]:
             here = next_cycle(here, case.accuracy)
         except Unsolvable:
             return
-        outside = not 0 < here.coordinate < case.stop or here.deflection * last.deflection < 0
+        outside = not 0 < here.parameter_coordinate < case.stop or here.deflection * last.deflection < 0
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)

@@ -93,15 +93,15 @@ class BranchCycle:
         return self.cycle.converged_orbit.workspace
 
     @property
-    def coordinate(self) -> float:
+    def parameter_coordinate(self) -> float:
         """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
-        return self.orbit.form.rod.coordinate(self.scale.parameter)
+        return self.orbit.form.rod.coordinate(self.scale.parameter_name)
 
     @property
     def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length; changes sign at a
         fold."""
-        return self.derivatives.parameter_slope
+        return self.derivatives.parameter_rate
 
     @property
     def deflection(self) -> float:
@@ -109,11 +109,11 @@ class BranchCycle:
         return deflection_of(self.orbit)
 
     @cached_property
-    def partial_multipliers(self) -> Complex:
+    def multipliers_over_solved_part(self) -> Complex:
         """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
-        values = bordered_matrix_of(self.cycle.converged_orbit).partial_multipliers
+        values = bordered_matrix_of(self.cycle.converged_orbit).multipliers_over_solved_part
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def arc_length_condition(self, length: float) -> BorderCondition:
@@ -126,13 +126,13 @@ class BranchCycle:
         change = length * self.tangent
         if self.previous is not None:
             change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
-        return moved_orbit(self.orbit, self.scale.parameter, change)
+        return moved_orbit(self.orbit, self.scale.parameter_name, change)
 
     def _cubic_coefficients(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
         its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
         cubic."""
-        name = self.scale.parameter
+        name = self.scale.parameter_name
         mesh = mesh_of(self.orbit)
         last = mesh.interpolated_orbit(before.orbit)
         coordinate = last.form.rod.coordinate(name)
@@ -143,7 +143,7 @@ class BranchCycle:
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        apart = np.append(last.values - self.orbit.values, coordinate - self.coordinate)
+        apart = np.append(last.values - self.orbit.values, coordinate - self.parameter_coordinate)
         # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
@@ -156,7 +156,7 @@ def branch_derivatives(found: ConvergedOrbit, scale: ArcLengthScale, tangent: Ar
 
     In the result curvature and multiplier rate are 0, to be set by the caller.
     """
-    own = ArcLengthScale.at_orbit(found.orbit, scale.parameter, scale.min_deflection_unit)
+    own = ArcLengthScale.at_orbit(found.orbit, scale.parameter_name, scale.min_deflection_unit)
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
@@ -166,7 +166,7 @@ def tangent_at(orbit: Orbit, scale: ArcLengthScale, side: Array, matrix: Bordere
     """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. scale: units of the
     components. side: direction in components (deflection, log period, parameter), (3,); the tangent makes an
     acute angle with `side`."""
-    tangent = matrix.direction(side)
+    tangent = matrix.branch_tangent(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.directional_derivative(orbit, tangent) @ side > 0 else -tangent
 
@@ -227,13 +227,13 @@ def branch_cycle_with_calibrated_errors(
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step. accuracy:
     relative accuracy of `found`.
     """
-    cycle = cycle_with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
+    cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, found, accuracy)
     derivatives = branch_derivatives(found, start.scale, tangent)
-    curvature = (derivatives.parameter_slope - start.parameter_rate) / length
+    curvature = (derivatives.parameter_rate - start.parameter_rate) / length
     changed = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
     return BranchCycle(
         cycle=cycle,
-        derivatives=replace(derivatives, curvature=curvature, multiplier_rate=changed),
+        derivatives=replace(derivatives, parameter_curvature=curvature, multiplier_rate=changed),
         next_arc_length=ahead,
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,

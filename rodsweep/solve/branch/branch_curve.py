@@ -41,7 +41,7 @@ class BranchPoint:
         beyond = sizes - 1
         undecided = bool((np.abs(beyond) <= _multiplier_modulus_error(point)).any())
         return cls(
-            at=getattr(point.orbit.form.rod, point.scale.parameter),
+            at=getattr(point.orbit.form.rod, point.scale.parameter_name),
             at_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
@@ -69,7 +69,7 @@ class BranchEnd:
     """The last special point of a branch; complete, end_hopf, end_breaking and list_full: as in
     `BranchCurve`."""
 
-    special: SpecialPoint
+    special_point: SpecialPoint
     complete: bool
     end_hopf: int = -1
     end_breaking: SymmetryBreaking | None = None
@@ -100,7 +100,7 @@ class BranchCurve:
 
     def add_special_point(self, special: SpecialPoint) -> None:
         """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
-        self.special_points.append(replace(special, after=len(self.points) - 1))
+        self.special_points.append(replace(special, index_of_cycle_before=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
         """Appends the special points `between`, which lie between the present last cycle and the next cycle.
@@ -117,12 +117,14 @@ class BranchCurve:
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
         del self.points[-count:]
-        self.special_points[:] = [point for point in self.special_points if point.after < len(self.points)]
+        self.special_points[:] = [
+            point for point in self.special_points if point.index_of_cycle_before < len(self.points)
+        ]
 
-    def end(self, end: BranchEnd) -> None:
+    def append_end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the
         branch."""
-        self.add_special_point(end.special)
+        self.add_special_point(end.special_point)
         self.complete = end.complete
         self.list_full = end.list_full
         self.end_hopf = end.end_hopf

@@ -18,7 +18,7 @@ def branch_end_point(point: BranchCycle, reason: EndReason, message: str = "") -
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
     the caller. message: cause of a failure."""
     measures = point.cycle.measures
-    at = getattr(point.orbit.form.rod, point.scale.parameter)
+    at = getattr(point.orbit.form.rod, point.scale.parameter_name)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,
@@ -65,7 +65,7 @@ class BranchRecord:
             self._unmeasured = []
         return self._last_measured
 
-    def end(self, end: BranchEnd) -> None:
+    def append_end(self, end: BranchEnd) -> None:
         """Appends the end of the branch, with errors. If the errors of the last cycles cannot be brought
         within the accuracy, these cycles are removed and the branch ends at the last measured cycle."""
         curve = self.curve
@@ -75,12 +75,12 @@ class BranchRecord:
             curve.remove_last_cycles(len(self._unmeasured))
             message = f"the errors of the next cycles cannot be measured: {why}"
             special = branch_end_point(self._last_measured, EndReason.no_cycle_found, message)
-            end = replace(end, special=special, complete=False)
-        special = end.special
+            end = replace(end, special_point=special, complete=False)
+        special = end.special_point
         last = curve.points[-1]
         if np.isnan(special.error):
             special = replace(special, error=last.at_error * abs(special.at))
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
             special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
-        curve.end(replace(end, special=special))
+        curve.append_end(replace(end, special_point=special))

@@ -36,14 +36,14 @@ class BranchStartSettings:
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
-    max_amplitude_share: float = 0.05
+    max_amplitude_ratio: float = 0.05
     """Upper limit of the amplitude of the first cycle, divided by
     |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
     inaccurate."""
     min_deflection_amplitude: float = 0.1
     """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a
     `ArcLengthScale`."""
-    amplitude_ratios: tuple[float, float] = 0.5, 2.0
+    allowed_amplitude_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
     frequency_rounding: float = 1e-14
@@ -60,13 +60,14 @@ ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBranchStart:
-    """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
-    off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf point."""
+    """A Hopf point along the continuation parameter `parameter_name`, with the normal form of the cycles that
+    branch off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf
+    point."""
 
     crossing: Crossing
     rod: Rod
-    name: str
-    coordinate: float
+    parameter_name: str
+    parameter_coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     growth_slope: complex
     """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
@@ -89,10 +90,10 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        turned = -1.0 if Path(self.rod, self.name).is_compliance else 1.0
+        turned = -1.0 if Path(self.rod, self.parameter_name).is_compliance else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
-        squared = -turned * self.growth_slope.real * self.coordinate / self.coefficients.landau.real
+        squared = -turned * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
 
     @property
@@ -110,7 +111,7 @@ class HopfBranchStart:
     def period_error(self) -> float:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
-        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
+        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.parameter_coordinate)
         return (
             abs(self.growth_slope) * parameter_error / self.crossing.frequency
             + BRANCH_START_SETTINGS.frequency_rounding
@@ -135,8 +136,8 @@ def hopf_branch_start(path: Path, crossing: Crossing) -> HopfBranchStart:
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
-        name=path.name,
-        coordinate=path.coordinate(crossing.at),
+        parameter_name=path.name,
+        parameter_coordinate=path.coordinate(crossing.at),
         growth_slope=complex(slope),
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
@@ -168,7 +169,7 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
     for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
         for share in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_share * a)
+            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a)
             try:
                 return _cycle_of_amplitude(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
@@ -195,7 +196,7 @@ def _cycle_of_amplitude(
     if finer:
         start = mesh_from_tails(start, aim, cheapest_stage_count(aim)).interpolated_orbit(start)
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = ArcLengthScale.at_orbit(start, hopf.name, least)
+    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
@@ -203,11 +204,13 @@ def _cycle_of_amplitude(
     near = rough.orbit
     y = float(near.form.tip_coordinates(near.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
-    least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
+    least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
-    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
+    first = condition.solve_cycle_on_mesh(
+        mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy)
+    )
     born = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, born, accuracy)
 
@@ -218,7 +221,7 @@ def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     change, frequency = hopf.parameter_change_and_frequency(amplitude)
     form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:
-        form = form.with_coordinate(hopf.name, hopf.coordinate + change)
+        form = form.with_coordinate(hopf.parameter_name, hopf.parameter_coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     return orbit_of_amplitude(hopf.normal_form, form, amplitude, frequency)

@@ -193,7 +193,9 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
     arrived: set[int] = set()
     left = limits.max_cycles
     count = len(limits.hopfs)
-    shares = fractions_before_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
+    shares = fractions_before_branches(
+        [hopf.parameter_coordinate for hopf in limits.hopfs], limits.coordinate_range
+    )
     for number in range(count):
         if number in arrived:
             continue

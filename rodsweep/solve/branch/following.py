@@ -37,9 +37,9 @@ class BranchLimits:
 
     hopfs: Sequence[HopfBranchStart]
     """Hopf points of the rod within the range."""
-    ends: tuple[float, float]
+    coordinate_range: tuple[float, float]
     """Smallest and largest coordinate of the continuation parameter, at which branches end."""
-    reasons: tuple[EndReason, EndReason]
+    end_reasons: tuple[EndReason, EndReason]
     """Reasons for the end of a branch at the smallest and at the largest coordinate."""
     accuracy: float
     max_cycles: int
@@ -63,7 +63,7 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     `limits.breakings[which]`; a failure is stored in the last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
-    curve.add_special_point(replace(breaking.point, message="", orbit=None))
+    curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
 
     def first() -> BranchCycle:
         return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
@@ -75,16 +75,20 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
     solves the first cycle."""
     if limits.max_cycles < 1:
-        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
+        curve.append_end(
+            BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True)
+        )
         return curve
     try:
         start = first()
     except Unsolvable as why:
-        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False))
+        curve.append_end(
+            BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False)
+        )
         return curve
     outside = _index_of_passed_range_end(start, limits)
     if outside >= 0:
-        curve.end(BranchEnd(_end_without_cycle(curve, limits.reasons[outside]), complete=True))
+        curve.append_end(BranchEnd(_end_without_cycle(curve, limits.end_reasons[outside]), complete=True))
         return curve
     return follow_from_cycle(curve, start, limits)
 
@@ -96,21 +100,23 @@ def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimi
     while isinstance(going, BranchCycle):
         report(partial(_branch_progress, curve, going, limits))
         going = _append_next_cycle(trail, going, limits)
-    trail.end(going)
+    trail.append_end(going)
     return curve
 
 
 def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
-    name = start.scale.parameter
+    name = start.scale.parameter_name
     # The end of the range towards which the parameter moves at present.
-    aim = limits.ends[1 if start.unit_tangent[-1] > 0 else 0]
-    value = PARAMETERS[name].value(start.coordinate)
+    aim = limits.coordinate_range[1 if start.unit_tangent[-1] > 0 else 0]
+    value = PARAMETERS[name].value(start.parameter_coordinate)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(
         words,
-        fraction_done(PARAMETERS[name].coordinate(curve.special_points[0].at), start.coordinate, aim),
+        fraction_done(
+            PARAMETERS[name].coordinate(curve.special_points[0].at), start.parameter_coordinate, aim
+        ),
     )
 
 
@@ -129,10 +135,10 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
 
 def _index_of_passed_range_end(point: BranchCycle, limits: BranchLimits) -> int:
     """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
-    low, high = limits.ends
-    if point.coordinate < low:
+    low, high = limits.coordinate_range
+    if point.parameter_coordinate < low:
         return 0
-    return 1 if point.coordinate > high else -1
+    return 1 if point.parameter_coordinate > high else -1
 
 
 def _append_next_cycle(
@@ -150,7 +156,7 @@ def _append_next_cycle(
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
         outside = _index_of_passed_range_end(end, limits)
-        range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
+        range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _step_hides_corner(start, end):
@@ -169,9 +175,9 @@ def _append_next_cycle(
         return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
-    at = getattr(last.orbit.form.rod, last.scale.parameter)
+    at = getattr(last.orbit.form.rod, last.scale.parameter_name)
     error = BRANCH_END_SETTINGS.range_end_error * abs(at)
-    return BranchEnd(replace(branch_end_point(last, limits.reasons[outside]), error=error), complete=True)
+    return BranchEnd(replace(branch_end_point(last, limits.end_reasons[outside]), error=error), complete=True)
 
 
 def _add_special_points(
@@ -223,16 +229,16 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
     share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
-    at = start.coordinate - share * tangent[-1]
+    at = start.parameter_coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.coordinate - hopf.coordinate
-        ) + rounding * abs(hopf.coordinate)
+            start.parameter_coordinate - hopf.parameter_coordinate
+        ) + rounding * abs(hopf.parameter_coordinate)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
         period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
-        if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
+        if abs(at - hopf.parameter_coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
     return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
@@ -246,7 +252,7 @@ def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits)
         return replace(start, next_arc_length=arc_length_between(start, end) / 2)
     if which >= 0:
         breaking = limits.breakings[which]
-        special = replace(breaking.point, message="", orbit=None)
+        special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric, but no known symmetry breaking is near"
     return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)

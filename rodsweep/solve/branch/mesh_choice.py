@@ -24,10 +24,10 @@ class BranchMeshSettings:
 
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
-    max_cheaper_cost: float = 0.5
+    max_cheaper_cost_ratio: float = 0.5
     """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the present cost
     is at most this number."""
-    planned_error: float = 0.5
+    planned_error_ratio: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
     min_parameter_rate_ratio: float = 0.7
@@ -37,9 +37,9 @@ class BranchMeshSettings:
     max_tail_growth: float = 2.0
     """Errors are measured, not interpolated, if the coefficient tails predict that the errors have grown by
     more than this factor since each of the two measured cycles."""
-    max_unmeasured: int = 3
+    max_steps_between_measurements: int = 3
     """Maximum number of steps between two cycles with measured errors."""
-    remeasure_growth: float = 4.0
+    max_growth_since_measurement: float = 4.0
     """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
 
@@ -65,10 +65,10 @@ def first_measured_cycle(
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
-        derivatives, curvature=derivatives.parameter_slope / born, multiplier_rate=2 * lost / born
+        derivatives, parameter_curvature=derivatives.parameter_rate / born, multiplier_rate=2 * lost / born
     )
     calibration = measured_branch_calibration(found, derivatives, accuracy, None)
-    cycle = cycle_with_calibrated_errors(calibration.at_parameter, found, accuracy)
+    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, found, accuracy)
     return solve_on_sufficient_mesh(
         BranchCycle(
             cycle=cycle,
@@ -83,17 +83,17 @@ def first_measured_cycle(
 def is_measurement_due(point: BranchCycle) -> bool:
     """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
     errors have grown too much since that cycle."""
-    growth = float(point.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max())
+    growth = float(point.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max())
     return (
-        point.steps_since_measured >= BRANCH_MESH_SETTINGS.max_unmeasured
-        or growth > BRANCH_MESH_SETTINGS.remeasure_growth
+        point.steps_since_measured >= BRANCH_MESH_SETTINGS.max_steps_between_measurements
+        or growth > BRANCH_MESH_SETTINGS.max_growth_since_measurement
     )
 
 
 def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
     """The same cycle with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
     accuracy of the cycle."""
-    before = point.calibration.at_parameter
+    before = point.calibration.at_equal_parameter
     return with_calibration(
         point,
         measured_branch_calibration(point.cycle.converged_orbit, point.derivatives, accuracy, before),
@@ -104,7 +104,9 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
 def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
     """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
     interpolated at this cycle. In the result the number of unmeasured steps is 0."""
-    cycle = cycle_with_calibrated_errors(calibration.at_parameter, point.cycle.converged_orbit, accuracy)
+    cycle = cycle_with_calibrated_errors(
+        calibration.at_equal_parameter, point.cycle.converged_orbit, accuracy
+    )
     return replace(
         point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
     )
@@ -122,10 +124,12 @@ def solve_on_sufficient_mesh(
         if point.steps_since_measured:
             point = with_measured_errors(point, accuracy)
         known = point.calibration
-        enough = known.largest_error(accuracy) <= accuracy
-        planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error * accuracy)
+        enough = known.largest_weighted_error(accuracy) <= accuracy
+        planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if enough and (finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost * known.mesh.cost):
+        if enough and (
+            finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * known.mesh.cost
+        ):
             return point
         if not enough:
             finest = True
@@ -142,19 +146,19 @@ def solved_on_mesh(
     """The same cycle solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
-    found = condition.on_mesh(
+    found = condition.solve_cycle_on_mesh(
         mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), max_matrix_distance(accuracy)
     )
     tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))
     known = point.derivatives
     derivatives = replace(
         branch_derivatives(found, point.scale, tangent),
-        curvature=known.curvature,
+        parameter_curvature=known.parameter_curvature,
         multiplier_rate=known.multiplier_rate,
     )
     return replace(
         point,
-        cycle=cycle_with_calibrated_errors(point.calibration.at_parameter, found, accuracy),
+        cycle=cycle_with_calibrated_errors(point.calibration.at_equal_parameter, found, accuracy),
         derivatives=derivatives,
         steps_since_measured=1,
     )
@@ -181,7 +185,7 @@ def with_errors_within_accuracy(
     end = solve_on_sufficient_mesh(end, accuracy, condition)
     again = [
         point
-        if point.calibration.largest_error(accuracy) <= accuracy
+        if point.calibration.largest_weighted_error(accuracy) <= accuracy
         else _cycle_on_mesh_of(end, point, accuracy)
         for point in known
     ]
@@ -212,7 +216,9 @@ def _with_interpolated_errors(
     slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
         abs(one.parameter_rate) for one in ends
     )
-    grown = min(one.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends)
+    grown = min(
+        one.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends
+    )
     if slow or float(grown) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
     known = last.calibration.interpolate(

@@ -49,7 +49,7 @@ class BranchEndSettings:
     lost_asymmetry_ratio: float = 0.1
     """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
     asymmetry at its start is less than this number."""
-    asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    allowed_asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
     cycle."""
     extrapolation_tolerance: float = 0.3
@@ -91,12 +91,12 @@ ASYMMETRIC_START_SETTINGS = AsymmetricStartSettings()
 
 @dataclass(frozen=True, slots=True)
 class SymmetryBreaking:
-    """A symmetry breaking on a branch. branch: number of the branch, from 1. index: index of the symmetry
-    breaking in the list of special points of this branch, from 0."""
+    """A symmetry breaking on a branch. branch_number: number of the branch, from 1. special_point_index:
+    index of the symmetry breaking in the list of special points of this branch, from 0."""
 
-    branch: int
-    index: int
-    point: SpecialPoint
+    branch_number: int
+    special_point_index: int
+    special_point: SpecialPoint
 
 
 def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
@@ -141,9 +141,9 @@ def first_asymmetric_cycle(
 ) -> BranchCycle:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
     relative accuracy; raises Unsolvable. The cycle has a larger largest tip y than its mirror image."""
-    if breaking.point.orbit is None:
+    if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
-    whole = extended_to_whole_period(breaking.point.orbit)
+    whole = extended_to_whole_period(breaking.special_point.orbit)
     scale = ArcLengthScale.at_orbit(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
@@ -174,11 +174,17 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
+    if (
+        not BRANCH_END_SETTINGS.allowed_asymmetry_ratios[0]
+        < found
+        < BRANCH_END_SETTINGS.allowed_asymmetry_ratios[1]
+    ):
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
-    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
+    first = condition.solve_cycle_on_mesh(
+        mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy)
+    )
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 
@@ -235,13 +241,17 @@ def _nearest_symmetry_breaking(start: BranchCycle, known: Sequence[SymmetryBreak
     if falls <= 0:
         return -1
     # Parameter and period are quadratic in the asymmetry.
-    period, at = (orbit.period, start.coordinate) + float(present @ present) / falls / 2 * start.tangent[-2:]
+    period, at = (orbit.period, start.parameter_coordinate) + float(
+        present @ present
+    ) / falls / 2 * start.tangent[-2:]
     for which, breaking in enumerate(known):
-        symmetric = breaking.point.orbit
+        symmetric = breaking.special_point.orbit
         if symmetric is None:
             continue
-        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter)
-        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
+        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter_name)
+        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
+            start.parameter_coordinate - symmetric_at
+        )
         tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period

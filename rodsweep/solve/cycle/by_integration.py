@@ -140,7 +140,7 @@ class _MarchedMotion:
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
-            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
+            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue

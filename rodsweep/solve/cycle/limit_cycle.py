@@ -140,8 +140,8 @@ def _with_motion_data(
     trace = transient.record
     return replace(
         straight,
-        periods=end.periods,
-        elements=transient.form.mesh.elements,
+        periods=end.return_count,
+        elements=transient.form.mesh.element_count,
         order=transient.form.mesh.order,
         transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
         motion_shapes=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
@@ -151,7 +151,7 @@ def _with_motion_data(
 def _recorded_shapes(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
     """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
     returns = [time for time, _ in transient.past_returns]
-    return trace.motion(returns, transient.mode.period, request.frames, request.nodes)
+    return trace.motion_shapes(returns, transient.leading_mode.period, request.frames, request.nodes)
 
 
 def _with_neighbour(
@@ -221,7 +221,7 @@ def _outcome_of_motion(
     if request.tip is not None:
         start = equilibrium_at_tip(beam, *request.tip)
     elif neighbour is None:
-        start = request.amplitude * transient.mode.z.real
+        start = request.amplitude * transient.leading_mode.z.real
     else:
         orbit = neighbour.predictor.orbit
         start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start_state))

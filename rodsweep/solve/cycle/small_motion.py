@@ -48,7 +48,11 @@ def stable_cycle_near_hopf(
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance else None
+    return (
+        found
+        if settled and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
+        else None
+    )
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:

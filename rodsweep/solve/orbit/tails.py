@@ -92,7 +92,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
         c = np.abs(_stresses_by_element(orbit, ends) @ _analysis_matrix_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
-    return largest_coefficients(ends, grid.elements, _analysis_matrix_on_element(grid.order))
+    return largest_coefficients(ends, grid.element_count, _analysis_matrix_on_element(grid.order))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -138,7 +138,7 @@ def smooth_tails(orbit: Orbit) -> Array:
         in_space = float((ends / largest).max())
     else:
         in_space = largest_tail_in_space(
-            orbit.all_states, grid.elements, _last_columns_of_analysis_matrix(grid.order)
+            orbit.all_states, grid.element_count, _last_columns_of_analysis_matrix(grid.order)
         )
     return np.array([in_space, _tail_in_time(orbit)])
 
@@ -192,7 +192,7 @@ def largest_tail_in_space(points: Array, elements: int, analysis: Array) -> floa
 def _tail_in_time(orbit: Orbit) -> float:
     """Largest relative tail in time of n1, n2 and m3 (see `largest_tail_in_time`)."""
     return largest_tail_in_time(
-        orbit.all_states, _last_coefficient_weights(orbit.stage_count), orbit.form.mesh.nodes
+        orbit.all_states, _last_coefficient_weights(orbit.stage_count), orbit.form.mesh.node_count
     )
 
 

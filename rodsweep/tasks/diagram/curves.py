@@ -58,7 +58,7 @@ class DiagramCurves:
         cached. number: number of the row.
         """
         if len(self.special) < MAX_KEPT_ROWS:
-            self.special[number] = row.special
+            self.special[number] = row.special_points
         return row
 
     def initial_data(self, items: "SpecialBoundaries", chosen: Sequence[int]) -> "dict[int, Any]":

@@ -106,7 +106,7 @@ def cycle_curve_record(
     """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
-        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
+        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing_points)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
         for (beside, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
             named = dict(zip(plane, (point.at, point.row_value), strict=True)) | beside | reasons
@@ -162,9 +162,12 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
-    rows = [outcome_values(variables, point, prefix="cycle_special_", names=own) for point in result.special]
+    rows = [
+        outcome_values(variables, point, prefix="cycle_special_", names=own)
+        for point in result.special_points
+    ]
     values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL)
-    values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
+    values |= {"cycle_special_count": len(result.special_points), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 

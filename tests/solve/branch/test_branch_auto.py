@@ -80,7 +80,7 @@ def branch_of_this(rod, kind, F):
         )[0]:
             if point.kind == kind:
                 special = point
-        if special is not None and (there.coordinate - F) * (here.coordinate - F) <= 0:
+        if special is not None and (there.parameter_coordinate - F) * (here.parameter_coordinate - F) <= 0:
             edge = range_end_condition(here, F)
             return special, solve_on_sufficient_mesh(
                 cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge

@@ -111,7 +111,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_cycle(here, ROUGH).orbit
-    p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.nodes
+    p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.node_count
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
     def rate(_, x):

@@ -132,7 +132,7 @@ def test_a_list_of_special_points_that_is_full_is_told():
 def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
-    (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
+    (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
@@ -146,20 +146,20 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.at
-    end = curve.vanishing[0]
+    end = curve.vanishing_points[0]
     assert abs(end.at - BAUTIN_F) <= end.error
     assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
-    assert curve.vanishing[1] is None
+    assert curve.vanishing_points[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
 
 
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
-    (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
+    (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     scale = ArcLengthScale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
-    ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
+    ahead = scale.directional_derivative(fold.orbit, own.branch_tangent(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
     truth = FoldFunction(own, border, has_small_cycles=False).value(fold.orbit)
     other = (

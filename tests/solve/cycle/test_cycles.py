@@ -460,7 +460,7 @@ def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
 def test_a_motion_that_takes_too_many_steps_is_not_settled_and_says_so(monkeypatch):
     """Motions that return seldom went on for a minute, because only returns were counted."""
     monkeypatch.setattr(
-        schemes, "TIME_SCHEME_SETTINGS", replace(schemes.TIME_SCHEME_SETTINGS, default_max_steps=1)
+        schemes, "TIME_SCHEME_SETTINGS", replace(schemes.TIME_SCHEME_SETTINGS, default_max_steps_per_return=1)
     )
     c = solve_cycle(rod_of(240.0, *SOFT), REQUEST)
     assert c.status == CycleStatus.not_settled

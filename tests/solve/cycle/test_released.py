@@ -62,4 +62,4 @@ def test_the_motion_is_that_of_another_time_scheme():
 def test_a_motion_that_settles_slowly_is_stored_up_to_its_limit():
     onset = 37.0
     found = released(replace(FLUTTER, F=onset), 0.7, 0.5)
-    assert found.motion_shapes.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_frames
+    assert found.motion_shapes.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_stored_shapes

@@ -159,7 +159,7 @@ def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth)
     matrix = BorderedMatrix(orbit, ArcLengthScale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
     assert np.linalg.norm(matrix.propagator) > growth
     A, right = whole_matrix(matrix)
-    tangent = matrix.direction(border)
+    tangent = matrix.branch_tangent(border)
     for change, sides in (
         (matrix.step(border, 0.1), right),
         (matrix.correction(orbit, border, 0.1), right),

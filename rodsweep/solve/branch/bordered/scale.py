@@ -32,9 +32,9 @@ from ...orbit.orbit import Orbit
 class ArcLengthScale:
     """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
     `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter
-    `parameter`."""
+    `parameter_name`."""
 
-    parameter: str
+    parameter_name: str
     deflection_unit: float
     coordinate_unit: float
     min_deflection_unit: float
@@ -52,7 +52,7 @@ class ArcLengthScale:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of
         the scale."""
         deflection = deflection_of(orbit) / self.deflection_unit
-        at = orbit.form.rod.coordinate(self.parameter) / self.coordinate_unit
+        at = orbit.form.rod.coordinate(self.parameter_name) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), at])
 
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:

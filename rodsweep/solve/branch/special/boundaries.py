@@ -33,14 +33,14 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
 
-    line, rows: axes of the parameter along a row and of the row parameter. special: points of all rows. Half
-    curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1 to smaller
-    values.
+    line, rows: axes of the parameter along a row and of the row parameter. special_points: points of all
+    rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1
+    to smaller values.
     """
 
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecialPoint]
+    special_points: Sequence[RowSpecialPoint]
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
@@ -65,8 +65,8 @@ class SpecialBoundaries:
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
-            seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
+            curves = _CurvesOfKind(kind, self.line, self.rows, self.special_points, results)
+            seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
             yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_distance)
 
     def solve(
@@ -76,18 +76,18 @@ class SpecialBoundaries:
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         # The number is twice the index of the special point, plus 1 for the half to smaller values.
         index, behind = divmod(item, 2)
-        one = self.special[index]
+        one = self.special_points[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _trace_half_curve(limits, one, located(one.row_index), self.special).arrays()
+        return _trace_half_curve(limits, one, located(one.row_index), self.special_points).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
-        return self.special[item // 2].row_index
+        return self.special_points[item // 2].row_index
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
         index, behind = divmod(item, 2)
-        one = self.special[index]
+        one = self.special_points[index]
         way = "down" if behind else "up"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row_value:.5g} {way}"
 
@@ -102,13 +102,13 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_boundaries`; line, rows and special: as in
+    """Curves of one kind as a problem of `trace_boundaries`; line, rows and special_points: as in
     `SpecialBoundaries`. results: arrays of half curves, by number."""
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecialPoint]
+    special_points: Sequence[RowSpecialPoint]
     results: Mapping[int, HalfCurveArrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
@@ -129,9 +129,9 @@ class _CurvesOfKind:
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
         """Numbers of the half curves that may be needed later: from all special points on the rows on which
         the needed half curves start."""
-        rows = {self.special[item // 2].row_value for item in search.missing_items}
+        rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
-            (i for i in search.open_seeds if self.special[i].row_value in rows), key=self._position
+            (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._position
         )
         return [item for i in beside for item in self.missing_items(i)]
 
@@ -156,7 +156,9 @@ class _CurvesOfKind:
         near = curve.distances.get(seed, math.inf)
         lies_off = near > CURVE_IDENTITY_SETTINGS.max_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
-        return 0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special[seed]) else near
+        return (
+            0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special_points[seed]) else near
+        )
 
     def are_identical(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
@@ -166,7 +168,7 @@ class _CurvesOfKind:
 
     def _position(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.special[i].row_value, self.special[i].at
+        return self.special_points[i].row_value, self.special_points[i].at
 
     def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
@@ -177,7 +179,7 @@ class _CurvesOfKind:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= CURVE_END_SETTINGS.min_amplitude:
             return False
-        for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
+        for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
             x = self.line.coordinate(end.at)

@@ -54,11 +54,11 @@ class CurveEndSettings:
     """Whether a curve closes is tested only after more than this number of points."""
     max_edge_distance: float = 1e-8
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
-    edge_bracket: float = 1e-10
+    margin_tolerance: float = 1e-10
     """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
     crushing_margin: float = 1e-3
     """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
-    crushing_accuracy: float = 1e-6
+    crushing_tolerance: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
     """A curve ends where the largest tip y, in L, falls below this number, and is extrapolated to a Hopf
@@ -84,14 +84,14 @@ END_BY_MARGIN = (
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
     """Continuation problem for curves of folds or torus points in a parameter plane. line: axis of the
-    parameter that varies along a row. rows: axis of the row parameter. direction: sign, 1 or -1, of the first
-    step in the row parameter. workspace: memory of Newton's matrices."""
+    parameter that varies along a row. rows: axis of the row parameter. row_direction: sign, 1 or -1, of the
+    first step in the row parameter. workspace: memory of Newton's matrices."""
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
     workspace: NewtonWorkspace
-    direction: float = 1.0
+    row_direction: float = 1.0
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEndReason]:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
@@ -107,7 +107,7 @@ class SpecialCurveProblem:
         if curve.end_reason is CurveStop.closed:
             return CurveEndReason.closed
         return (
-            self._lost_end(curve.solutions[-1])
+            self._reason_for_loss(curve.solutions[-1])
             if curve.end_reason is CurveStop.no_further_solution
             else CurveEndReason.not_followed
         )
@@ -124,11 +124,11 @@ class SpecialCurveProblem:
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
-            at_row = last.row_coordinate + self.direction * length
+            at_row = last.row_coordinate + self.row_direction * length
             line = ALONG_BRANCH
             rates = None
         else:
-            start, at_row = self._predicted(behind, self._step_before_crushing(behind, length))
+            start, at_row = self._predicted_orbit(behind, self._step_before_crushing(behind, length))
             change = last.scale.components(start) - last.scale.components(last.orbit)
             line = line_across(np.append(change, at_row - last.row_coordinate), *behind[-2:])
             rates = last.normal_derivatives
@@ -146,7 +146,7 @@ class SpecialCurveProblem:
     def _family(self, point: SolvedPoint) -> CycleFamily:
         return CycleFamily.near_point(self.kind, self.rows, point, self.workspace)
 
-    def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
+    def _predicted_orbit(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
@@ -170,7 +170,7 @@ class SpecialCurveProblem:
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=CURVE_END_SETTINGS.crushing_accuracy))
+        return float(brentq(distance, 0.0, step, rtol=CURVE_END_SETTINGS.crushing_tolerance))
 
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
@@ -214,7 +214,7 @@ class SpecialCurveProblem:
                 point = self._zero_of_margin(inner, outer, margin, ends)
         except Unsolvable:
             return None
-        return replace(point, errors=outer.errors and outer.errors.for_next_point)
+        return replace(point, measured_error=outer.measured_error and outer.measured_error.for_next_point)
 
     def _zero_of_margin(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
@@ -227,7 +227,9 @@ class SpecialCurveProblem:
             return float(self.margins(found[share])[margin])
 
         return found[
-            zero_along_step(left, ends, 1.0, CURVE_END_SETTINGS.edge_bracket, CURVE_END_SETTINGS.edge_bracket)
+            zero_along_step(
+                left, ends, 1.0, CURVE_END_SETTINGS.margin_tolerance, CURVE_END_SETTINGS.margin_tolerance
+            )
         ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
@@ -254,7 +256,7 @@ class SpecialCurveProblem:
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
-    def _lost_end(self, last: SolvedPoint) -> CurveEndReason:
+    def _reason_for_loss(self, last: SolvedPoint) -> CurveEndReason:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))

@@ -84,7 +84,7 @@ class CycleFamily:
         usable = derivatives and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine
         known = derivatives if usable else None
         search = SecantSearch(self, start, row_coordinate, line, known, is_other_mesh)
-        for _ in range(CURVE_SECANT_SETTINGS.max_secants):
+        for _ in range(CURVE_SECANT_SETTINGS.max_secant_steps):
             found = search.make_step()
             if found is not None:
                 return found
@@ -105,12 +105,14 @@ class CycleFamily:
         arguments as in `corrected_point`.
         """
         last = self.corrected_point(start, row_coordinate, line, derivatives)
-        if previous and previous.errors and previous.errors.apply_at(last):
-            return replace(last, errors=previous.errors.for_next_point)
+        if previous and previous.measured_error and previous.measured_error.applies_at(last):
+            return replace(last, measured_error=previous.measured_error.for_next_point)
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(last.orbit)
-            longer = ceil(CURVE_SECANT_SETTINGS.more_intervals * mesh.interval_count)
-            finer = replace(mesh, order=mesh.order + CURVE_SECANT_SETTINGS.more_orders, interval_count=longer)
+            longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
+            finer = replace(
+                mesh, order=mesh.order + CURVE_SECANT_SETTINGS.order_increase, interval_count=longer
+            )
             if not finer.is_allowed:
                 break
             known = last.normal_derivatives
@@ -118,13 +120,13 @@ class CycleFamily:
             fine = self.corrected_point(start, last.row_coordinate, line, known, is_other_mesh=True)
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
-            along = line.slope * (fine.row_coordinate - last.row_coordinate)
+            along = line.chord_slope * (fine.row_coordinate - last.row_coordinate)
             off = abs(fine.parameter - last.parameter - along)
-            error = CURVE_SECANT_SETTINGS.error_factor * off + CURVE_SECANT_SETTINGS.least_error * abs(
+            error = CURVE_SECANT_SETTINGS.error_factor * off + CURVE_SECANT_SETTINGS.min_error * abs(
                 fine.parameter
             )
             if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine.parameter):
                 errors = MeasuredCurveError(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
-                return replace(last, errors=errors)
+                return replace(last, measured_error=errors)
             last = fine
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")

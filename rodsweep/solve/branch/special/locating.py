@@ -46,14 +46,14 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, found: Conver
         correct_until_converged(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return multiplier_test_function(kind, matrix.partial_multipliers)
+    return multiplier_test_function(kind, matrix.multipliers_over_solved_part)
 
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
     the solved time interval, (multipliers,). Raises Unsolvable for torus points if all multipliers are real.
     """
-    real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)
+    real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
@@ -73,7 +73,7 @@ def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, ahead: Array, p
         return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return multiplier_test_function(kind, point.partial_multipliers)
+    return multiplier_test_function(kind, point.multipliers_over_solved_part)
 
 
 def special_point_between(
@@ -87,15 +87,17 @@ def special_point_between(
         segment = BranchSegment(start, end)
         segment.set_mesh(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
-        mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
+        mesh = end.calibration.cheapest_mesh_for_parameter(
+            SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * aim
+        )
         # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stage_count=max(mesh.stage_count, cheapest_stage_count(aim)))
         point: SpecialPoint | None = None
-        for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
+        for number in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
             segment.set_mesh(mesh)
             length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
             last = point
-            point = _special_point_at(kind, orbit, start.scale.parameter)
+            point = _special_point_at(kind, orbit, start.scale.parameter_name)
             if last is not None:
                 point = _with_mesh_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
@@ -116,7 +118,7 @@ def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
-    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_by_stages * mesh.stage_count))
+    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )
@@ -143,9 +145,9 @@ def _with_mesh_errors(
     share = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
-        name = start.scale.parameter
+        name = start.scale.parameter_name
         length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        moved = SPECIAL_POINT_SETTINGS.slope_factor * error / length if length else 1.0
+        moved = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / length if length else 1.0
         share = SPECIAL_POINT_SETTINGS.secant_error + min(moved, 1.0)
     one = start.cycle.measures
     other = end.cycle.measures
@@ -177,7 +179,7 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
 def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
     """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
     the differences between the two cycles as errors. message: cause of the failure."""
-    name = start.scale.parameter
+    name = start.scale.parameter_name
     measures = end.cycle.measures
     before = start.cycle.measures
     at, other = (getattr(point.orbit.form.rod, name) for point in (end, start))
@@ -229,7 +231,7 @@ def _zero_by_secants(
     at = guess
     step = np.inf
     before = None
-    for _ in range(SPECIAL_POINT_SETTINGS.max_secants):
+    for _ in range(SPECIAL_POINT_SETTINGS.max_secant_steps):
         f = test_function_value(kind, segment, segment.cycle_at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
@@ -246,7 +248,7 @@ def _zero_by_secants(
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
-            return at + step, moved_orbit(orbit, segment.start.scale.parameter, change), slope
+            return at + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method for the special point does not converge")

@@ -23,7 +23,7 @@ Unsolvable."""
 
 def unstable_multiplier_count(point: BranchCycle) -> int:
     """Number of nontrivial multipliers of a cycle, over the solved time interval, outside the unit circle."""
-    return int((np.abs(point.partial_multipliers) > 1).sum())
+    return int((np.abs(point.multipliers_over_solved_part) > 1).sum())
 
 
 def special_kinds_between(start: BranchCycle, end: BranchCycle) -> tuple[list[SpecialKind], bool]:
@@ -45,19 +45,25 @@ def special_kinds_between(start: BranchCycle, end: BranchCycle) -> tuple[list[Sp
 
 def _count_beyond_minus_one(point: BranchCycle) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
-    h = point.partial_multipliers
-    return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h))).sum())
+    h = point.multipliers_over_solved_part
+    return int(
+        (
+            (h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h))
+        ).sum()
+    )
 
 
 def _has_multiplier_near_one(point: BranchCycle) -> bool:
     return bool(
-        (np.abs(point.partial_multipliers - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance).any()
+        (
+            np.abs(point.multipliers_over_solved_part - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance
+        ).any()
     )
 
 
 def _has_complex_pair(point: BranchCycle) -> bool:
-    h = point.partial_multipliers
-    return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)).any())
+    h = point.multipliers_over_solved_part
+    return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)).any())
 
 
 def special_points_between(

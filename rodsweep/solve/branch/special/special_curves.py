@@ -159,12 +159,13 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 @dataclass(frozen=True, slots=True)
 class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
-    vanishing: for each end the Hopf point at which the cycles vanish; None for an end with another reason."""
+    vanishing_points: for each end the Hopf point at which the cycles vanish; None for an end with another
+    reason."""
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]
     ends: tuple[CurveEndReason, CurveEndReason]
-    vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
+    vanishing_points: tuple[VanishingPoint | None, VanishingPoint | None]
 
     @classmethod
     def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
@@ -199,8 +200,8 @@ def with_located_ends(
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
-    first, last = map(located, curve.vanishing)
-    return replace(curve, vanishing=(first, last))
+    first, last = map(located, curve.vanishing_points)
+    return replace(curve, vanishing_points=(first, last))
 
 
 def lagrange_weights(places: Array, at: float) -> Array:

@@ -43,7 +43,7 @@ class TorusTestSettings:
     max_angle_difference: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
     complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
-    trials_per_width: int = 4
+    trial_angles_per_width: int = 4
     """The spacing of the trial angles, before the best angle is refined, is 2/(trials_per_width k) rad for k
     returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
     angle_tolerance_share: float = 1e-4
@@ -73,8 +73,8 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     # Only the last returns are stored, so some or all of the returns to skip may be missing already.
     skipped = max(
         0,
-        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.returns)
-        - (transient.returns - len(transient.past_returns)),
+        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.return_count)
+        - (transient.return_count - len(transient.past_returns)),
     )
     past = list(transient.past_returns)[skipped:]
     if len(past) < 2 * TORUS_TEST_SETTINGS.min_returns_around:
@@ -94,7 +94,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
                 f"the motion is modulated at {turns:.3f} times the return rate; the cycle inside the torus "
                 f"has a multiplier of modulus {cycle.largest_multiplier:.3g}"
             )
-            return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
+            return TransientOutcome(CycleStatus.torus, message, end.return_count, unstable_cycle=cycle)
     return end
 
 
@@ -160,7 +160,11 @@ def fitted_angle(returns: Array, angle: float) -> float:
     tried = np.linspace(
         angle - TORUS_TEST_SETTINGS.max_angle_difference,
         angle + TORUS_TEST_SETTINGS.max_angle_difference,
-        int(TORUS_TEST_SETTINGS.trials_per_width * TORUS_TEST_SETTINGS.max_angle_difference * len(returns))
+        int(
+            TORUS_TEST_SETTINGS.trial_angles_per_width
+            * TORUS_TEST_SETTINGS.max_angle_difference
+            * len(returns)
+        )
         + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))
