@@ -56,7 +56,7 @@ def test_a_field_is_known_by_its_name():
 @pytest.mark.parametrize("symmetry", [NO_SYMMETRY, REFLECTION], ids=["none", "reflection"])
 def test_a_symmetry_maps_motions_to_motions(form, symmetry):
     def motion(x):
-        V, G = np.empty((2, 3, form.mesh.nodes + 1))
+        V, G = np.empty((2, 3, form.mesh.node_count + 1))
         write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
         return V, form.layout.state(G, V)
 

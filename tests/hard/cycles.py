@@ -116,5 +116,5 @@ def broken_promises(found, accuracy):
     beyond = {k: (true, said) for k, (true, said) in promised.items() if true > said + ROUNDING}
     broken = [f"{k}: {true:.1e} > {said:.1e}" for k, (true, said) in beyond.items()]
     if max(errors.period_error, errors.amplitude_error) > accuracy:
-        broken.append(f"estimate {errors.largest_error:.1e} > {accuracy:.0e}")
+        broken.append(f"estimate {errors.largest_weighted_error:.1e} > {accuracy:.0e}")
     return broken

@@ -44,12 +44,12 @@ def stable(unstable):
     """The stable cycle at the same force, by way of one where the straight rod is unstable."""
     request = CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, 400)
     below = solve_cycle(rod_of(150.0, *STIFFNESS, 1.0), request, None, "F")
-    return solve_cycle(rod_of(unstable.coordinate, *STIFFNESS, 1.0), request, below.neighbour, "F")
+    return solve_cycle(rod_of(unstable.parameter_coordinate, *STIFFNESS, 1.0), request, below.neighbour, "F")
 
 
 def marched(unstable, share):
     """Where the rod goes from the unstable cycle, its distance from rest in units of the cycle's."""
-    rod = Displaced(unstable.coordinate, *STIFFNESS, 1.0, ORDER)
+    rod = Displaced(unstable.parameter_coordinate, *STIFFNESS, 1.0, ORDER)
     on_cycle = CyclePath(unstable.orbit).shapes_from_mean_crossing(1, ORDER + 1)[:, 0, 1:].ravel()
     start = share * (on_cycle - rod.straight)
     return march_from(rod, start, PERIODS * unstable.orbit.period, 1e-6, 1e-8)

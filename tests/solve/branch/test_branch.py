@@ -77,12 +77,12 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     assert 199.16 < fold.at < 199.1602
     assert fold.error < 1e-9 * fold.at
     unstable = [point.unstable_count for point in curve.points]
-    turn = fold.after + 1
+    turn = fold.index_of_cycle_before + 1
     assert unstable == [0] * turn + [1] * (len(unstable) - turn)
     assert all(point.at_error <= 1e-7 for point in curve.points)
     steep = [abs(slope) > 100 for slope in slopes(curve)]
     assert all(
-        point.errors.largest_error <= 1e-7
+        point.errors.largest_weighted_error <= 1e-7
         for point, is_steep in zip(curve.points, steep, strict=True)
         if not is_steep
     )
@@ -177,7 +177,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     assert kinds(curve) == ["hopf", "torus", "end"]
     torus = only(curve, SpecialKind.torus)
     assert torus.error < 1e-9 * torus.at
-    after = torus.after + 1
+    after = torus.index_of_cycle_before + 1
     assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
@@ -241,7 +241,7 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     made = following.next_point
 
     def lost(here, accuracy):
-        if here.coordinate > 75:
+        if here.parameter_coordinate > 75:
             raise Unsolvable("there is no cycle near on the branch")
         return made(here, accuracy)
 

@@ -79,7 +79,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
     born, fold, end = asymmetric.special_points
     # NaN does not equal NaN, but has the same text.
-    assert repr(born) == repr(following.replace(symmetric.special_points[1], after=-1))
+    assert repr(born) == repr(following.replace(symmetric.special_points[1], index_of_cycle_before=-1))
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5
@@ -87,10 +87,10 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert max(born.error, fold.error) < 1e-3
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
-    turn = symmetric.special_points[1].after + 1
+    turn = symmetric.special_points[1].index_of_cycle_before + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
-    turn = fold.after + 1
+    turn = fold.index_of_cycle_before + 1
     assert {point.unstable_count for point in asymmetric.points[:turn]} - {-1} == {1}
     assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
 
@@ -147,14 +147,15 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
 
 
 def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
-    orbit = known.breakings[0].point.orbit
+    orbit = known.breakings[0].special_point.orbit
     whole = extended_to_whole_period(orbit)
     assert not whole.is_symmetric
     times = np.linspace(0, 1, 21)
     assert (
-        np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max() < 1e-4 * np.abs(orbit.points).max()
+        np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max()
+        < 1e-4 * np.abs(orbit.all_states).max()
     )
-    assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start).max()
+    assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start_state).max()
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):

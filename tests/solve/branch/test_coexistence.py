@@ -65,11 +65,11 @@ def fig_2c():
 def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2c):
     assert fig_2c.status == CoexistenceStatus.ok
     assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]
-    kinds = [point.kind for point in fig_2c.special]
+    kinds = [point.kind for point in fig_2c.special_points]
     assert kinds == [SpecialKind.hopf, SpecialKind.fold, SpecialKind.hopf]
-    assert fig_2c.special[1].at == pytest.approx(FOLD, abs=2e-9)
-    assert fig_2c.special[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
-    assert fig_2c.special[1].error <= 1e-9 * FOLD
+    assert fig_2c.special_points[1].at == pytest.approx(FOLD, abs=2e-9)
+    assert fig_2c.special_points[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
+    assert fig_2c.special_points[1].error <= 1e-9 * FOLD
 
 
 def test_a_cycle_on_the_last_value_of_a_row_counts():

@@ -75,7 +75,12 @@ def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
     assert coarser.can_predict(FINE) and coarser.can_predict(
         replace(FINE, order=FINE.order + 2, interval_count=20)
     )
-    for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"edges": (0.0, 0.5, 1.0)}, {"stages": 5}):
+    for other in (
+        {"order": FINE.order + 3},
+        {"interval_count": 30},
+        {"edges": (0.0, 0.5, 1.0)},
+        {"stages": 5},
+    ):
         assert not coarser.can_predict(replace(FINE, **other))
 
 

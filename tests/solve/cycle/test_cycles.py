@@ -189,9 +189,9 @@ def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
     handed = c.neighbour
     assert handed.predictor.orbit.period == c.measures.period
-    assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start)[1] == pytest.approx(
-        c.measures.tip_y_max
-    )
+    assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start_state)[
+        1
+    ] == pytest.approx(c.measures.tip_y_max)
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
     assert again.measures.period == pytest.approx(c.measures.period, rel=1e-9)
     assert again.periods == 0
@@ -328,13 +328,13 @@ def orbit_at_fifty():
 
 def repeated(half, times):
     """A symmetric orbit over so many of its halves, as one that is not known to be symmetric."""
-    K = times * (half.intervals - 1) + 1
-    at = times * node_times(K, half.stages)
+    K = times * (half.interval_count - 1) + 1
+    at = times * node_times(K, half.stage_count)
     number = np.floor(at + 1e-9)
     states = half.states_at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
     states[later] = REFLECTION.apply(states[later], half.form.layout)
-    return Orbit.from_states(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
+    return Orbit.from_states(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stage_count)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
@@ -362,7 +362,7 @@ def orbit_on(elements, order):
 def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
     path, form = CyclePath(half), half.form
-    states = np.concatenate((half.regular_states, REFLECTION.apply(half.regular_states, form.layout)))
+    states = np.concatenate((half.equidistant_states, REFLECTION.apply(half.equidistant_states, form.layout)))
     tip = form.tip_coordinates(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
     strains = form.element_strains(states)
@@ -386,12 +386,12 @@ def test_extrema_are_those_of_a_dense_path():
 
 def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
-    m, stages = measures_of(CyclePath(half)), half.states.reshape(-1, half.form.unknowns)
+    m, stages = measures_of(CyclePath(half)), half.stage_states.reshape(-1, half.form.unknowns)
     power, weights = (
         np.empty((2, len(stages))),
         np.outer(interval_lengths(12), half.collocation.weights).ravel(),
     )
-    write_powers(stages, power, half.semidiscrete)
+    write_powers(stages, power, half.semidiscrete_equations)
     mean = power @ weights
     rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)
     assert (m.injection_mean, m.dissipation_mean) == pytest.approx(tuple(mean), rel=1e-13)
@@ -402,7 +402,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
-    stresses = half.form.stresses(half.states[:, -1])
+    stresses = half.form.stresses(half.stage_states[:, -1])
     analysis = legendre_analysis_matrix(2 * uniform_mesh(1, order).positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
@@ -475,13 +475,13 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     tried = []
 
     def fails(orbit, *_):
-        tried.append(orbit.intervals)
+        tried.append(orbit.interval_count)
         raise Unsolvable("no orbit")
 
     half = orbit_at_fifty()
     monkeypatch.setattr(refinement, "newton", fails)
-    points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
-    orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stages)
+    points = np.concatenate([half.all_states[:1], np.tile(half.all_states[1:], (repeats, 1))])
+    orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stage_count)
     with pytest.raises(Unsolvable):
         refinement.refined_cycle_at_given_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes

@@ -51,7 +51,7 @@ def rough(beam):
 def injected_and_dissipated(beam, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
     material, matrices = beam.rod.material, beam.mesh.matrices
-    stress = np.zeros((3, beam.mesh.nodes + 1))
+    stress = np.zeros((3, beam.mesh.node_count + 1))
     stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)

@@ -61,12 +61,12 @@ def test_a_matrix_whose_workspace_another_one_used_raises_and_keeps_its_multipli
     "used",
     [
         lambda matrix: matrix.step(MOMENT, 0.1),
-        lambda matrix: matrix.direction(MOMENT),
+        lambda matrix: matrix.branch_tangent(MOMENT),
         lambda matrix: matrix.approximate_null_vector(),
         lambda matrix: matrix.residual_variations(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
-        lambda matrix: matrix.back_substitute(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
+        lambda matrix: matrix.changes_at_fixed_parameter(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
     ],
-    ids=["step", "direction", "approximate_null_vector", "varied", "spread"],
+    ids=["step", "branch_tangent", "approximate_null_vector", "varied", "spread"],
 )
 def test_all_that_needs_the_factors_of_a_branch_raises_without_them(used):
     workspace, orbit = NewtonWorkspace(), orbit_with(3)
