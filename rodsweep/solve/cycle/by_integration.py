@@ -40,10 +40,10 @@ from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURN_SETTINGS,
     early_end,
-    limit_after_returns,
-    returns_per_period_and_distance,
+    repetition,
     section_crossings,
     tip_angle_row,
+    until_returns,
     why_not_settled,
 )
 
@@ -132,7 +132,7 @@ class _MarchedMotion:
                 * MARCHING_SETTINGS.returns_per_test
                 * self.leading_mode.period,
                 step,
-                limit_after_returns(row, z, MARCHING_SETTINGS.returns_per_test),
+                until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
@@ -140,11 +140,11 @@ class _MarchedMotion:
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
-            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm:
+            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
-            turns, distance = returns_per_period_and_distance(list(past))
+            turns, distance = repetition(list(past))
             noise = MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance
             # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
@@ -190,7 +190,7 @@ class _MarchedMotion:
     def _measured_path(self, settled: SettledMotion) -> CyclePath:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.returns_per_period + 2
-        limit = limit_after_returns(tip_angle_row(self.beam), settled.state, returns)
+        limit = until_returns(tip_angle_row(self.beam), settled.state, returns)
         tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
         duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.leading_mode.period
         scheme = replace(self.scheme, tolerance=tolerance)

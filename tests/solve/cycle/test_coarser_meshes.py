@@ -79,7 +79,7 @@ def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
         {"order": FINE.order + 3},
         {"interval_count": 30},
         {"edges": (0.0, 0.5, 1.0)},
-        {"stages": 5},
+        {"stage_count": 5},
     ):
         assert not coarser.can_predict(replace(FINE, **other))
 

@@ -22,7 +22,7 @@ from ...motion.integrator import RunEnding, RunLimit, Trajectory
 class ReturnSettings:
     """Settings for the returns of the tip to the section theta = 0, by which a motion is classified."""
 
-    max_straight_norm: float = 1e-6
+    straight_norm: float = 1e-6
     """A motion with |z| < straight_size has decayed to the straight state, if this state is stable; z: state.
     If the norm of the bending and shear components of z is smaller than this, the rod no longer oscillates.
     Numerical damping governs smaller motions."""
@@ -48,7 +48,7 @@ def tip_angle_row(beam: Beam) -> Array:
     return beam.layout.state_with_stresses({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
-def limit_after_returns(row: Array, z: Array, returns: int) -> RunLimit:
+def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
     RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
@@ -129,7 +129,7 @@ def _hermite_weights(x: float) -> tuple[float, float, float, float]:
     return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
 
 
-def returns_per_period_and_distance(moments: Sequence[Array]) -> tuple[int, float]:
+def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     """Returns (m, distance). m: number of returns per period, the smallest number with a nearly minimal
     distance. distance: relative distance between the last return and the m-th return before it. (1, inf) if
     the last moments are rounding errors.
@@ -139,9 +139,7 @@ def returns_per_period_and_distance(moments: Sequence[Array]) -> tuple[int, floa
     1e7.
     """
     size = np.linalg.norm(moments[-1])
-    if (
-        size < RETURN_SETTINGS.max_straight_norm
-    ):  # moments of this size are rounding errors, which do not repeat
+    if size < RETURN_SETTINGS.straight_norm:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
     # The smallest m with a distance near the minimum: multiples of a period repeat as well.

@@ -73,8 +73,8 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     # Only the last returns are stored, so some or all of the returns to skip may be missing already.
     skipped = max(
         0,
-        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.return_count)
-        - (transient.return_count - len(transient.past_returns)),
+        int(TORUS_TEST_SETTINGS.skipped_fraction * transient.returns)
+        - (transient.returns - len(transient.past_returns)),
     )
     past = list(transient.past_returns)[skipped:]
     if len(past) < 2 * TORUS_TEST_SETTINGS.min_returns_around:

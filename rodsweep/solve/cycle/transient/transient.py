@@ -1,6 +1,6 @@
 """Integration of a motion from a start until Newton's method finds its cycle, or until the rod is straight.
 
-The motion is integrated from return to return (`return_count`). Newton's method starts once two returns agree
+The motion is integrated from return to return (`returns`). Newton's method starts once two returns agree
 to a relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state is
 scaled to the amplitude that the amplitude equation predicts (`amplitude_equation`). A motion with a stored
 path has no jumps.
@@ -30,14 +30,7 @@ from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
-from .returns import (
-    RETURN_SETTINGS,
-    early_end,
-    limit_after_returns,
-    returns_per_period_and_distance,
-    section_crossings,
-    tip_angle_row,
-)
+from .returns import RETURN_SETTINGS, early_end, repetition, section_crossings, tip_angle_row, until_returns
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .trace import TipTrace
@@ -48,7 +41,7 @@ from .transient_settings import TRANSIENT_SETTINGS
 class Transient:
     """Integration of the motion of one rod from a start; `follow` is called only once.
 
-    form: the rod whose cycle is solved for, and the mesh. straight_rod: stability of the straight rod.
+    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod.
     tangent_parameter: parameter along which the cycle's tangent is computed, or None. unstable_cycle: a
     nearby unstable cycle, or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby
     rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None
@@ -65,7 +58,7 @@ class Transient:
     ) -> None:
         self.beam = Beam(integrable_rod(form.rod), form.mesh)
         self.form = form
-        self.straight_rod = straight
+        self.straight = straight
         self.tangent_parameter = along
         self.workspace = workspace
         self.accuracy = request.accuracy
@@ -77,17 +70,15 @@ class Transient:
         rate = straight.growth_rate(self.leading_mode.w.real)
         period = self.leading_mode.period
         schemes = schemes_for_growth(rate * period, request.transient > 0)
-        self.first_scheme, self.later_scheme, noise, steps = schemes
+        self.first_scheme, self.scheme, noise, steps = schemes
         self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
         self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._beam_growth_rate(rate), noise)
-        self.next_time_step = period / TRANSIENT_SETTINGS.first_steps_per_period
+        self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
         self.elapsed_time = 0.0
-        self.return_count = self.step_count = self.jump_count = self.counted_attempts = (
-            self.next_attempt_return
-        ) = 0
+        self.returns = self.steps = self.jump_count = self.attempts = self.next_attempt = 0
         self.successive_failures = 0
         """Number of successive failures of Newton's method."""
         self.unsolved_message = ""
@@ -103,28 +94,19 @@ class Transient:
         """Outcome of the motion from the state z, (unknowns,)."""
         z = self._state_after_fast_decay(z)
         first = True
-        while (
-            self.return_count < self.max_returns
-            and self.step_count < self.max_steps
-            and not self.unsolved_message
-        ):
-            report(
-                lambda: SolvePosition(f"{self.return_count} of at most {self.max_returns} returns of the tip")
-            )
+        while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
+            report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
             run = self._run_of_returns(z, first)
-            if end := early_end(self.beam, run, self.return_count):
+            if end := early_end(self.beam, run, self.returns):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
-                return self._outcome(status, end.message)
+                return self._result(status, end.message)
             z = run.states[-1]
             times, states = section_crossings(self.beam, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
-            if (
-                self.straight_rod.stable is not False
-                and np.linalg.norm(z) < RETURN_SETTINGS.max_straight_norm
-            ):
-                return self._outcome(CycleStatus.straight, "the motion has decayed to rounding error")
-            if self.straight_rod.stable is False and not self._bends_visibly(z):
+            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
+                return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
+            if self.straight.stable is False and not self._bends_visibly(z):
                 if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
@@ -136,9 +118,7 @@ class Transient:
                 continue
             shown = self.record is not None and self.record.needs_more_motion(z)
             if not early and not shown and self.amplitude_equation.decays_at_linear_rate(times, states):
-                return self._outcome(
-                    CycleStatus.straight, "the motion decays at the rate of the leading mode"
-                )
+                return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
             jumps = not early and self.jump_count < TRANSIENT_SETTINGS.max_jumps
             factor = self.amplitude_equation.factor_to_cycle(times, states) if jumps else None
             if factor is not None:
@@ -151,14 +131,14 @@ class Transient:
             decays = self.amplitude_equation.decays_faster(times, states)
             cycle = None if decays else self._cycle_from_returns(run)
             if cycle is not None:
-                return self._outcome(*cycle.verdict(self.accuracy), cycle)
-        return self._outcome(CycleStatus.not_settled, self._not_settled_text(z))
+                return self._result(*cycle.verdict(self.accuracy), cycle)
+        return self._result(CycleStatus.not_settled, self._not_settled_text(z))
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
         times, states: of the returns, (k,) and (k, unknowns)."""
-        self.return_count += max(len(times), 1)
-        self.step_count += len(run.times) - 1
+        self.returns += max(len(times), 1)
+        self.steps += len(run.times) - 1
         moments = self.beam.layout.stress_field(states, "m3")
         self.past_returns.extend(zip(map(float, self.elapsed_time + times), moments, strict=True))
         self.elapsed_time += run.times[-1]
@@ -173,23 +153,17 @@ class Transient:
     def _not_settled_text(self, z: Array) -> str:
         """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
         if self.unsolved_message:
-            return f"after {counted(self.return_count, 'return')} of the tip {self.unsolved_message}"
+            return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
         if self._bends_visibly(z):
-            work = (
-                f" and the maximum of {self.step_count} time steps"
-                if self.step_count >= self.max_steps
-                else ""
-            )
-            return f"no periodic motion within {counted(self.return_count, 'return')} of the tip{work}"
-        unstable = self.straight_rod.stable is False
+            work = f" and the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
+            return f"no periodic motion within {counted(self.returns, 'return')} of the tip{work}"
+        unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "the stretch of the rod has not relaxed"
-        return f"the deflection has decayed after {self.return_count} returns, but {why}"
+        return f"the deflection has decayed after {self.returns} returns, but {why}"
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
-        return bool(
-            np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.max_straight_norm
-        )
+        return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_norm)
 
     def _beam_growth_rate(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
@@ -199,7 +173,7 @@ class Transient:
         """
         if self.beam.rod == self.form.rod:
             return rate
-        return straight_rod_stability(self.beam.rod, np.array([self.straight_rod.w])).growth_rate(rate)
+        return straight_rod_stability(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
@@ -210,22 +184,22 @@ class Transient:
             self.record.begin_with_relaxation(z, after, self.elapsed_time)
         return after
 
-    def _outcome(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
-        return TransientOutcome(status, why, self.return_count, found)
+    def _result(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
+        return TransientOutcome(status, why, self.returns, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
         TRANSIENT.returns_in_first_run in the `first` run, but of at most TRANSIENT.max_run_duration times the
         expected time per return."""
         returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
-        scheme = self.first_scheme if first else self.later_scheme
-        limit = limit_after_returns(self.tip_angle_row, z, returns)
+        scheme = self.first_scheme if first else self.scheme
+        limit = until_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
         duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * max(self.leading_mode.period, last)
-        run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.next_time_step, limit)
+        run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
-            self.next_time_step = run.times[-1] - run.times[-2]
+            self.step = run.times[-1] - run.times[-2]
         if self.record:
             self.record.add_run(run, self.elapsed_time)
         return run
@@ -235,42 +209,31 @@ class Transient:
         None, also until the next attempt is due: the returns between attempts double with each attempt. After
         too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
         states = [state for _, state in self.past_returns]
-        turns, distance = returns_per_period_and_distance(
-            states[-1 - RETURN_SETTINGS.max_returns_per_period :]
-        )
+        turns, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
-        if distance >= self._newton_start_distance() or self.return_count < self.next_attempt_return:
+        if distance >= self._newton_start_distance() or self.returns < self.next_attempt:
             return None
-        self.next_attempt_return = (
-            self.return_count + TRANSIENT_SETTINGS.returns_per_run * 2**self.counted_attempts
-        )
-        self.counted_attempts = min(self.counted_attempts + 1, TRANSIENT_SETTINGS.max_counted_attempts)
-        return self._stable_cycle_near(
-            run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns
-        )
+        self.next_attempt = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.attempts
+        self.attempts = min(self.attempts + 1, TRANSIENT_SETTINGS.max_counted_attempts)
+        return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns)
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
-        distance = (
-            TRANSIENT_SETTINGS.max_newton_distance
-            / TRANSIENT_SETTINGS.newton_distance_divisor**self.counted_attempts
-        )
-        settles = self.record and self.return_count < self.max_returns // 2
+        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.attempts
+        settles = self.record and self.returns < self.max_returns // 2
         return min(distance, TRANSIENT_SETTINGS.max_newton_distance_with_path) if settles else distance
 
-    def _stable_cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
+    def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
         period, in tau2. turns: number of returns of the tip per period."""
         # The run may be shorter than a period of several returns.
         if run.times[-1] < period:
-            run = integrator(self.beam.mesh, self.later_scheme).run(
-                self.beam, run.states[-1], period, self.next_time_step
-            )
+            run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
             if run.ending != RunEnding.reached:
                 return None
         orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
