@@ -16,7 +16,7 @@ from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
 from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
 from rodsweep.solve.branch.special.special_curves import (
-    CurveEndReason,
+    CurveEnd,
     CurvePoint,
     HalfCurve,
     TracedHalfCurve,
@@ -196,7 +196,7 @@ def half(items, item):
     near = {i: 0.0 for i, other in enumerate(items.special_points) if other.at == one.at}
     low, high = sorted((one.row_value, last))
     near = {i: d for i, d in near.items() if low <= items.special_points[i].row_value <= high}
-    return TracedHalfCurve(HalfCurve(points, CurveEndReason.edge), near).arrays()
+    return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3, 8])

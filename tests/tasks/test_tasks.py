@@ -22,7 +22,7 @@ from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.branch.special.special_curves import CurveEndReason, CurvePoint, SpecialPointCurve
+from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
 from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -329,7 +329,7 @@ def test_check_says_what_every_task_would_compute(command, task, words):
 def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     point = CurvePoint(at=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
     curve = SpecialPointCurve(
-        SpecialKind.fold, (point,), (CurveEndReason.edge, CurveEndReason.not_followed), (None, None)
+        SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
     )
     filled = cycle_curve_record(
         Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")

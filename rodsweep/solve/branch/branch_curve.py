@@ -121,7 +121,7 @@ class BranchCurve:
             point for point in self.special_points if point.index_of_cycle_before < len(self.points)
         ]
 
-    def append_end(self, end: BranchEnd) -> None:
+    def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the
         branch."""
         self.add_special_point(end.special_point)

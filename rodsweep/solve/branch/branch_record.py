@@ -65,7 +65,7 @@ class BranchRecord:
             self._unmeasured = []
         return self._last_measured
 
-    def append_end(self, end: BranchEnd) -> None:
+    def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch, with errors. If the errors of the last cycles cannot be brought
         within the accuracy, these cycles are removed and the branch ends at the last measured cycle."""
         curve = self.curve
@@ -83,4 +83,4 @@ class BranchRecord:
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
             special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
-        curve.append_end(replace(end, special_point=special))
+        curve.end(replace(end, special_point=special))

@@ -208,9 +208,7 @@ def _cycle_of_amplitude(
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
-    first = condition.solve_cycle_on_mesh(
-        mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy)
-    )
+    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, born, accuracy)
 

@@ -25,13 +25,7 @@ from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.path_differences import (
-    LARGEST_Y_INDEX,
-    PATH_INDEX,
-    PERIOD_INDEX,
-    WORST_EXTREMUM_INDEX,
-    path_differences,
-)
+from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX, path_differences
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import ArcLengthScale
 
@@ -153,7 +147,7 @@ class BranchCalibration:
     def _parameter_errors_only(self) -> Calibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
-        numbers = [PERIOD_INDEX, LARGEST_Y_INDEX, WORST_EXTREMUM_INDEX, PATH_INDEX]
+        numbers = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
         parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = own
@@ -206,7 +200,7 @@ def measured_branch_calibration(
     multipliers = multipliers_and_trivial_error(found)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.solve_cycle_on_mesh(
+        fine = condition.solve_on_mesh(
             target,
             found,
             BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy,

@@ -75,20 +75,16 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
     solves the first cycle."""
     if limits.max_cycles < 1:
-        curve.append_end(
-            BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True)
-        )
+        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
     try:
         start = first()
     except Unsolvable as why:
-        curve.append_end(
-            BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False)
-        )
+        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False))
         return curve
     outside = _index_of_passed_range_end(start, limits)
     if outside >= 0:
-        curve.append_end(BranchEnd(_end_without_cycle(curve, limits.end_reasons[outside]), complete=True))
+        curve.end(BranchEnd(_end_without_cycle(curve, limits.end_reasons[outside]), complete=True))
         return curve
     return follow_from_cycle(curve, start, limits)
 
@@ -100,7 +96,7 @@ def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimi
     while isinstance(going, BranchCycle):
         report(partial(_branch_progress, curve, going, limits))
         going = _append_next_cycle(trail, going, limits)
-    trail.append_end(going)
+    trail.end(going)
     return curve
 
 

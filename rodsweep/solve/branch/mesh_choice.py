@@ -146,7 +146,7 @@ def solved_on_mesh(
     """The same cycle solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
-    found = condition.solve_cycle_on_mesh(
+    found = condition.solve_on_mesh(
         mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), max_matrix_distance(accuracy)
     )
     tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))

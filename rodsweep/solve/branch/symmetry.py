@@ -49,7 +49,7 @@ class BranchEndSettings:
     lost_asymmetry_ratio: float = 0.1
     """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
     asymmetry at its start is less than this number."""
-    allowed_asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
     cycle."""
     extrapolation_tolerance: float = 0.3
@@ -174,17 +174,11 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if (
-        not BRANCH_END_SETTINGS.allowed_asymmetry_ratios[0]
-        < found
-        < BRANCH_END_SETTINGS.allowed_asymmetry_ratios[1]
-    ):
+    if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
     aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
-    first = condition.solve_cycle_on_mesh(
-        mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy)
-    )
+    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 

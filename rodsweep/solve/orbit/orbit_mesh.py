@@ -83,7 +83,7 @@ class OrbitMesh:
         return len(self.edges) - 1
 
     @property
-    def equivalent_full_intervals(self) -> int:
+    def full_intervals(self) -> int:
         """Solved duration divided by the length of a full interval; the last two intervals have half this
         length."""
         return self.interval_count - 1

@@ -8,7 +8,7 @@ from ...model.rod import Rod
 from .measures import CyclePath
 from .orbit import Orbit
 
-PERIOD_INDEX, LARGEST_Y_INDEX, WORST_EXTREMUM_INDEX, PATH_INDEX = range(4)
+PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
 """Indices into the array that `path_differences` returns."""
 
 

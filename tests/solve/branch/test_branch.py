@@ -21,7 +21,7 @@ from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
-from rodsweep.solve.branch.special.special_curves import CurveEndReason
+from rodsweep.solve.branch.special.special_curves import CurveEnd
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
@@ -190,7 +190,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     points, end = SpecialCurveProblem(
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).follow_from(torus, 100.0)
-    assert end is CurveEndReason.edge
+    assert end is CurveEnd.edge
     assert points[0].parameter == pytest.approx(torus.at, abs=points[0].error + torus.error)
     for point in points:
         assert point.error <= 1e-7 * point.parameter

@@ -26,7 +26,7 @@ from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.special_curves import (
-    CurveEndReason,
+    CurveEnd,
     CurvePoint,
     HalfCurve,
     SpecialPointCurve,
@@ -141,7 +141,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end))
     curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
-    assert curve.ends == (CurveEndReason.hopf, CurveEndReason.edge)
+    assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
     last = curve.points[-1]
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)

@@ -17,7 +17,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
-from rodsweep.solve.orbit.path_differences import LARGEST_Y_INDEX, PATH_INDEX, PERIOD_INDEX, path_differences
+from rodsweep.solve.orbit.path_differences import PATH_INDEX, PERIOD_INDEX, Y_INDEX, path_differences
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
@@ -66,7 +66,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
         true = path_differences(
             CyclePath(found), CyclePath(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
         )
-        for which in (PERIOD_INDEX, LARGEST_Y_INDEX, PATH_INDEX):
+        for which in (PERIOD_INDEX, Y_INDEX, PATH_INDEX):
             assert true[which] <= CALIBRATION_SETTINGS.safety_factor * parts[which] + 1e-12
 
 

@@ -79,7 +79,7 @@ class BorderCondition:
                 last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; its last step is {change:.0e}")
 
-    def solve_cycle_on_mesh(
+    def solve_on_mesh(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.

@@ -12,12 +12,12 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
-from .curve_problem import CURVE_END_SETTINGS, SpecialCurveProblem
+from .curve_problem import END_SETTINGS, SpecialCurveProblem
 from .on_curve import SolvedPoint
 from .point import RowSpecialPoint, SpecialKind, SpecialPoint
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
-    CurveEndReason,
+    CurveEnd,
     CurvePoint,
     HalfCurve,
     HalfCurveArrays,
@@ -123,7 +123,7 @@ class _CurvesOfKind:
             return [item for item in (ahead, behind) if item not in self.results]
         half = TracedHalfCurve.from_arrays(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
-        on = half is not None and half.end is not CurveEndReason.closed
+        on = half is not None and half.end is not CurveEnd.closed
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
@@ -140,7 +140,7 @@ class _CurvesOfKind:
         ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if ahead.half is None:
             return None
-        closed = ahead.half.end is CurveEndReason.closed
+        closed = ahead.half.end is CurveEnd.closed
         behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
@@ -177,7 +177,7 @@ class _CurvesOfKind:
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
-        if one.tip_y_max >= CURVE_END_SETTINGS.min_amplitude:
+        if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
         for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:

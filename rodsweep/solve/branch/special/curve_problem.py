@@ -29,7 +29,7 @@ from .on_curve import (
     with_parameter_errors,
 )
 from .point import SpecialKind, SpecialPoint
-from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEndReason, lagrange_weights
+from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
 
 CURVE_STEP_CONTROL = StepControl(
     first_length=0.01,
@@ -68,16 +68,11 @@ class CurveEndSettings:
     the angle between multiplier and real axis is below this number at the last point."""
 
 
-CURVE_END_SETTINGS = CurveEndSettings()
+END_SETTINGS = CurveEndSettings()
 
 ROW_EDGE_MARGINS = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
-END_BY_MARGIN = (
-    *4 * (CurveEndReason.edge,),
-    CurveEndReason.crushed,
-    CurveEndReason.left_the_model,
-    CurveEndReason.hopf,
-)
+END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
 """Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""
 
 
@@ -93,23 +88,23 @@ class SpecialCurveProblem:
     workspace: NewtonWorkspace
     row_direction: float = 1.0
 
-    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEndReason]:
+    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
         """(points of the curve in order from the special point `special` of a row, reason for the end of the
         curve); raises Unsolvable. row: value of the row parameter at `special`."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
         return with_parameter_errors(curve.solutions), self._end_reason(curve)
 
-    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEndReason:
+    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEnd:
         """Reason for the end of the curve `curve`, as stored in the result file."""
         if curve.end_reason is CurveStop.zero_margin:
             return END_BY_MARGIN[curve.margin_index]
         if curve.end_reason is CurveStop.closed:
-            return CurveEndReason.closed
+            return CurveEnd.closed
         return (
             self._reason_for_loss(curve.solutions[-1])
             if curve.end_reason is CurveStop.no_further_solution
-            else CurveEndReason.not_followed
+            else CurveEnd.not_followed
         )
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
@@ -166,11 +161,11 @@ class SpecialCurveProblem:
             at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
             values = {**rod.values, self.line.name: at, self.rows.name: self.rows.value(at_row)}
             load = rod.build.relative_load(values["F"], values["k1"], values["taper"])
-            return 1 - CURVE_END_SETTINGS.crushing_margin / 2 - load
+            return 1 - END_SETTINGS.crushing_margin / 2 - load
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=CURVE_END_SETTINGS.crushing_tolerance))
+        return float(brentq(distance, 0.0, step, rtol=END_SETTINGS.crushing_tolerance))
 
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
@@ -190,11 +185,9 @@ class SpecialCurveProblem:
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
-        crushing = 1 - CURVE_END_SETTINGS.crushing_margin - rod.build.relative_load(rod.F, rod.k1, rod.taper)
+        crushing = 1 - END_SETTINGS.crushing_margin - rod.build.relative_load(rod.F, rod.k1, rod.taper)
         stretch = least_stretch_of_orbit(point.orbit)
-        return np.array(
-            [x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - CURVE_END_SETTINGS.min_amplitude]
-        )
+        return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
 
     def located_zero(
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
@@ -202,10 +195,10 @@ class SpecialCurveProblem:
         """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
         this point is not found or is `behind[-1]` itself. For the margin of the amplitude: `outer`."""
         inner = behind[-1]
-        if END_BY_MARGIN[margin] is CurveEndReason.hopf:
+        if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
-        if ends[0] <= CURVE_END_SETTINGS.max_edge_distance:
+        if ends[0] <= END_SETTINGS.max_edge_distance:
             return None
         try:
             if margin in ROW_EDGE_MARGINS:
@@ -227,9 +220,7 @@ class SpecialCurveProblem:
             return float(self.margins(found[share])[margin])
 
         return found[
-            zero_along_step(
-                left, ends, 1.0, CURVE_END_SETTINGS.margin_tolerance, CURVE_END_SETTINGS.margin_tolerance
-            )
+            zero_along_step(left, ends, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
         ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
@@ -241,7 +232,7 @@ class SpecialCurveProblem:
         # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-        return len(behind) > CURVE_END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
+        return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
 
     def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
         """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
@@ -256,10 +247,10 @@ class SpecialCurveProblem:
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
-    def _reason_for_loss(self, last: SolvedPoint) -> CurveEndReason:
+    def _reason_for_loss(self, last: SolvedPoint) -> CurveEnd:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
-            if pair is None or abs(pair.imag) < CURVE_END_SETTINGS.min_sine_at_resonance * abs(pair):
-                return CurveEndReason.resonance
-        return CurveEndReason.not_followed
+            if pair is None or abs(pair.imag) < END_SETTINGS.min_sine_at_resonance * abs(pair):
+                return CurveEnd.resonance
+        return CurveEnd.not_followed

@@ -16,7 +16,7 @@ from ....determinant.exponents import EXPONENT_SETTINGS
 from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
-from ...orbit.path_differences import LARGEST_Y_INDEX, PATH_INDEX, PERIOD_INDEX, WORST_EXTREMUM_INDEX
+from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_weighted_error
@@ -155,7 +155,7 @@ class Calibration:
         power = np.where(
             intervals < present.interval_count, self.time_order[:, None], present.stage_count + 1
         )
-        time = self.time_errors[:, None] * (present.equivalent_full_intervals / (intervals - 1)) ** power
+        time = self.time_errors[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
         enough = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error_ratio * accuracy
         meshes = [
@@ -171,14 +171,14 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
     whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
     apart = space[PATH_INDEX] + time[PATH_INDEX]
     in_time = CALIBRATION_SETTINGS.min_error_ratio_in_time * time[PATH_INDEX]
-    parts = [np.maximum(part[PERIOD_INDEX], part[LARGEST_Y_INDEX]) for part in (space, time)]
+    parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
     either = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
     of_period = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + in_time
     of_height = CALIBRATION_SETTINGS.min_height_error_ratio * space[PATH_INDEX] + in_time
     stated = [
         np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
-        np.maximum(np.maximum(whole[LARGEST_Y_INDEX], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * apart),
+        np.maximum(np.maximum(whole[Y_INDEX], of_height), either),
+        np.maximum(whole[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * apart),
         whole[MULTIPLIER_INDEX],
     ]
     least = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
@@ -257,7 +257,7 @@ def _measured_time_order(before: Array, after: Array, previous: OrbitMesh, mesh:
     meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     least = mesh.stage_count + 1
-    steps = np.log(mesh.equivalent_full_intervals / previous.equivalent_full_intervals)
+    steps = np.log(mesh.full_intervals / previous.full_intervals)
     most = CALIBRATION_SETTINGS.max_time_order_ratio * least
     power: Array = np.clip(_log_ratio(before, after) / steps, least, most)
     return power

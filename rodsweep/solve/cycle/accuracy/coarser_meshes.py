@@ -67,9 +67,7 @@ class CoarserMeshes:
             mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference
         )
         self._max_predicted_order = order + fewer + COARSER_MESH_SETTINGS.max_order_excess
-        intervals = (
-            round(mesh.equivalent_full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
-        )
+        intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
         self.coarse_mesh = replace(mesh, order=order, interval_count=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
@@ -126,7 +124,7 @@ class CoarserMeshes:
     def _interval_ratio(self, mesh: OrbitMesh) -> float:
         """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
         mesh."""
-        return mesh.equivalent_full_intervals / self.coarse_mesh.equivalent_full_intervals
+        return mesh.full_intervals / self.coarse_mesh.full_intervals
 
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:

@@ -48,7 +48,7 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     the error in time that the mesh finer in time removes."""
     longer = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
-    share = 1 - (mesh.equivalent_full_intervals / (longer - 1)) ** (mesh.stage_count + 1)
+    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stage_count + 1)
     return (
         replace(mesh, order=mesh.order + FINER_MESH_SETTINGS.order_increase),
         replace(mesh, interval_count=longer),
