@@ -152,10 +152,8 @@ class BranchCycle:
 
 def branch_derivatives(found: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
     """Scale and unit tangent of a branch at the cycle `found`. scale: scale at another cycle of the branch.
-    tangent: tangent of any length, (N + 1,).
-
-    In the result curvature and multiplier rate are 0, to be set by the caller.
-    """
+    tangent: tangent of any length, (N + 1,). In the result `parameter_curvature` and `multiplier_rate` are 0,
+    to be set by the caller."""
     own = ArcLengthScale.at_orbit(found.orbit, scale.parameter_name, scale.min_deflection_unit)
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))

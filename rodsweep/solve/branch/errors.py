@@ -2,11 +2,11 @@
 and the error of the parameter.
 
 The cycle is solved at the same arc length on two finer meshes, the first finer in space, the second finer in
-time; this system is regular at a fold. The three cycles have slightly different parameter values. The two
-cycles on finer meshes are therefore moved along the branch to the parameter value of the given cycle. The
-remaining differences are the errors of period, extrema and multiplier at equal parameter. The error of the
-parameter is the parameter difference of the cycles at equal deflection. This error stays small near a Hopf
-point and near a fold, where all other quantities vary steeply with the parameter.
+time; this system is regular at a fold. The two cycles on finer meshes are then moved along the branch to the
+parameter value of the given cycle. The remaining differences are the errors of period, extrema and multiplier
+at equal parameter. The error of the parameter is the parameter difference of the cycles at equal deflection.
+This error stays small near a Hopf point and near a fold, where all other quantities vary steeply with the
+parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -36,13 +36,13 @@ class BranchErrorSettings:
 
     max_sensitivity: float = 120.0
     """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. At larger
-    sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy,
-    by the factor sensitivity/limit, because p has an error too. The limit is a fifth above the documented
-    limit of 100, because a user estimates the sensitivity from two cycles."""
+    sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy
+    by the factor sensitivity/limit. A fifth above the documented limit, because a user estimates the
+    sensitivity from cycles."""
     min_deflection_rate_ratio: float = 0.1
     """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
     |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
-    stationary along the branch."""
+    stationary."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error: float = 1e-16
@@ -85,8 +85,7 @@ class BranchDerivatives:
         if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * off):
             return off / self.parameter_rate
         way = np.copysign(1.0, off * self.parameter_rate)
-        # At a fold `off` is quadratic in the length s: rate s + curvature s^2/2 = off. This is an upper bound
-        # of the root.
+        # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = off.
         return float(
             way * 2 * (abs(off) / max(abs(self.parameter_curvature), EXPONENT_SETTINGS.least_divisor)) ** 0.5
         )
@@ -159,7 +158,7 @@ class BranchCalibration:
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. share: fraction of the arc length from the first measured cycle
         to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the interpolated
-        cycle. See `_interpolated_errors` for the formula."""
+        cycle."""
         mean = [
             _interpolated_errors(one, another, share)
             for one, another in (
@@ -190,8 +189,7 @@ def measured_branch_calibration(
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
     Unsolvable. derivatives: derivatives of the branch at `found`. accuracy: relative accuracy of `found`.
-    before: calibration at a previous cycle, from which convergence rates are estimated; None if there is no
-    such cycle."""
+    before: calibration at a previous cycle, for the convergence rates; None if there is no such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)

@@ -140,9 +140,9 @@ def _index_of_passed_range_end(point: BranchCycle, limits: BranchLimits) -> int:
 def _append_next_cycle(
     record: BranchRecord, start: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
-    """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
-    the last cycle, from which the branch continues, or the end of the branch. If a step to the mirror image
-    is too long, nothing is appended, and `start` with half the step length is returned."""
+    """Appends the next cycle after `start`, and the special points before it, to the branch. Returns the last
+    cycle, from which the branch continues, or the end of the branch; if a step to the mirror image is too
+    long, `start` with half the step length, without a new cycle."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
@@ -192,12 +192,9 @@ def _passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLim
 
 
 def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
-    """Whether the largest tip y has a corner on the last step, and the step is too long for a figure of the
-    corner.
-
-    At a corner a different maximum of y(t) becomes the largest. A figure locates a corner from two cycles
-    before and two cycles after the corner.
-    """
+    """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
+    largest), and the step is too long for a figure, which locates a corner from two cycles before and two
+    cycles after it."""
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
     other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
     return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
@@ -209,7 +206,6 @@ def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
     one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
-    # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
     return float(one @ layout.stress_field(end.orbit.start_state, "m3")) < 0
 
 
@@ -242,7 +238,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
 
 def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
-    near), or `start` with half the step, if `start` is too asymmetric to extrapolate. Raises Unsolvable."""
+    near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, next_arc_length=arc_length_between(start, end) / 2)

@@ -2,10 +2,10 @@
 
 A symmetric cycle equals its own mirror image half a period later. A branch of asymmetric cycles crosses the
 symmetric branch where a multiplier of the half-period map composed with the reflection is -1. The two halves
-of the asymmetric branch are mirror images of each other, shifted by half a period. Only one half is followed,
+of the asymmetric branch are mirror images of each other, shifted by half a period; only one half is followed,
 with cycles solved over the whole period. Near the crossing the deflection at t = 0 is linear in the
 asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, the
-branch continues as its own mirror image. A branch that ends at a Hopf point has the same property.
+branch continues as its own mirror image, as does a branch that ends at a Hopf point.
 """
 
 from collections.abc import Sequence
@@ -163,10 +163,8 @@ def first_asymmetric_cycle(
 
 def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> BranchCycle:
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
-
     whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
-    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle.
-    """
+    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle."""
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
@@ -185,11 +183,9 @@ def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accura
 def reaches_symmetric_cycle(
     start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> bool:
-    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles.
-
-    The asymmetry then changes sign or almost vanishes; or the parameter turns back near a symmetry breaking
-    in `known`, because a mesh without the symmetry of the cycle perturbs the crossing of the branches.
-    """
+    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
+    changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `known`, because
+    a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
     reference = asymmetry(start.orbit)
     other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.

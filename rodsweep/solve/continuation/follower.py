@@ -101,8 +101,9 @@ class StepControl:
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
-        """Length of the next step, from the prediction error and the angle of the last step. length: length
-        of the last, accepted step. there: result of the last step. solutions: number of solutions so far."""
+        """Length of the next step, from the prediction error and the angle of the last step, within the
+        limits of the ratio to the last length and at most `max_length`. length: length of the last, accepted
+        step. there: result of the last step. solutions: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
         by_distance = (self.target_error / max(there.prediction_error, self.min_error_or_angle)) ** (
             1 / min(self.prediction_order, solutions)
@@ -128,10 +129,11 @@ class CurveStop(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Curve(Generic[Solution]):
-    """Solutions in order from the start of the curve, and the reason for the end of the curve.
+    """Solutions in order from the start of the curve, and the reason for the end of the curve. A closed curve
+    has its start as the last solution, too.
 
-    margin_index: index of the margin that becomes negative at the end, or -1. If the zero of this margin was
-    located, the last solution is the solution at the zero.
+    margin_index: index of the margin that becomes negative at the end; -1 for another end. If the zero of
+    this margin was located, the last solution is the solution at the zero.
     """
 
     solutions: list[Solution]
@@ -143,8 +145,9 @@ def advance(
     step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
 ) -> tuple[StepResult[Solution], float]:
     """(next solution of a curve, length of the successful step); raises the error of the last step if no step
-    succeeds. length: first step length, halved after every failed step. step: function that returns the
-    solution one step of a given length ahead, or raises an error of FAILURES."""
+    succeeds. length: first step length, at most `control.max_length`. A step that fails, or whose prediction
+    error or angle is too large, is repeated with half the length, if `control.min_length` allows. step:
+    function that returns the solution one step of a given length ahead, or raises an error of FAILURES."""
     length = min(length, control.max_length)
     while True:
         try:
@@ -187,8 +190,9 @@ def follow_curve(
 
 
 def first_crossed_margin(before: Array, after: Array) -> int:
-    """Index of the first margin that becomes negative along a step; -1 if no margin becomes negative. before,
-    after: margins at the two ends of the step, (margins,), between which each margin is interpolated
+    """Index of the margin that becomes 0 first along a step, among the margins that decrease to a negative
+    value; -1 if no margin does. A margin that is negative before the step counts if it decreases further.
+    before, after: margins at the two ends of the step, (margins,), between which each margin is interpolated
     linearly."""
     # A negative margin that grows does not end the curve, which enters from beyond this limit.
     falls = (after < 0) & (after < before)

@@ -69,10 +69,10 @@ class CyclePredictor:
     """Polynomial in one parameter that predicts orbits on the branch of the solved orbit `orbit`, by Hermite
     interpolation.
 
-    values_and_derivatives: normalised values of orbits or their parameter derivatives, (m, N + 1), N: number
-    of orbit values; the first datum is the derivative at the solved orbit. parameter_offsets: parameter
-    coordinate of each datum minus the parameter coordinate of the solved orbit, (m,). derivative_orders: 0
-    for values, 1 for a derivative, (m,).
+    values_and_derivatives: normalised values of orbits, or their parameter derivatives, (m, N + 1), N: number
+    of orbit values; the first row is the derivative at the solved orbit. parameter_offsets: parameter
+    coordinate of each row minus the parameter coordinate of the solved orbit, (m,). derivative_orders: 0 for
+    values, 1 for a derivative, (m,).
     """
 
     orbit: Orbit
@@ -91,8 +91,8 @@ class CyclePredictor:
         return normalised_orbit_values(self.orbit)
 
     def weights(self, step: float) -> Array:
-        """Weights, (m,), of the data in the predicted change over a step of the parameter coordinate; see
-        `polynomial_weights`."""
+        """Weights, (m,), of the rows of `values_and_derivatives` in the predicted change over a step of the
+        parameter coordinate; see `polynomial_weights`."""
         weights: Array = polynomial_weights(self.parameter_offsets, self.derivative_orders, step)
         return weights
 
@@ -116,7 +116,8 @@ class CyclePredictor:
         )
 
     def on_mesh(self, target: OrbitMesh) -> "CyclePredictor":
-        """This predictor with the solved orbit and all data interpolated to the mesh `target`."""
+        """This predictor with the solved orbit and all values and derivatives interpolated to the mesh
+        `target`."""
         if target == mesh_of(self.orbit):
             return self
         data = [
@@ -169,7 +170,7 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
 
 
 def relative_parameter_difference(one: StressForm, other: StressForm, name: str) -> float:
-    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods."""
+    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods; 0 if a = b."""
     a = one.rod.coordinate(name)
     b = other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0

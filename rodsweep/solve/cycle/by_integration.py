@@ -1,10 +1,9 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-ARKIMEX integrates the motion until the motion repeats. Collocation is not used. The characteristic
-determinant gives only the leading eigenvalue of the straight rod, which is stored. No Floquet multiplier is
-computed: a motion that settles on a cycle shows that the cycle is stable in the plane. Period and extrema are
-measured on two settled motions, the second on a finer mesh with a smaller tolerance; the difference of the
-two results gives the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
+The characteristic determinant gives only the leading eigenvalue of the straight rod, which is stored. No
+Floquet multiplier is computed: a motion that settles on a cycle shows that the cycle is stable in the plane.
+Period and extrema are measured on two settled motions, the second on a finer mesh with a smaller tolerance;
+the difference gives the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
 """
 
 from collections import deque
@@ -97,7 +96,7 @@ class _MarchedMotion:
                 if errors.largest_weighted_error <= enough:
                     break
             if in_limit:
-                errors = self._errors_with_limit_error(settled, path, errors)
+                errors = self._errors_in_limit(settled, path, errors)
         except NoCycleFound as end:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, path, errors)
@@ -117,7 +116,7 @@ class _MarchedMotion:
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
 
     def _integrate_until_settled(self, z: Array) -> SettledMotion:
-        """Integrates from the state z, (unknowns,), until the motion has settled, or raises NoCycleFound."""
+        """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
@@ -215,12 +214,9 @@ class _MarchedMotion:
             Orbit.from_states(form, NO_SYMMETRY, period, collocation_states(self.beam, form, states), stages)
         )
 
-    def _errors_with_limit_error(
-        self, settled: SettledMotion, path: CyclePath, errors: CycleErrors
-    ) -> CycleErrors:
-        """`errors` plus the error of integrating a nearby rod instead of a limiting rod.
-
-        Raises NoCycleFound."""
+    def _errors_in_limit(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
+        """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
+        NoCycleFound."""
         known = path.orbit.form.rod
         limit = self.limiting_rod
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]

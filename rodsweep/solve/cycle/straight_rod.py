@@ -105,7 +105,8 @@ def straight_rod_stability(
 
 def eigenvalues_to_follow(rod: Rod, found: StraightRodStability) -> Complex:
     """Eigenvalues of `rod`, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
-    can be followed. found: leading eigenvalue of `rod`."""
+    can be followed: the followed eigenvalues of `found`, if any; else several eigenvalues of a nonuniform
+    rod, if their search succeeds; else the leading eigenvalue of `found` alone. found: stability of `rod`."""
     if len(found.followed_eigenvalues):
         return found.followed_eigenvalues
     if not rod.uniform:

@@ -1,8 +1,9 @@
 """Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-At the starts of the intervals, which are equidistant in time, strains and strain rates have the full order of
-the collocation. The trigonometric polynomial through strains and strain rates converges spectrally; extrema
-are computed from this polynomial. Means are integrals by the quadrature of the collocation.
+At the starts of all intervals except the last, which are equidistant in time, strains and strain rates have
+the full order of the collocation. The trigonometric polynomial through strains and strain rates converges
+spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature of the
+collocation.
 """
 
 from dataclasses import dataclass, field
@@ -37,9 +38,9 @@ class Measures:
     """Scalar measures and harmonics of a cycle, with the names in the result file; NaN if unknown.
 
     period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L, and theta, in rad.
-    harmonic_amplitude: harmonics of the tip's y from the first, in L. injection_..., dissipation_...: mean of
-    the power, and rms of its fluctuation, in k3/(L tau2). energy_imbalance: mean injection/mean dissipation -
-    1. least_stretch: smallest h1.
+    harmonic_amplitude: amplitudes of the harmonics of the tip's y from the first, (harmonics,), in L.
+    injection_..., dissipation_...: mean of the power, and rms of its fluctuation, in k3/(L tau2).
+    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1 at the nodes.
     """
 
     period: float = nan
@@ -59,8 +60,8 @@ class Measures:
 
 
 class CyclePath:
-    """Motion of an orbit over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
-    `coefficients` and `samples` of its `TipPath`."""
+    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
+    as in `TipPath`."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit

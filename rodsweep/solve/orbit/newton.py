@@ -18,8 +18,9 @@ class OrbitNewtonSettings:
     """Settings of Newton's method for a periodic orbit, with or without a parameter among the unknowns."""
 
     new_matrix_ratio: float = 0.1
-    """A new Newton matrix is assembled and eliminated if the ratio of successive Newton steps exceeds this
-    number."""
+    """A new Newton matrix is assembled and eliminated if the relative change in a Newton step exceeds this
+    number times the change in the previous step; without a parameter among the unknowns, also if it exceeds
+    this number itself."""
     longest_step: float = 0.5
     """Largest relative change of state, period or parameter in one iteration. If the parameter is unknown, a
     longer step is a failure. Otherwise a longer step is shortened; the iteration fails if a step after the

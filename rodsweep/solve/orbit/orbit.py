@@ -23,8 +23,8 @@ from .symmetry import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of the rod and space mesh of `form`, on K time intervals with s collocation stages
-    each.
+    """A periodic orbit of the rod and space mesh of `form`, with K = `interval_count` time intervals and s =
+    `stage_count` collocation stages in each interval.
 
     values: states at t = 0 and at the stages of all intervals, in order, then the period in tau2, (N,), N =
     (1 + K s) n + 1, n: unknowns of a state.
@@ -86,7 +86,7 @@ class Orbit:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether the solved part is shorter than the period (`symmetry.parts` > 1)."""
+        """Whether the solved part is shorter than the period (`symmetry.period_parts` > 1)."""
         return self.symmetry.period_parts > 1
 
     @property
@@ -95,7 +95,8 @@ class Orbit:
 
     @property
     def max_energy_norm(self) -> float:
-        """Size of the motion: largest energy norm of the states over the period, in units of sqrt(energy)."""
+        """Largest energy norm of the states at the equidistant times, in units of sqrt(energy): the size of
+        the motion."""
         # The norm is the same in the part of the period that follows by symmetry.
         return float(self.form.energy_norm(self.equidistant_states).max())
 

@@ -110,8 +110,8 @@ class OrbitMesh:
 
     @property
     def coarser(self) -> "OrbitMesh":
-        """Mesh coarser than this mesh, for the first steps along a branch to a cycle that will be solved on
-        this mesh."""
+        """Mesh coarser than this mesh in space and time, for the intermediate orbits on the way to a cycle
+        that will be solved on this mesh."""
         order = max(
             ORBIT_MESH_SETTINGS.min_order - ORBIT_MESH_SETTINGS.coarser_order_decrease,
             self.order - ORBIT_MESH_SETTINGS.coarser_order_decrease,
@@ -150,7 +150,7 @@ class OrbitMesh:
     @property
     def cost(self) -> float:
         """Relative cost of the elimination of Newton's matrix; the number of unknowns is rounded up to a
-        multiple of `ORBIT_MESH_SETTINGS.vector`."""
+        multiple of `ORBIT_MESH_SETTINGS.doubles_per_vector`."""
         unknowns = ORBIT_MESH_SETTINGS.doubles_per_vector * ceil(
             self.unknown_count / ORBIT_MESH_SETTINGS.doubles_per_vector
         )
@@ -176,8 +176,8 @@ def cheapest_stage_count(accuracy: float) -> int:
 
 def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
-    the tails of the nearby orbit `orbit`; finer than the mesh of `orbit` at most by `max_order_increase` and
-    `max_interval_ratio`."""
+    the tails of the nearby orbit `orbit`; not coarser than `min_order` and `min_intervals`, and finer than
+    the mesh of `orbit` at most by `max_order_increase` and `max_interval_ratio`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
     aim_space = (

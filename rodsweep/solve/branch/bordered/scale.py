@@ -3,7 +3,7 @@ parameter.
 
 The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
 deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus. Both
-divisors are those of one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes
+divisors belong to one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes
 linearly through 0, so that arc length stays regular.
 
 The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; s is the position

@@ -1,7 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
-`changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a work item, independent of all other half curves.
+A curve is followed in two halves from a special point of a row. Each half curve is a work item, independent
+of all other half curves. `changes.diagram.boundaries` has the same task for the straight rod.
 """
 
 import math
@@ -32,19 +32,17 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-
     line, rows: axes of the parameter along a row and of the row parameter. special_points: points of all
     rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1
-    to smaller values.
-    """
+    to smaller values."""
 
     line: PlaneAxis
     rows: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
-        """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
-        curves are complete. results: results of half curves, by number."""
+        """Numbers of the half curves needed now, then of those that may be needed later; empty if all curves
+        are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):
@@ -74,7 +72,6 @@ class SpecialBoundaries:
     ) -> HalfCurveArrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # The number is twice the index of the special point, plus 1 for the half to smaller values.
         index, behind = divmod(item, 2)
         one = self.special_points[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
@@ -102,8 +99,8 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_boundaries`; line, rows and special_points: as in
-    `SpecialBoundaries`. results: arrays of half curves, by number."""
+    """Curves of one kind as a problem of `trace_boundaries`; other fields as in `SpecialBoundaries`. results:
+    arrays of half curves, by number."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -127,8 +124,8 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Numbers of the half curves that may be needed later: from all special points on the rows on which
-        the needed half curves start."""
+        """Numbers of half curves that may be needed later: from special points on the rows of the needed
+        curves."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
             (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._position
@@ -200,7 +197,7 @@ def _trace_half_curve(
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
     """One half of a curve, from special point `one` of a row; `half` is None after a failure. located: points
-    of this row, with cycles. special: all special points, for the distances."""
+    of this row, with cycles. special: all special points."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point

@@ -42,8 +42,7 @@ CURVE_STEP_CONTROL = StepControl(
     max_length_ratio=2.0,
     max_solutions=400,
 )
-"""Step length control along a curve of special points. Steps have four components: the three components of
-`Scale` and the row coordinate, from 0 to 1."""
+"""Step length control; a step has the three components of `ArcLengthScale` and the row coordinate, 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,11 +60,10 @@ class CurveEndSettings:
     crushing_tolerance: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
-    """A curve ends where the largest tip y, in L, falls below this number, and is extrapolated to a Hopf
-    point."""
+    """A curve ends, at an extrapolated Hopf point, where the largest tip y, in L, is below this number."""
     min_sine_at_resonance: float = 0.2
     """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
-    the angle between multiplier and real axis is below this number at the last point."""
+    the angle between multiplier and real axis is below this number."""
 
 
 END_SETTINGS = CurveEndSettings()
@@ -78,9 +76,9 @@ END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_mode
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
-    """Continuation problem for curves of folds or torus points in a parameter plane. line: axis of the
-    parameter that varies along a row. rows: axis of the row parameter. row_direction: sign, 1 or -1, of the
-    first step in the row parameter. workspace: memory of Newton's matrices."""
+    """Curves of folds or torus points in a parameter plane, as a problem of `follow_curve`. line, rows: axes
+    of the parameter along a row and of the row parameter. row_direction: sign, 1 or -1, of the first step in
+    the row parameter. workspace: memory of Newton's matrices."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -89,8 +87,7 @@ class SpecialCurveProblem:
     row_direction: float = 1.0
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
-        """(points of the curve in order from the special point `special` of a row, reason for the end of the
-        curve); raises Unsolvable. row: value of the row parameter at `special`."""
+        """(points of the curve from `special` on row `row`, reason for its end); raises Unsolvable."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
         return with_parameter_errors(curve.solutions), self._end_reason(curve)
@@ -113,9 +110,9 @@ class SpecialCurveProblem:
         report(lambda: SolvePosition(words))
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
-        """The point one step beyond the last point, with the prediction error and the cosine of the angle
-        between the last two steps; raises Unsolvable. behind: points so far, in order along the curve.
-        length: arc length of the step; on the first step, change of the row coordinate."""
+        """The next point, with prediction error and cosine of the angle between the last two steps; raises
+        Unsolvable. behind: points so far. length: arc length; on the first step, change of the row
+        coordinate."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -170,8 +167,7 @@ class SpecialCurveProblem:
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit on the mesh `mesh`, row coordinate): sums of `points` with weights, (points,); raises
-        Unsolvable."""
+        """(orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
         at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
@@ -224,12 +220,11 @@ class SpecialCurveProblem:
         ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether the step from `behind[-1]` to `point` passes the first point of the curve, and the curve
-        has more than `min_loop_points` points."""
+        """Whether a curve of more than `min_loop_points` points passes its first point on the step to
+        `point`."""
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(behind[0])
-        # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near

@@ -29,7 +29,7 @@ from .segment import BranchSegment
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
-    """Kind of the special point at which a multiplier of `orbit`, over the solved time interval, passes
+    """Kind of the special point at which a multiplier of `orbit` over the solved part of the period passes
     -1."""
     return SpecialKind.symmetry_breaking if orbit.is_symmetric else SpecialKind.period_doubling
 
@@ -50,9 +50,9 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, found: Conver
 
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
-    """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
-    the solved time interval, (multipliers,). Raises Unsolvable for torus points if all multipliers are real.
-    """
+    """Value of the test function of torus points, symmetry breakings or period doublings; raises Unsolvable
+    for torus points if all multipliers are real. h: multipliers over the solved part of the period,
+    (multipliers,)."""
     real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
@@ -102,8 +102,7 @@ def special_point_between(
                 point = _with_mesh_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
-            # Every second mesh is chosen from the measured error; the next mesh is only slightly finer, for
-            # comparison.
+            # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
             mesh = _finer_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.is_allowed:
                 break
@@ -115,7 +114,7 @@ def special_point_between(
 
 
 def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
+    """The next finer mesh. excess: error on `mesh` divided by the accuracy; 1 gives the smallest
     refinement."""
     # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
     growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
@@ -133,12 +132,9 @@ def _with_mesh_errors(
     point: SpecialPoint, last: SpecialPoint, start: BranchCycle, end: BranchCycle
 ) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor.
-
-    The errors of period and largest tip y include a fraction of their difference between `start` and `end`,
-    the cycles before and after the point: for the error of the last secant step, and, except at a fold, for
-    the error of the parameter.
-    """
+    safety factor. The errors of period and largest tip y include a fraction of their difference between
+    `start` and `end`, the cycles before and after the point: for the error of the last secant step, and,
+    except at a fold, for the error of the parameter."""
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
         point.at - last.at
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.at)
@@ -163,7 +159,7 @@ def _with_mesh_errors(
 
 
 def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point of a kind at the solved cycle `orbit`; all errors are NaN. name: continuation
+    """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
     parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
@@ -177,8 +173,8 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
 
 
 def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
-    """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
-    the differences between the two cycles as errors. message: cause of the failure."""
+    """A special point that could not be located: values at the cycle `end`, with the differences between the
+    cycles `start` and `end` as errors. message: cause."""
     name = start.scale.parameter_name
     measures = end.cycle.measures
     before = start.cycle.measures
@@ -197,8 +193,8 @@ def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, me
 
 
 def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
-    """(arc length of an approximate zero of the test function, slope of the test function at this zero), by
-    bracketing on a segment; raises Unsolvable."""
+    """(arc length of an approximate zero, slope of the test function there), by bracketing; raises
+    Unsolvable."""
     start = segment.start
     known = ((0.0, start), (segment.length, segment.end))
     values = {at: _test_value_at_end(kind, start.scale, start.unit_tangent, point) for at, point in known}

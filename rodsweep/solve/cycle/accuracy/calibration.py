@@ -1,9 +1,9 @@
 """Calibration of a mesh: measured errors, reused for later cycles on the same mesh, and convergence rates.
 
 The convergence rate in space is estimated from the decay of the orbit's coefficients, the order in time from
-the number of stages; errors measured on two meshes give more accurate rates. The rates determine the cheapest
-sufficient mesh. Along a chain of cycles the errors are measured at the first cycle on a mesh. At later cycles
-these errors are scaled up as the coefficient tails of the orbits grow.
+the number of stages; errors measured on two meshes give more accurate rates, from which the cheapest
+sufficient mesh follows. Along a chain of cycles the errors are measured at the first cycle on a mesh, and
+scaled up at later cycles as the coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace
@@ -22,11 +22,9 @@ from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_weighted_error
 
 MULTIPLIER_INDEX = 4
-"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
-indices are the indices of `path_differences`."""
+"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
 ERROR_COUNT = 5
-"""Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
-largest nontrivial multiplier."""
+"""Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
 
 CHECKPOINT_FIELDS = dict(
     space="space_errors", time="time_errors", fall="space_decay", power="time_order", tails="tails_and_size"
@@ -36,12 +34,9 @@ CHECKPOINT_FIELDS = dict(
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """Measured errors of a mesh at an orbit, with convergence rates.
-
-    space_errors, time_errors: errors due to the elements and to the time intervals, (5,) each. The first four
-    are relative, as in `path_differences`; the last is the absolute error of the largest nontrivial
-    multiplier.
-    """
+    """Measured errors of a mesh at an orbit, with convergence rates. space_errors, time_errors: errors due to
+    the elements and to the time intervals, (5,): four relative errors as in `path_differences`, and the
+    absolute error of the largest nontrivial multiplier."""
 
     mesh: OrbitMesh
     space_errors: Array
@@ -59,8 +54,7 @@ class Calibration:
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
-        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
-        `error_growth`."""
+        """All fields except `error_growth` as named arrays, for a checkpoint."""
         errors = {name: getattr(self, field) for name, field in CHECKPOINT_FIELDS.items()}
         numbers = {"reach": np.array(self.parameter_change), "calibrated_mesh": self.mesh.as_array}
         return errors | numbers
@@ -91,14 +85,13 @@ class Calibration:
 
     @property
     def with_outdated_errors(self) -> "Calibration":
-        """This calibration with `parameter_change` = inf: the errors no longer apply, the convergence rates
-        still do."""
+        """This calibration with an infinite `parameter_change`: its errors no longer apply, its rates still
+        do."""
         return replace(self, parameter_change=inf)
 
     @property
     def is_valid(self) -> bool:
-        """Whether the scaled errors apply: `parameter_change` and `error_growth` do not exceed their
-        limits."""
+        """Whether the scaled errors apply: `parameter_change` and `error_growth` are within their limits."""
         is_near = self.parameter_change <= CALIBRATION_SETTINGS.max_parameter_change
         return is_near and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
 
@@ -107,35 +100,29 @@ class Calibration:
         return self.parameter_change + change <= CALIBRATION_SETTINGS.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
-        `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
+        """Returns (errors in space, errors in time), (5,): lower limits of errors measured again at `orbit`
+        on this mesh: fractions of the present errors that decrease with the coefficient tails."""
         shrinkage = np.minimum(_squared_tail_growth(self.tails_and_size, _tails_and_size(orbit)), 1.0)
         in_space, in_time = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
         return in_space * self.space_errors, in_time * self.time_errors
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
-        requested relative accuracy `accuracy`.
-
-        For the multiplier and the other extrema, errors in space and in time are scaled by the larger of the
-        two growth factors, because an error was once seen to grow 2.7 times as much as its tail. For period
-        and largest y, whose errors determine the mesh, the larger factor would cost a tenth of the time of a
-        sweep.
-        """
+        requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
+        in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
+        times as much as its tail."""
         in_space, in_time = self.error_growth
         stated = _errors_with_safety_factors(
             self.space_errors * in_space, self.time_errors * in_time, accuracy
         )
         larger = float(self.error_growth.max())
-        # Extrema and multipliers mix the errors in space and in time, so the larger growth applies.
         stated[2:] = _errors_with_safety_factors(
             self.space_errors * larger, self.time_errors * larger, accuracy
         )[2:]
         return CycleErrors(*stated.tolist())
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which the convergence rates predict the relative accuracy `accuracy`; the next
-        finer mesh if no allowed mesh suffices."""
+        """The cheapest mesh on which the rates predict the relative accuracy; else the next finer mesh."""
         present = self.mesh
         allowed = ORBIT_MESH_SETTINGS
         lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_order_decrease)
@@ -151,7 +138,6 @@ class Calibration:
         least = np.minimum(self.space_decay, self.space_decay[PATH_INDEX])
         fall = np.where(orders < present.order, self.space_decay[:, None], least[:, None])
         space = self.space_errors[:, None] * np.exp(fall * (present.order - orders))
-        # The order was measured on coarser meshes; for finer meshes the smallest order is taken.
         power = np.where(
             intervals < present.interval_count, self.time_order[:, None], present.stage_count + 1
         )
@@ -192,15 +178,10 @@ def _tails_and_size(orbit: Orbit) -> Array:
 
 
 def _error_growth_factors(before: Array, after: Array) -> Array:
-    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
-
-    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
-
-    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
-    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point. A
-    predicted decrease is ignored.
-    """
-    # Errors are of second order in the tails.
+    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1:
+    absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
+    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
+    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each."""
     growth: Array = np.maximum(_squared_tail_growth(before, after), 1.0) * max(
         (before[2] / after[2]) ** 2, 1.0
     )
@@ -218,11 +199,10 @@ def calibration_of(
     mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
-
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If its mesh has another
-    order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
-    in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
-    """
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If its mesh has the same
+    elements but another order, the errors on both meshes give the rate in space; if it has another number of
+    intervals, the order in time. Otherwise the rates of `before` are kept. None: rates from the coefficients
+    and the stages."""
     tails = _tails_and_size(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).space_decay

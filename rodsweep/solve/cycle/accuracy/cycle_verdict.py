@@ -42,7 +42,8 @@ class RefinedCycle:
 
     @property
     def possible_period_divisor(self) -> int:
-        """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal."""
+        """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal,
+        and g = 0 means that all harmonics are 0."""
         return possible_period_divisor(self.path, self.errors.extrema_error)
 
     @property

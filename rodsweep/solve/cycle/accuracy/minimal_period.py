@@ -56,7 +56,7 @@ def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
 
 def possible_period_divisor(path: CyclePath, error: float) -> int:
     """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
-    minimal.
+    minimal, and g = 0 means that all harmonics are 0.
 
     error: relative error of the extrema.
     """
@@ -70,7 +70,8 @@ def possible_period_divisor(path: CyclePath, error: float) -> int:
 
 
 def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
-    """The orbit over the minimal period that its large harmonics show, as a start for Newton's method."""
+    """The orbit over the minimal period that its large harmonics show, as a start for Newton's method; the
+    orbit itself if this is its period."""
     g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
     if g == 1:
         return orbit

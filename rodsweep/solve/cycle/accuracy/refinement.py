@@ -36,7 +36,8 @@ def cycle_with_calibrated_errors(
     calibration: Calibration, found: ConvergedOrbit, accuracy: float
 ) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
-    scaled to this orbit. accuracy: requested relative accuracy."""
+    scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled at
+    a nearby orbit, and of the amplitude error. accuracy: requested relative accuracy."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_and_trivial_error(found)
@@ -189,7 +190,8 @@ def _solve_on_mesh(
 
 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
-    """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
+    """The solved orbit `found`; raises Unsolvable if its size divided by `size`, the size of the start, is
+    not between `min_size_ratio` and `max_size_ratio`."""
     if (
         not REFINEMENT_SETTINGS.min_size_ratio * size
         < found.orbit.max_energy_norm
@@ -227,7 +229,8 @@ def refined_cycle(
 
 
 def newton_tolerance(accuracy: float) -> float:
-    """Relative tolerance of Newton's method for a cycle of a given relative accuracy."""
+    """Relative tolerance of Newton's method for a cycle of a given relative accuracy, at least
+    `min_newton_tolerance`."""
     return max(
         REFINEMENT_SETTINGS.newton_tolerance_ratio * accuracy, REFINEMENT_SETTINGS.min_newton_tolerance
     )
@@ -235,7 +238,8 @@ def newton_tolerance(accuracy: float) -> float:
 
 def max_matrix_distance(accuracy: float) -> float:
     """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
-    for multipliers and tangent of the relative accuracy `accuracy`."""
+    for multipliers and tangent of the relative accuracy `accuracy`; between `min_matrix_distance` and
+    `max_matrix_distance`."""
     return min(
         max(REFINEMENT_SETTINGS.matrix_distance_ratio * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
         REFINEMENT_SETTINGS.max_matrix_distance,

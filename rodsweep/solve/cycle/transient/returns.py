@@ -23,7 +23,7 @@ class ReturnSettings:
     """Settings for the returns of the tip to the section theta = 0, by which a motion is classified."""
 
     straight_norm: float = 1e-6
-    """A motion with |z| < straight_size has decayed to the straight state, if this state is stable; z: state.
+    """A motion with |z| < straight_norm has decayed to the straight state, if this state is stable; z: state.
     If the norm of the bending and shear components of z is smaller than this, the rod no longer oscillates.
     Numerical damping governs smaller motions."""
     max_equal_return_distance: float = 0.03

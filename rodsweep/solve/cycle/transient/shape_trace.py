@@ -30,8 +30,9 @@ SHAPE_TRACE_SETTINGS = ShapeTraceSettings()
 
 
 class ShapeTrace:
-    """Record of the first time steps of one motion, and the interpolation of shapes between these time
-    steps."""
+    """Record of the first time steps of one motion, and the interpolation of shapes between these time steps.
+    run_times, run_states: times, (steps,), and states, (steps, unknowns), of each recorded run. step_count:
+    number of recorded time steps."""
 
     def __init__(self, beam: Beam) -> None:
         self.beam = beam
@@ -70,7 +71,8 @@ class ShapeTrace:
             self.step_count += len(times)
 
     def motion_shapes(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
-        """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest.
+        """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest,
+        at most SHAPE_TRACE_SETTINGS.max_stored_shapes.
 
         returns: times of the last returns of the tip, in tau2. period: period of the leading mode, in tau2,
         used if there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.

@@ -1,9 +1,9 @@
 """Integration of a motion from a start until Newton's method finds its cycle, or until the rod is straight.
 
-The motion is integrated from return to return (`returns`). Newton's method starts once two returns agree
-to a relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state is
-scaled to the amplitude that the amplitude equation predicts (`amplitude_equation`). A motion with a stored
-path has no jumps.
+The motion is integrated from return to return (`returns`). Newton's method starts once two returns agree to a
+relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state is scaled
+to the amplitude that the amplitude equation predicts (`amplitude_equation`). A motion with a stored path has
+no jumps.
 
 A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
 axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode.
@@ -39,13 +39,13 @@ from .transient_settings import TRANSIENT_SETTINGS
 
 
 class Transient:
-    """Integration of the motion of one rod from a start; `follow` is called only once.
-
-    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod.
-    tangent_parameter: parameter along which the cycle's tangent is computed, or None. unstable_cycle: a
-    nearby unstable cycle, or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby
-    rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None
-    if not requested."""
+    """Integration of the motion of one rod from a start; `follow` is called only once. form: the rod whose
+    cycle is solved for, and the mesh. straight: stability of the straight rod. tangent_parameter: parameter
+    along which the cycle's tangent is computed, or None. unstable_cycle: a nearby unstable cycle, or None.
+    beam: the integrated rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...). record: record of the
+    tip's path or of shapes, or None if not requested. returns, steps, jump_count: numbers of returns, time
+    steps and jumps so far. attempts: number of Newton's attempts, up to a maximum. next_attempt: number of
+    returns before the next attempt."""
 
     def __init__(
         self,
@@ -188,9 +188,8 @@ class Transient:
         return TransientOutcome(status, why, self.returns, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
-        TRANSIENT.returns_in_first_run in the `first` run, but of at most TRANSIENT.max_run_duration times the
-        expected time per return."""
+        """A run from the state z, (unknowns,), over `returns_per_run` returns, or `returns_in_first_run` in
+        the `first` run, of at most `max_run_duration_ratio` times the expected time of these returns."""
         returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
         limit = until_returns(self.tip_angle_row, z, returns)

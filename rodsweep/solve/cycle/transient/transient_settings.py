@@ -20,13 +20,13 @@ class TransientSettings:
     max_newton_distance: float = 0.1
     """Newton's method starts if the relative distance between two returns is less than this."""
     newton_divisor: int = 10
-    """After each failure of Newton's method, `max_newton_distance` is divided by this number."""
+    """After each attempt of Newton's method, `max_newton_distance` is divided by this number."""
     max_newton_distance_with_path: float = 1e-3
     """Upper limit of `max_newton_distance` for a motion with a stored path, in the first half of the allowed
     returns, so that the path shows how the motion settles."""
     max_counted_attempts: int = 5
-    """Each failure of Newton's method, up to this number of failures, doubles the number of returns before
-    the next start."""
+    """Each attempt of Newton's method, up to this number of attempts, decreases the distance at which
+    Newton's method starts, and doubles the number of returns before the next attempt."""
     max_jumps: int = 60
     """Maximum number of jumps of a motion, to a scaled state or to a restart."""
     restart_deflection: float = 1e-3

@@ -53,8 +53,8 @@ class ShootingIntervals:
         the shooting intervals, (m, k, n).
 
         columns: reduced right-hand sides, (K, s, k, n). whole: changes of the end of the last time interval
-        for a fixed start of the first time interval, (k, n). factors: eliminated matrix. p: equations of the
-        orbit.
+        for a fixed start of the first time interval, (k, n), the result for a single shooting interval.
+        factors: eliminated matrix. p: equations of the orbit.
         """
         ends = np.zeros((len(self.flow_maps), *whole.shape))
         if len(ends) == 1:
@@ -107,8 +107,8 @@ class ShootingIntervals:
 
 
 def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
-    """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval if the norm
-    of P is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
+    """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval unless the
+    norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
     present shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
     (n,)."""
     blocks = factors.eliminated_blocks

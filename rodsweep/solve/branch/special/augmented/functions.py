@@ -60,7 +60,7 @@ class FoldFunction:
     """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
     the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. has_small_cycles:
     whether the derivative is divided by the deflection; without this division the derivative vanishes at a
-    Hopf point too."""
+    Hopf point too. null_vectors: tangent of the branch, (N + 1,)."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, has_small_cycles: bool) -> None:
         self.matrix = matrix
@@ -104,8 +104,10 @@ class FoldFunction:
 
 class TorusFunction:
     """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
-    corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used. Raises
-    Unsolvable if all multipliers of this cycle are real."""
+    corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used.
+    null_vectors: real and imaginary part of the eigenvector, (2, N + 1). shifted_propagator: P - (1 + shift)
+    mu S, the matrix of inverse iteration. bordered_propagator: P - mu S with the border of Newton's method
+    for mu. Raises Unsolvable if all multipliers of this cycle are real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix

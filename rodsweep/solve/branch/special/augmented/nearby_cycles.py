@@ -71,7 +71,8 @@ class NearbyCycleSolver:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. enough: relative
-        tolerance of cycle and test function; far from the curve `AUGMENTED.tolerance_share` allows more.
+        tolerance of cycle and test function; far from the curve `AUGMENTED_SETTINGS.tolerance_share` allows
+        more.
         """
         last = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
