@@ -76,7 +76,7 @@ class StableStates(IntEnum):
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
     `StableStates` at each parameter value, (values,). special_points: special points of all branches.
-    seconds: computing time."""
+    message: for the user, or "". seconds: computing time."""
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]

@@ -89,7 +89,9 @@ class StepControl:
 
     def __post_init__(self) -> None:
         if not self.max_length_ratio > 1:
-            raise ValueError(f"max_ratio = {self.max_length_ratio} must be above 1, so that steps can grow")
+            raise ValueError(
+                f"max_length_ratio = {self.max_length_ratio} must be above 1, so that steps can grow"
+            )
 
     def require_small_errors(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The result `there` itself; raises Unsolvable if its prediction error or angle is so large that the

@@ -67,7 +67,8 @@ class CycleRequest:
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
     """Outcome of the task limit_cycle for one rod, with the quantities of the cycle; unknown quantities are
-    NaN or None.
+    NaN or None. message: for the user, or "". seconds: computing time. elements, order: number and order of
+    the elements of the mesh, 0 if unknown.
 
     For a motion on a torus only the multipliers of the unstable cycle inside the torus are known. Time series
     over a period start where the tip's y rises through its mean.

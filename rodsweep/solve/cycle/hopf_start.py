@@ -46,10 +46,10 @@ class HopfStartSettings:
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
     converged_growth_in_errors: float = 4.0
-    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth times the error estimate
-    of w."""
+    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth_in_errors times the
+    error estimate of w."""
     converged_force_step: float = 1e-15
-    """Newton's method for the Hopf point has also converged if |step of F| <= converged_step |F|."""
+    """Newton's method for the Hopf point has also converged if |step of F| <= converged_force_step |F|."""
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
@@ -97,7 +97,8 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     """The nearest Hopf point below the force of the rod at which the leading mode becomes unstable; None if
-    no such Hopf point is found. Raises Unsolvable."""
+    no such Hopf point is found. Raises Unsolvable if a leading eigenvalue is not known, or if the mode that
+    becomes unstable does not oscillate."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:

@@ -238,7 +238,7 @@ def test_rod_without_a_hopf_point_has_no_branch():
 
 
 def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
-    made = following.next_point
+    made = following.next_cycle
 
     def lost(here, accuracy):
         if here.parameter_coordinate > 75:

@@ -171,7 +171,7 @@ def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
     here, there = (
         SimpleNamespace(
             parameter_rate=1.0,
-            partial_multipliers=np.array([h, 0.1, 0.2j, -0.2j]),
+            multipliers_over_solved_part=np.array([h, 0.1, 0.2j, -0.2j]),
             orbit=SimpleNamespace(is_symmetric=has),
         )
         for h in (-0.9, -1.1)

@@ -204,5 +204,5 @@ def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, 
 
 def test_steps_that_never_grow_are_refused():
     """They would end a curve by the number of its solutions, however far its end is."""
-    with pytest.raises(ValueError, match="max_ratio"):
+    with pytest.raises(ValueError, match="max_length_ratio"):
         StepControl(first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_length_ratio=1.0)

@@ -433,7 +433,9 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
 
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
-    monkeypatch.setattr("rodsweep.solve.cycle.accuracy.cycle_verdict.undecided_divisor", lambda *given: 2)
+    monkeypatch.setattr(
+        "rodsweep.solve.cycle.accuracy.cycle_verdict.possible_period_divisor", lambda *given: 2
+    )
     c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled
     assert "the period found may be 2 minimal periods" in c.message

@@ -76,9 +76,9 @@ END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_mode
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
-    """Curves of folds or torus points in a parameter plane, as a problem of `follow_curve`. line, rows: axes
-    of the parameter along a row and of the row parameter. row_direction: sign, 1 or -1, of the first step in
-    the row parameter. workspace: memory of Newton's matrices."""
+    """Curves of folds or torus points in a plane, as a problem of `follow_curve`. line, rows: axes of the
+    parameter along a row and of the row parameter. row_direction: 1 or -1, sign of the first step in the row
+    parameter."""
 
     kind: SpecialKind
     line: PlaneAxis
@@ -127,7 +127,6 @@ class SpecialCurveProblem:
         point = self._family(last).corrected_point_with_error(start, at_row, line, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.interpolated_orbit(start)
-        # Prediction and point can be compared only on the same mesh.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
             return StepResult(point, min(off, CURVE_STEP_CONTROL.max_error), 1.0)

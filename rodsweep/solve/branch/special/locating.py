@@ -116,7 +116,7 @@ def special_point_between(
 def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     """The next finer mesh. excess: error on `mesh` divided by the accuracy; 1 gives the smallest
     refinement."""
-    # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
+    # The error is assumed proportional to intervals^-p, p: `time_order_per_stage` times the number of stages.
     growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio

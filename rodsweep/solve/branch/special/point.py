@@ -141,7 +141,8 @@ class SpecialPoint:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
     """A special point as the result file stores it. row_index: index of the row. row_value: value of the row
-    parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
+    parameter. kind: kind of the point. at: value of the parameter along the row. period: in tau2. tip_y_max:
+    in L."""
 
     row_index: int
     row_value: float

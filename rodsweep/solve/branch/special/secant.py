@@ -42,7 +42,8 @@ class _SecantIterate(NamedTuple):
 
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
-    cycle. Arguments as in `CycleFamily.corrected_point`."""
+    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: present cycle. distance: its distance from
+    the start of the search along `line`. start_arc_length: arc length of this start along the branch."""
 
     def __init__(
         self,

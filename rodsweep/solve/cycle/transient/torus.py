@@ -44,8 +44,8 @@ class TorusTestSettings:
     """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
     complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
     trial_angles_per_width: int = 4
-    """The spacing of the trial angles, before the best angle is refined, is 2/(trials_per_width k) rad for k
-    returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
+    """The spacing of the trial angles, before the best angle is refined, is 2/(trial_angles_per_width k) rad
+    for k returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
     angle_tolerance_share: float = 1e-4
     """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
     max_period_difference: float = 0.1

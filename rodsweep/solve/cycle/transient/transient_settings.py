@@ -33,8 +33,8 @@ class TransientSettings:
     """Tip's y, in L, at a restart in the leading mode; the relative nonlinear change of the growth rate is
     about the square of this number."""
     min_unit_circle_distance: float = 3e-8
-    """A periodic orbit with 1 - |mu| < min_unit_distance is no limit cycle, but belongs to a family of orbits
-    with any amplitude; mu: largest nontrivial multiplier."""
+    """A periodic orbit with 1 - |mu| < min_unit_circle_distance is no limit cycle, but belongs to a family of
+    orbits with any amplitude; mu: largest nontrivial multiplier."""
     max_stored_returns: int = 400
     """Number of last returns that are stored for the recognition of a torus."""
     max_periodic_distance: float = 1e-4

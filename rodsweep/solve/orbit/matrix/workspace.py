@@ -66,7 +66,7 @@ class NewtonWorkspace:
 
     def release(self) -> None:
         """Ends the last reservation, and frees the buffer if it is larger than
-        WORKSPACE_SETTINGS.kept_numbers."""
+        WORKSPACE_SETTINGS.max_kept_buffer_size."""
         self._reservation += 1
         if len(self._buffer) > WORKSPACE_SETTINGS.max_kept_buffer_size:
             self._buffer = np.empty(0)
