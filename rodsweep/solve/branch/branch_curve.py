@@ -66,7 +66,7 @@ def _multiplier_modulus_error(point: BranchCycle) -> float:
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """The last special point of a branch; complete, end_hopf, end_breaking and list_full: as in
+    """The end of a branch. special_point: last special point of the branch; other fields as in
     `BranchCurve`."""
 
     special_point: SpecialPoint

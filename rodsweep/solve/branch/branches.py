@@ -84,10 +84,9 @@ class BranchRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
-    """Outcome of the task `branch` for one rod. message: for the user, or "". crossings: Hopf points within
-    the range, by ascending parameter. unstable_at_start: number of unstable modes of the straight rod at the
-    start, -1 if unknown. proved: whether `crossings` is proved complete. curves: all branches. seconds:
-    computing time."""
+    """Outcome of the task `branch` for one rod. crossings: Hopf points within the range, by ascending
+    parameter. unstable_at_start: number of unstable modes of the straight rod at the start, -1 if unknown.
+    proved: whether `crossings` is proved complete. curves: all branches. seconds: computing time."""
 
     status: BranchStatus
     message: str = ""

@@ -96,7 +96,7 @@ class Cycle:
     """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
     """Largest nontrivial Floquet multipliers by descending modulus, padded with NaN,
-    (MULTIPLIER_LIST.length,)."""
+    (MULTIPLIER_LIST_SETTINGS.length,)."""
     trivial_multiplier_error: float = nan
     """Modulus of the difference between the computed trivial multiplier and 1."""
     tip: Array | None = None

@@ -53,14 +53,14 @@ class HopfStartSettings:
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
-    start_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
+    start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
     """Relative distances of the force above the Hopf point at which Newton's method starts from the normal
     form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
     normal form has an error of 25 percent at the first distance, of 10 percent at the second."""
     squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""
-    max_direct_distance: float = 1e-2
+    max_direct_force_distance: float = 1e-2
     """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
     form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
     coarse_intervals: int = 8
@@ -97,8 +97,8 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     """The nearest Hopf point below the force of the rod at which the leading mode becomes unstable; None if
-    no such Hopf point is found. Raises Unsolvable if a leading eigenvalue is not known, or if the mode that
-    becomes unstable does not oscillate."""
+    not found. Raises Unsolvable if a leading eigenvalue is unknown, or if the unstable mode does not
+    oscillate."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:
@@ -173,10 +173,10 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces")
-    if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_distance) >= rod.F:
+    if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh_along_branch(rod))
-    for distance in HOPF_START_SETTINGS.start_distances:
+    for distance in HOPF_START_SETTINGS.start_force_distances:
         try:
             return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
@@ -196,12 +196,12 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
-    if not w.real <= HOPF_START_SETTINGS.max_direct_distance * rate:
+    if not w.real <= HOPF_START_SETTINGS.max_direct_force_distance * rate:
         raise Unsolvable(f"F = {form.rod.F:g} is too far from a Hopf point for the normal form")
     normal = _normal_form(form, w)
     if not normal.is_supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_distance * rate / -normal.c.real:
+    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_force_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
     if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second pair of modes may be unstable, so the normal form is not valid")

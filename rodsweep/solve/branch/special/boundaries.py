@@ -65,7 +65,7 @@ class SpecialBoundaries:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line, self.rows, self.special_points, results)
             seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
-            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_distance)
+            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -151,7 +151,7 @@ class _CurvesOfKind:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
         near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY_SETTINGS.max_distance
+        lies_off = near > CURVE_IDENTITY_SETTINGS.max_row_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return (
             0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special_points[seed]) else near
@@ -203,7 +203,7 @@ def _trace_half_curve(
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_distance * width
+        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_row_distance * width
         and abs(point.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not same:
@@ -213,7 +213,7 @@ def _trace_half_curve(
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_distance}
+    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_row_distance}
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 
 

@@ -51,7 +51,8 @@ class CycleFamily:
     def near_point(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near `point` of a curve of special points; the rest as in the class."""
+        """The family of the cycles near `point` of a curve of special points of the kind `kind`. rows,
+        workspace: as in the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
         return cls(kind, rows, point.scale, point.branch_direction, small, workspace)
 

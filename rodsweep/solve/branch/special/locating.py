@@ -122,8 +122,10 @@ def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )
     more = min(
-        max(ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_more_orders),
-        SPECIAL_POINT_SETTINGS.max_more_orders,
+        max(
+            ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_order_increase
+        ),
+        SPECIAL_POINT_SETTINGS.max_order_increase,
     )
     return replace(mesh, order=mesh.order + more, interval_count=ceil(growth * mesh.interval_count))
 

@@ -38,7 +38,8 @@ class CurveSecantSettings:
     """Largest distance, in arc length, of a point from the curve after the last step of the secant method,
     which is linear."""
     max_secant_error_ratio: float = 0.1
-    """Largest relative error of the parameter along a row by this distance, divided by `accuracy`."""
+    """Largest relative error of the parameter along a row that the distance of a point from the curve may
+    cause, divided by `accuracy`."""
     slope_error: float = 1e-3
     """Relative error of derivatives that were computed at the same point on another mesh or at an earlier
     step of the same search, in addition to the effect of the curvature."""

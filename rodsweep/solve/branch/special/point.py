@@ -50,9 +50,9 @@ class SpecialPointSettings:
     ends; for the arc length, divided by the step."""
     max_mesh_comparisons: int = 4
     """Maximum number of comparisons of a special point on two successive meshes."""
-    min_more_orders: int = 2
+    min_order_increase: int = 2
     """Smallest increase of the order of the elements on the next finer mesh."""
-    max_more_orders: int = 8
+    max_order_increase: int = 8
     """Largest increase of the order of the elements on the next finer mesh."""
     space_decay: float = 0.8
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by

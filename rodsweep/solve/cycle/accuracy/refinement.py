@@ -139,7 +139,8 @@ def _predicted_cycle(
     orbit, known = best
     found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.max_energy_norm)
     if found.matrix_distance > max(
-        REFINEMENT_SETTINGS.max_prediction_distance * accuracy, REFINEMENT_SETTINGS.min_prediction_distance
+        REFINEMENT_SETTINGS.max_prediction_distance_ratio * accuracy,
+        REFINEMENT_SETTINGS.min_prediction_distance,
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return cycle_with_calibrated_errors(

@@ -18,9 +18,10 @@ class RefinementSettings:
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers, divided by
     the accuracy."""
     min_matrix_distance: float = 1e-7
-    """Lower limit of the relative distance in `matrix_distance`: multipliers need no more digits."""
+    """Lower limit of the relative distance that `max_matrix_distance` of `refinement` returns: multipliers
+    need no more digits."""
     max_matrix_distance: float = 1e-5
-    """Upper limit of the relative distance in `matrix_distance`."""
+    """Upper limit of the relative distance that `max_matrix_distance` of `refinement` returns."""
     multiplier_error_factor: float = 10.0
     """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
     cycle and the orbit at which the matrix was assembled, and the error of the trivial multiplier."""
@@ -46,7 +47,7 @@ class RefinementSettings:
     """Smallest number of time intervals of a fine mesh whose cycle coarser meshes predict. With 5 intervals,
     the coarser meshes would have 4 and 5 intervals, where errors in time do not decrease as a power yet: the
     error of the largest y was four times its estimate."""
-    max_prediction_distance: float = 30.0
+    max_prediction_distance_ratio: float = 30.0
     """Predicted errors are accepted if the relative distance of a cycle from its prediction by coarser
     meshes, divided by the accuracy, is at most this; the largest observed ratio was 4.4."""
     min_prediction_distance: float = 1e-9
