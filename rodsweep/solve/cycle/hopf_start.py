@@ -85,10 +85,7 @@ class HopfPointBelow:
 
 def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
     """The leading eigenvalue of the straight rod, in 1/tau2 with Im >= 0; raises Unsolvable if the spectrum
-    fails.
-
-    near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search.
-    """
+    fails. near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search."""
     found = straight_rod_stability(rod, None if near is None else np.array([near]), certify=False)
     if isnan(found.error):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")

@@ -1,9 +1,9 @@
-"""Location of special points on a branch: zeros of test functions of arc length. Each value of a test
-function requires the solution of a cycle.
+"""Location of special points on a branch: zeros of test functions of arc length.
 
-The zero is bracketed on the mesh of the branch, then found by the secant method on finer meshes. The
-difference between the zeros on the last two meshes gives the error. A cycle needs only one matrix
-factorisation, because its test function is corrected with the factors of the last matrix (`augmented`).
+Each value of a test function requires the solution of a cycle. The zero is bracketed on the mesh of the
+branch, then found by the secant method on finer meshes. The difference between the zeros on the last two
+meshes gives the error. A cycle needs only one matrix factorisation, because its test function is corrected
+with the factors of the last matrix (`augmented`).
 """
 
 from dataclasses import replace
@@ -65,8 +65,8 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
 
 
 def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, ahead: Array, point: BranchCycle) -> float:
-    """Value of the test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
-    scale, ahead: scale and tangent, (3,), at the start of the segment."""
+    """Value of the test function of a kind at `point`, an end of a segment; raises Unsolvable. scale, ahead:
+    scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
         # By the arc length along the direction `ahead`, which is the variable of the search.
         rate = float(scale.directional_derivative(point.orbit, point.tangent) @ ahead)
@@ -80,8 +80,8 @@ def special_point_between(
     kind: SpecialKind, start: BranchCycle, end: BranchCycle, accuracy: float
 ) -> SpecialPoint:
     """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
-    and `SPECIAL_POINT_SETTINGS.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. A
-    point that cannot be located has a message, and the parameter difference of the two cycles as error."""
+    and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh suffices. A point that is
+    not located has a message, and the parameter difference of the two cycles as error."""
     aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
@@ -90,7 +90,6 @@ def special_point_between(
         mesh = end.calibration.cheapest_mesh_for_parameter(
             SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * aim
         )
-        # At least the number of stages with the smallest cost at this accuracy.
         mesh = replace(mesh, stage_count=max(mesh.stage_count, cheapest_stage_count(aim)))
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
@@ -175,8 +174,8 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
 
 
 def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
-    """A special point that could not be located: values at the cycle `end`, with the differences between the
-    cycles `start` and `end` as errors. message: cause."""
+    """A special point that is not located: values at the cycle `end`, with the differences between `start`
+    and `end` as errors. message: cause."""
     name = start.scale.parameter_name
     measures = end.cycle.measures
     before = start.cycle.measures
@@ -208,7 +207,6 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
     ends = values[0.0], values[segment.length]
     least = SPECIAL_POINT_SETTINGS.bracket_tolerance * min(map(abs, ends))
     at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT_SETTINGS.bracket_tolerance)
-    # Slope from the values at this zero and at the nearest other arc length.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
     return at - values[at] / slope, slope

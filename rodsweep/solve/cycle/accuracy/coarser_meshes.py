@@ -43,7 +43,7 @@ class CoarserMeshSettings:
     mesh."""
     max_order_excess: int = 2
     """A coarse mesh made for a fine mesh of order p predicts cycles on meshes of orders up to p +
-    max_more_orders."""
+    max_order_excess."""
     max_interval_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
     fine mesh to coarse mesh, is at most this."""
