@@ -52,7 +52,7 @@ class NextMeshSettings:
     max_new_mesh_cost_ratio: float = 0.8
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
     at most this."""
-    max_new_mesh_cost_ratio_when_measured: float = 0.5
+    max_new_mesh_cost_ratio_if_measured: float = 0.5
     """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the present cycle:
     measuring the errors of a new mesh costs as much as three cycles."""
 
@@ -154,7 +154,7 @@ def _max_cost_ratio(found: RefinedCycle, before: "Neighbour | None", name: str) 
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
     if not found.calibration.parameter_change:
-        return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_when_measured
+        return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_if_measured
     step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # If the errors must be measured again anyway, another mesh needs no additional measurement.
     return 0.0 if found.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio

@@ -156,11 +156,11 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
     safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
     whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
     apart = space[PATH_INDEX] + time[PATH_INDEX]
-    in_time = CALIBRATION_SETTINGS.min_error_ratio_in_time * time[PATH_INDEX]
+    in_time = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
     parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
     either = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
     of_period = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + in_time
-    of_height = CALIBRATION_SETTINGS.min_height_error_ratio * space[PATH_INDEX] + in_time
+    of_height = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + in_time
     stated = [
         np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
         np.maximum(np.maximum(whole[Y_INDEX], of_height), either),
@@ -205,7 +205,7 @@ def calibration_of(
     and the stages."""
     tails = _tails_and_size(orbit)
     if before is None:
-        decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).space_decay
+        decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
         fall = _limited_space_decay(np.full(ERROR_COUNT, decay))
         power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)

@@ -10,7 +10,7 @@ class CalibrationSettings:
 
     safety_factor: float = 3.0
     """Safety factor on measured errors of period, extrema and multiplier."""
-    min_height_error_ratio: float = 0.16
+    min_largest_y_error_ratio: float = 0.16
     """Lower limit of the error estimate of the largest y, divided by the distance between the tip's paths on
     two meshes with different elements: one number may agree on two meshes by coincidence, a path does not."""
     min_period_error_ratio: float = 0.16
@@ -19,7 +19,7 @@ class CalibrationSettings:
     min_extrema_error_ratio: float = 1.6
     """Lower limit of the error estimate of the other extrema, divided by the sum of the distances between the
     tip's paths for different elements and for different time intervals."""
-    min_error_ratio_in_time: float = 0.004
+    time_path_error_factor: float = 0.004
     """This factor times the distance between the tip's paths for different time intervals is added to the
     lower limits of the error estimates of period and largest y. The distance is largest in theta, whose
     errors matter least."""
@@ -30,7 +30,7 @@ class CalibrationSettings:
     4.5."""
     planned_error_ratio: float = 0.5
     """A mesh is planned for a predicted error of at most this fraction of the accuracy."""
-    error_decay_ratio: float = 1.6
+    error_to_coefficient_decay_ratio: float = 1.6
     """Assumed decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per order.
     The errors are proportional to squared coefficients; ratios from 1.4 to 2 were measured."""
     min_space_decay: float = 0.5
