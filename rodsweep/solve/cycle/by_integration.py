@@ -43,7 +43,7 @@ from .transient.returns import (
     section_crossings,
     tip_angle_row,
     until_returns,
-    why_not_settled,
+    not_settled_text,
 )
 
 
@@ -154,7 +154,7 @@ class _MarchedMotion:
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             if distance <= MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy * (1 - rate):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(MarchedStatus.not_settled, why_not_settled(self.return_count, len(past), last))
+        raise NoCycleFound(MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), last))
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None

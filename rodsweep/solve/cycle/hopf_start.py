@@ -213,7 +213,7 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
 
 def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
-    raises Unsolvable."""
+    raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.branch_tolerance
     found = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")

@@ -160,7 +160,7 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
     vanishing_points: for each end the Hopf point at which the cycles vanish; None for an end with another
-    reason."""
+    reason, or on a curve with too few points for the extrapolation."""
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]

@@ -122,8 +122,7 @@ class CoarserMeshes:
         return errors
 
     def _interval_ratio(self, mesh: OrbitMesh) -> float:
-        """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
-        mesh."""
+        """Ratio of `full_intervals` of `mesh` to `full_intervals` of the coarse mesh."""
         return mesh.full_intervals / self.coarse_mesh.full_intervals
 
 

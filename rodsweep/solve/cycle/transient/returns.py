@@ -147,7 +147,7 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     return next((m, distance) for distance, m in found if distance <= enough)
 
 
-def why_not_settled(waited: int, returns: int, last: float) -> str:
+def not_settled_text(waited: int, returns: int, last: float) -> str:
     """Message that explains why a motion has not settled after the time of `waited` returns.
 
     returns: number of returns with a known state. last: relative distance of the last return from an earlier

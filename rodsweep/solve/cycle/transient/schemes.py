@@ -53,8 +53,8 @@ class TimeSchemeSettings:
 
     @property
     def accurate_scheme(self) -> TimeScheme:
-        """Time scheme of motions with a small growth per period, of which the sign must be correct, and of
-        motions with a stored path."""
+        """Time scheme of motions with a growth per period so small that only an accurate scheme gives its
+        sign, and of motions with a stored path."""
         return TimeScheme("arkimex", "5", tolerance=self.accurate_tolerance)
 
 
