@@ -39,11 +39,11 @@ from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURN_SETTINGS,
     early_end,
+    not_settled_text,
     repetition,
     section_crossings,
     tip_angle_row,
     until_returns,
-    not_settled_text,
 )
 
 
