@@ -29,8 +29,8 @@ class BranchPoint:
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
     unstable_count: int
-    """Number of nontrivial Floquet multipliers outside the unit circle; -1 if one of them has modulus 1
-    within its error."""
+    """Number of nontrivial Floquet multipliers outside the unit circle; -1 if the modulus of one of these
+    multipliers is 1 within its error."""
 
     @classmethod
     def from_cycle(cls, point: BranchCycle, accuracy: float) -> "BranchPoint":
@@ -99,7 +99,8 @@ class BranchCurve:
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
+        """Appends a special point that lies beyond the present last cycle, and sets its
+        `index_of_cycle_before`."""
         self.special_points.append(replace(special, index_of_cycle_before=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:

@@ -79,8 +79,8 @@ class BranchDerivatives:
 
     def arc_length_for_parameter_change(self, off: float) -> float:
         """Arc length over which the scaled parameter coordinate changes by `off`. Near a fold the parameter
-        may never change by `off`; the result there has the modulus 2 sqrt(|off/curvature|), an upper bound of
-        the arc length."""
+        may never change by `off`; near a fold the result has the modulus 2 sqrt(|off/curvature|), an upper
+        bound of the arc length."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * off):
             return off / self.parameter_rate

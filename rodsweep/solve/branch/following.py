@@ -140,9 +140,9 @@ def _index_of_passed_range_end(point: BranchCycle, limits: BranchLimits) -> int:
 def _append_next_cycle(
     record: BranchRecord, start: BranchCycle, limits: BranchLimits
 ) -> BranchCycle | BranchEnd:
-    """Appends the next cycle after `start`, and the special points before it, to the branch. Returns the last
-    cycle, from which the branch continues, or the end of the branch; if a step to the mirror image is too
-    long, `start` with half the step length, without a new cycle."""
+    """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
+    the last cycle, from which the branch continues, or the end of the branch; if a step to the mirror image
+    is too long, `start` with half the step length, without a new cycle."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
@@ -194,7 +194,7 @@ def _passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLim
 def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
-    cycles after it."""
+    cycles after the corner."""
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
     other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
     return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner

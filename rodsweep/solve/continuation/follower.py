@@ -193,9 +193,9 @@ def follow_curve(
 
 def first_crossed_margin(before: Array, after: Array) -> int:
     """Index of the margin that becomes 0 first along a step, among the margins that decrease to a negative
-    value; -1 if no margin does. A margin that is negative before the step counts if it decreases further.
-    before, after: margins at the two ends of the step, (margins,), between which each margin is interpolated
-    linearly."""
+    value; -1 if there is no such margin. A margin that is negative before the step counts if it decreases
+    further. before, after: margins at the two ends of the step, (margins,), between which each margin is
+    interpolated linearly."""
     # A negative margin that grows does not end the curve, which enters from beyond this limit.
     falls = (after < 0) & (after < before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.

@@ -41,8 +41,8 @@ class SpecialBoundaries:
     special_points: Sequence[RowSpecialPoint]
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
-        """Numbers of the half curves needed now, then of those that may be needed later; empty if all curves
-        are complete. results: results of half curves, by number."""
+        """Numbers of the half curves needed now, then of half curves that may be needed later; empty if all
+        curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
         for curves, search in self._searches(results):

@@ -199,10 +199,10 @@ def calibration_of(
     mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If its mesh has the same
-    elements but another order, the errors on both meshes give the rate in space; if it has another number of
-    intervals, the order in time. Otherwise the rates of `before` are kept. None: rates from the coefficients
-    and the stages."""
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If the mesh of `before` has
+    the same elements but another order, the errors on both meshes give the rate in space; if the number of
+    intervals differs, the order in time. Otherwise the rates of `before` are kept. None: rates from the
+    coefficients and the stages."""
     tails = _tails_and_size(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay

@@ -71,7 +71,7 @@ def possible_period_divisor(path: CyclePath, error: float) -> int:
 
 def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the minimal period that its large harmonics show, as a start for Newton's method; the
-    orbit itself if this is its period."""
+    orbit itself if its period is minimal."""
     g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
     if g == 1:
         return orbit

@@ -28,8 +28,8 @@ class MotionMeshSettings:
     phase of the whole later motion. The integration takes a quarter longer than with `accuracy`, and its
     errors were 30 to 500 times smaller on four arms."""
     order_refinement_factor: float = 1.5
-    """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near it:
-    compressed rubber may bend more sharply than linear waves."""
+    """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near this
+    motion: compressed rubber may bend more sharply than linear waves."""
     max_refinements: int = 3
     """Maximum number of times that the mesh of a motion is refined."""
     max_refined_nodes: int = 64
