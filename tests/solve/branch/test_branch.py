@@ -318,7 +318,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
     orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
-    assert float(orbit.form.tip_coordinates(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
+    assert float(orbit.form.tip_coordinates(orbit.start_state)[1]) == pytest.approx(smallest, rel=1e-3)
 
 
 @survey_only
