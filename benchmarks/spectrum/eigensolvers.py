@@ -86,8 +86,8 @@ def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
     a, b: shape functions. The matrices are taken from rodsweep's pencil.
     """
     mesh = pencil_mesh(size)
-    pencil = assemble_pencil(mesh.elements, mesh.order)
-    n = pencil.nodes
+    pencil = assemble_pencil(mesh.element_count, mesh.order)
+    n = pencil.node_count
     whole = pencil.dense_terms().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
     tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.nodal_masses[-1]))
     return -whole[1, n : 2 * n, n : 2 * n], whole[2, :n, n : 2 * n] + tip, tip

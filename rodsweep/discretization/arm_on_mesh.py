@@ -56,7 +56,7 @@ def profile_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
     At a jump the value is the mean of both sides, so that its product with m3 is the mean bending strain.
     """
     if build.profile is None:
-        return np.ones(grid.nodes + 1)
+        return np.ones(grid.node_count + 1)
     return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside_elements.ravel())[2:], grid)[0]
 
 
@@ -98,7 +98,7 @@ def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, Integ
     behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
     jumps = build.jumps
-    ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
+    ends = np.array([e for e in range(1, grid.element_count) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
     return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
 

@@ -54,7 +54,7 @@ class RodOnMesh(ABC):
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in a state."""
-        return plane_layout(self.mesh.nodes, self.unknown_velocities)
+        return plane_layout(self.mesh.node_count, self.unknown_velocities)
 
     @property
     def unknowns(self) -> int:

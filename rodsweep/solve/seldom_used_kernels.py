@@ -74,7 +74,7 @@ def warm_up_uniform() -> None:
     orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
     memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknowns)
     variations = np.zeros((1, len(orbit.values) + 1))
-    of_rod = orbit.semidiscrete
+    of_rod = orbit.semidiscrete_equations
     reduced_variations(
         orbit.values, of_rod, parameter_derivatives(form, "F"), variations, of_rod, memory.factors
     )

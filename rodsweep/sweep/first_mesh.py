@@ -22,7 +22,7 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
         return arm_mesh(rod, modes, accuracy)
     _, wave = most_amplified_wave(rod.equivalent_linear_rod[0])
     resolution = resolution_for(expected_wave_number(modes, wave), accuracy)
-    return Elements(equal_edges(resolution.elements), resolution.order)
+    return Elements(equal_edges(resolution.element_count), resolution.order)
 
 
 def largest_first_mesh(
@@ -38,7 +38,7 @@ def largest_first_mesh(
     rods = (
         rod for index in sorted(indices) for rod in _rods_at_parameter_ends(points.rod(index), ends or {})
     )
-    return max(map(mesh_of, rods), key=lambda mesh: mesh.nodes, default=None)
+    return max(map(mesh_of, rods), key=lambda mesh: mesh.node_count, default=None)
 
 
 def _rods_at_parameter_ends(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:

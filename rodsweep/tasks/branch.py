@@ -114,8 +114,8 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
             (curve.end_breaking, len(curve.special_points) - 1),
         ):
             if breaking is not None:
-                numbers[number, index] = breaking.branch
-                numbers[breaking.branch, breaking.index] = number
+                numbers[number, index] = breaking.branch_number
+                numbers[breaking.branch_number, breaking.special_point_index] = number
     return numbers
 
 
@@ -144,7 +144,7 @@ def _special_point_values(point: "SpecialPoint", start: int, hopf: "Crossing | N
     straight rod at the point, None if the point is not a Hopf point.
     """
     beside = {
-        "special_point": start + point.after + 1 if point.after >= 0 else 0,
+        "special_point": start + point.index_of_cycle_before + 1 if point.index_of_cycle_before >= 0 else 0,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": hopf.unstable_after if hopf else -1,
     }

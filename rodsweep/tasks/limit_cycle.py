@@ -108,11 +108,15 @@ class LimitCycleTask(Task):
         """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
         branches from Hopf points.
         """
-        from ..solve.cycle.transient.motion_mesh import accuracy_of_motion_mesh, coarse_mesh, motion_mesh
+        from ..solve.cycle.transient.motion_mesh import (
+            accuracy_of_motion_mesh,
+            coarse_mesh_along_branch,
+            motion_mesh,
+        )
 
         options = self.config.limit_cycle
         if options.start == "hopf":
-            return largest_first_mesh(self.points, coarse_mesh)
+            return largest_first_mesh(self.points, coarse_mesh_along_branch)
         accuracy = (
             self.config.accuracy
             if options.method == "integration"

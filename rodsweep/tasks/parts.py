@@ -189,7 +189,7 @@ def arms_line(
     mesh = first_mesh()
     if mesh is None:
         return arms
-    count = counted(mesh.elements, "element")
+    count = counted(mesh.element_count, "element")
     several = any(len(np.unique(c)) > 1 for c in columns.values())
     return f"{arms}; at first {count} of order {mesh.order}{', for the finest mesh' * several}"
 

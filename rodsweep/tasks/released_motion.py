@@ -85,8 +85,8 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
         sentence=cycle.status.sentence,
         message=cycle.message,
         cycle=task.record(job.points.values(0), cycle),
-        step=cycle.motion_shapes.step,
+        step=cycle.motion_shapes.time_step,
         x=x,
         y=y,
-        is_whole=cycle.motion_shapes.is_whole,
+        is_whole=cycle.motion_shapes.is_complete,
     )

@@ -211,7 +211,7 @@ def test_consistent_velocities_satisfy_their_equation(elements, order):
 @MESHES
 def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, order):
     form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
-    root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
+    root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count)
     X = consistent(form, some_state(form))
     z = root * X[: form.stress_count]
     expected = Beam(rod.changed(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(z)
@@ -226,7 +226,7 @@ def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, ord
         mixed_form(rod.changed(gamma1=GAMMA1), elements, order),
         Beam(rod.changed(gamma1=GAMMA1), uniform_mesh(elements, order)),
     )
-    u, root = form.mesh.positions[:-1], np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.nodes)
+    u, root = form.mesh.positions[:-1], np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count)
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
     exact = beam.tip_velocity(np.zeros(beam.layout.unknowns), root * S)[1]
     assert form.tip_y_row @ np.append(S, np.zeros(form.unknowns - len(S))) == pytest.approx(exact, rel=1e-12)

@@ -56,7 +56,7 @@ def test_a_field_is_known_by_its_name():
 @pytest.mark.parametrize("symmetry", [NO_SYMMETRY, REFLECTION], ids=["none", "reflection"])
 def test_a_symmetry_maps_motions_to_motions(form, symmetry):
     def motion(x):
-        V, G = np.empty((2, 3, form.mesh.nodes + 1))
+        V, G = np.empty((2, 3, form.mesh.node_count + 1))
         write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
         return V, form.layout.state(G, V)
 
@@ -72,7 +72,9 @@ def test_the_reflection_is_the_one_of_the_mixed_form(form):
     x, layout = states(form.layout), MixedForm(form.rod, form.mesh).layout
     X = states(layout)
     assert np.array_equal(REFLECTION.apply(X, layout), MixedForm(form.rod, form.mesh).reflection_signs * X)
-    assert np.array_equal(REFLECTION.is_reversed(form.layout) * x, (x - REFLECTION.apply(x, form.layout)) / 2)
+    assert np.array_equal(
+        REFLECTION.reversal_mask(form.layout) * x, (x - REFLECTION.apply(x, form.layout)) / 2
+    )
 
 
 @pytest.mark.parametrize("layout", [StateLayout(3, 4, (2,)), StateLayout(6, 3)], ids=["plane", "space"])

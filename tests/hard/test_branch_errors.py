@@ -17,14 +17,14 @@ from surveyed import few
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import ArcPoint, next_point
+from rodsweep.solve.branch.arc import BranchCycle, next_cycle
 from rodsweep.solve.branch.branch_curve import BranchPoint
-from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
-from rodsweep.solve.branch.mesh_choice import measurement_due, with_errors_in_accuracy
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
+from rodsweep.solve.branch.mesh_choice import is_measurement_due, with_errors_within_accuracy
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
-from rodsweep.solve.orbit.newton import multipliers_of, newton, newton_step
+from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, newton_step
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.point import Unsolvable
 
@@ -75,28 +75,30 @@ def random_case(index: int) -> Case:
     return Case(k1, k2, gamma3, gamma1, min(random.uniform(30, 130), 0.97 * k1), accuracy)
 
 
-def cycles_of(case: Case) -> Iterator[ArcPoint]:
+def cycles_of(case: Case) -> Iterator[BranchCycle]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
     rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
     crossings = pair_crossings(Path(rod, "F"), 0.0, case.stop).crossings
     if not crossings:
         return
     here = last = first_cycle(
-        hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy, NewtonWorkspace()
+        hopf_branch_start(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]),
+        case.accuracy,
+        NewtonWorkspace(),
     )
     yield last
-    waiting: list[ArcPoint] = []
+    waiting: list[BranchCycle] = []
     for _ in range(MOST_CYCLES):
         try:
-            here = next_point(here, case.accuracy)
+            here = next_cycle(here, case.accuracy)
         except Unsolvable:
             return
-        outside = not 0 < here.coordinate < case.stop or here.deflection * last.deflection < 0
+        outside = not 0 < here.parameter_coordinate < case.stop or here.deflection * last.deflection < 0
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)
-        if measurement_due(here):
-            yield from (points := with_errors_in_accuracy(last, waiting, case.accuracy, None))
+        if is_measurement_due(here):
+            yield from (points := with_errors_within_accuracy(last, waiting, case.accuracy, None))
             here = last = points[-1]
             waiting = []
 
@@ -106,11 +108,13 @@ def broken_promises(case: Case) -> list[str]:
     wrong = []
     for point in islice(cycles_of(case), 0, None, EACH):
         stored, mesh = BranchPoint.from_cycle(point, case.accuracy), mesh_of(point.orbit)
-        longer = ceil(1.7 * mesh.intervals) + 1
-        fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
+        longer = ceil(1.7 * mesh.interval_count) + 1
+        fine = replace(
+            mesh, order=mesh.order + 6, interval_count=longer, stage_count=min(mesh.stage_count + 1, 6)
+        )
         exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
         extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.sensitivity
-        y, multipliers = extrema["tip_y_max"], multipliers_of(exact)[0]
+        y, multipliers = extrema["tip_y_max"], multipliers_and_trivial_error(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
         errors = stored.errors
         off = {
@@ -121,7 +125,9 @@ def broken_promises(case: Case) -> list[str]:
         }
         rounding = ROUNDING * max(1.0, slope)
         wrong += [f"{name} at {stored.at!r}: {a} > {b}" for name, (a, b) in off.items() if a > b + rounding]
-        if stored.at_error > case.accuracy or (slope <= STEEP and errors.largest_error > case.accuracy):
+        if stored.at_error > case.accuracy or (
+            slope <= STEEP and errors.largest_weighted_error > case.accuracy
+        ):
             wrong.append(f"errors at {stored.at!r}: {stored.at_error}, {errors}, slope {slope}")
     return wrong
 

@@ -312,7 +312,7 @@ def curves_of_changes(accuracy: float) -> Answer:
         found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings)
         seeds += [seed for seed in found if seed is not None]
     curves = curves_through(plane, seeds)
-    if curves.untraced:
+    if curves.untraced_count:
         return None
     answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}
     for number, curve in enumerate(curves.curves):
@@ -504,7 +504,7 @@ CASES = {
     "SPECIAL_POINT_SETTINGS": BRANCH,
     "SHOOTING_INTERVAL_SETTINGS": UNSTABLE,
     "LEAST_STRETCH_SETTINGS": BRANCH,
-    "ARC_STEPS": BRANCH,
+    "ARC_STEP_CONTROL": BRANCH,
     "ORBIT_NEWTON_SETTINGS": BRANCH,
     "ORBIT_MESH_SETTINGS": BRANCH,
     "WORKSPACE_SETTINGS": BRANCH,
@@ -546,7 +546,7 @@ CASES = {
     "FINER_MESH_SETTINGS": CHAIN,
     "NEXT_MESH_SETTINGS": CHAIN,
     "CYCLE_PREDICTION_SETTINGS": CHAIN,
-    "PARAMETER_STEPS": CHAIN,
+    "PARAMETER_STEP_CONTROL": CHAIN,
     "HOPF_START_SETTINGS": BESIDE_HOPF,
     "SMALL_MOTION_SETTINGS": BESIDE_HOPF,
     "STRAIGHT_ROD_SETTINGS": BESIDE_HOPF,

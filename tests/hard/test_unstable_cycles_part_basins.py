@@ -10,8 +10,8 @@ import pytest
 from rods import rod_of
 
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.solve.branch.arc import next_point
-from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
+from rodsweep.solve.branch.arc import next_cycle
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -33,9 +33,9 @@ def unstable():
     """An unstable cycle on the branch from the restabilization."""
     rod = rod_of(0.0, *STIFFNESS)
     crossing = pair_crossings(Path(rod, "F"), 100.0, 199.0).crossings[-1]
-    here = first_cycle(hopf_point(Path(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
+    here = first_cycle(hopf_branch_start(Path(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
     while here.cycle.measures.tip_y_max < LEAST_Y:
-        here = next_point(here, ACCURACY)
+        here = next_cycle(here, ACCURACY)
     return here
 
 
@@ -44,13 +44,13 @@ def stable(unstable):
     """The stable cycle at the same force, by way of one where the straight rod is unstable."""
     request = CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, 400)
     below = solve_cycle(rod_of(150.0, *STIFFNESS, 1.0), request, None, "F")
-    return solve_cycle(rod_of(unstable.coordinate, *STIFFNESS, 1.0), request, below.neighbour, "F")
+    return solve_cycle(rod_of(unstable.parameter_coordinate, *STIFFNESS, 1.0), request, below.neighbour, "F")
 
 
 def marched(unstable, share):
     """Where the rod goes from the unstable cycle, its distance from rest in units of the cycle's."""
-    rod = Displaced(unstable.coordinate, *STIFFNESS, 1.0, ORDER)
-    on_cycle = CyclePath(unstable.orbit).shapes(1, ORDER + 1)[:, 0, 1:].ravel()
+    rod = Displaced(unstable.parameter_coordinate, *STIFFNESS, 1.0, ORDER)
+    on_cycle = CyclePath(unstable.orbit).shapes_from_mean_crossing(1, ORDER + 1)[:, 0, 1:].ravel()
     start = share * (on_cycle - rod.straight)
     return march_from(rod, start, PERIODS * unstable.orbit.period, 1e-6, 1e-8)
 

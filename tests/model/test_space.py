@@ -36,7 +36,7 @@ def tapered(material, grid):
 def state(rod, grid):
     """Stresses that no mesh resolves, and with them any velocities that are unknown, (unknowns,)."""
     d = len(rod.tip_stress)
-    size = d * grid.nodes + len(rod.unknown_velocities) * (grid.nodes + 1)
+    size = d * grid.node_count + len(rod.unknown_velocities) * (grid.node_count + 1)
     return 10 * np.random.default_rng(d).standard_normal(size)
 
 
@@ -52,7 +52,7 @@ def equations(x, rod, grid):
     _, G = balanced(x, rod, grid)
     out = np.empty(len(x))
     write_velocity_residuals.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
-    return np.append(G.ravel(), out[len(G) * grid.nodes :])
+    return np.append(G.ravel(), out[len(G) * grid.node_count :])
 
 
 @pytest.mark.long
@@ -62,14 +62,14 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
     """The loops themselves run in Python, with the algebra as an argument."""
     grid = uniform_mesh(2, 3)
     rod, d = nodal_rod(material, grid, kept), len(material.drag)
-    g, n = ALGEBRAS[d], d * grid.nodes + len(kept) * (grid.nodes + 1)
+    g, n = ALGEBRAS[d], d * grid.node_count + len(kept) * (grid.node_count + 1)
     x = np.random.default_rng(d).standard_normal(n)
     found = []
     for run, slope in (
         (write_balance.compiled_for(g), write_jacobian.compiled_for(g)),
         (partial(write_balance, g), partial(write_jacobian, g)),
     ):
-        V, G = np.empty((2, d, grid.nodes + 1))
+        V, G = np.empty((2, d, grid.node_count + 1))
         J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
         run(x, V, G, rod, grid.matrices)
         slope(x, V, J, tip, rod, grid.matrices)
@@ -81,7 +81,7 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
 @MESHES
 def test_plane_states_of_space_are_those_of_the_plane(grid):
     plane, space = (nodal_rod(material, grid) for material in (PLANE, SPACE))
-    x, n = state(plane, grid), grid.nodes
+    x, n = state(plane, grid), grid.node_count
     at = np.concatenate([np.arange(a * n, (a + 1) * n) for a in PLANE_COMPONENTS])
     there = np.zeros(6 * n)
     there[at] = x
@@ -108,7 +108,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
     rod = nodal_rod(material if uniform else tapered(material, grid), grid)
     x = state(rod, grid)
     V, G = balanced(x, rod, grid)
-    Sigma = np.tile(rod.tip_stress[:, None], grid.nodes + 1)
+    Sigma = np.tile(rod.tip_stress[:, None], grid.node_count + 1)
     Sigma[:, :-1] += x.reshape(len(V), -1)
     lost = (rod.drag * V**2 @ grid.quadrature).sum()
     assert (Sigma * G).sum() == pytest.approx(-lost, rel=1e-12)
@@ -120,7 +120,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
 @pytest.mark.parametrize("kept", [(), (2,), (0, 2)], ids=["eliminated", "one kept", "two kept"])
 def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, kept):
     rod = nodal_rod(material if uniform else tapered(material, grid), grid, kept)
-    x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
+    x, d, n = state(rod, grid), len(rod.tip_stress), grid.node_count
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
     write_jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
@@ -151,7 +151,7 @@ def test_a_rigid_motion_strains_no_rod():
     bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
     V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
-    G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.nodes + 1, axis=1)
+    G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.node_count + 1, axis=1)
     write_strain_rates.compiled_for(SE3)(strain, V, G, grid.matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold
     G[:, -1] += V[:, -1]  # and the reaction

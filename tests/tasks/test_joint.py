@@ -15,7 +15,12 @@ from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
 from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
-from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalfCurve
+from rodsweep.solve.branch.special.special_curves import (
+    CurveEnd,
+    CurvePoint,
+    HalfCurve,
+    TracedHalfCurve,
+)
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
@@ -183,7 +188,7 @@ def boundaries():
 def half(items, item):
     """The half of a straight curve, as if followed."""
     place, behind = divmod(item, 2)
-    one = items.special[place]
+    one = items.special_points[place]
     last = 1.0 if behind else 5.0
     points = tuple(
         CurvePoint(
@@ -191,9 +196,9 @@ def half(items, item):
         )
         for row in (one.row_value, last)
     )
-    near = {i: 0.0 for i, other in enumerate(items.special) if other.at == one.at}
+    near = {i: 0.0 for i, other in enumerate(items.special_points) if other.at == one.at}
     low, high = sorted((one.row_value, last))
-    near = {i: d for i, d in near.items() if low <= items.special[i].row_value <= high}
+    near = {i: d for i, d in near.items() if low <= items.special_points[i].row_value <= high}
     return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
 
 
@@ -218,7 +223,7 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
         found.append(items.curves(pool.results))
     assert all(curves == found[0] for curves in found)
     assert [curve.points[0].at for curve in found[0].curves] == [0.6, 0.2]
-    assert found[0].untraced == 0
+    assert found[0].untraced_count == 0
 
 
 def test_one_rank_follows_no_half_in_vain():

@@ -332,7 +332,9 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     curve = SpecialPointCurve(
         SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
     )
-    filled = cycle_curve_record(Boundaries((curve,), agreement=0.0, untraced=0), ("F", "k1"))
+    filled = cycle_curve_record(
+        Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+    )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, "F", "k1")
     first, last = (

@@ -13,7 +13,7 @@ from typing import Any
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
-from ...solve.cycle.accuracy.refinement import refined_at_period
+from ...solve.cycle.accuracy.refinement import refined_cycle_at_given_period
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
 from ...solve.orbit.matrix.linearisation import Linearisation
@@ -80,7 +80,7 @@ class AccurateCycle:
     @classmethod
     def converged_from_orbit(cls, orbit: Orbit) -> "AccurateCycle":
         """The reference cycle near the orbit `orbit`, for the rod of this orbit."""
-        found = refined_at_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
+        found = refined_cycle_at_given_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def cycle_at_force(self, F: float) -> "AccurateCycle":
@@ -193,11 +193,11 @@ def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
     extra = errors | {"order": float(cycle.elements * cycle.order)}
-    extra["estimate"] = cycle.errors.largest_error
+    extra["estimate"] = cycle.errors.largest_weighted_error
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
         extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
-        extra |= {"intervals": orbit.intervals, "stages": orbit.stages}
+        extra |= {"intervals": orbit.interval_count, "stages": orbit.stage_count}
     return {"error": max(errors.values()), "extra": extra}
 
 

@@ -103,7 +103,7 @@ def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     at the largest y of the tip, (unknowns,)."""
     form = orbit.form
     beam = Beam(form.rod, form.mesh)
-    return beam, (orbit.start.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
+    return beam, (orbit.start_state.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
 
 
 def solve_reference() -> ReferenceCycle:
@@ -113,7 +113,7 @@ def solve_reference() -> ReferenceCycle:
     )
     orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     return ReferenceCycle(
-        *state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip_coordinates(orbit.start)[1]))
+        *state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip_coordinates(orbit.start_state)[1]))
     )
 
 

@@ -32,7 +32,7 @@ class ArmMesh(Elements):
     @property
     def unknowns(self) -> int:
         """Total number of unknowns y, theta and s."""
-        return 3 * self.nodes
+        return 3 * self.node_count
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:

@@ -53,7 +53,7 @@ class DenseForm:
         b: test functions of y and theta.
         """
         A = self.A.copy()
-        n = self.mesh.nodes
+        n = self.mesh.node_count
         y, theta = self.displacement_factors[:, -1]
         A[n - 1, 2 * n - 1] += pair * y * theta
         A[2 * n - 1, n - 1] -= pair * y * theta

@@ -35,7 +35,9 @@ def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
     """The pencil of the transverse eigenproblem on a mesh, cached for other rods on an equal mesh."""
-    return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+    return (
+        assemble_pencil(mesh.element_count, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+    )
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

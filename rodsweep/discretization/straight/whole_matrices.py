@@ -32,7 +32,7 @@ class WholeRodMatrices:
     @cached_property
     def state_indices(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
-        size = self.form.mesh.nodes + 1
+        size = self.form.mesh.node_count + 1
         marks = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 

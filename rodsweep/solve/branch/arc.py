@@ -14,18 +14,18 @@ import numpy as np
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, StepResult, advance
 from ..cycle.accuracy.cycle_verdict import RefinedCycle
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
-from ..cycle.along_parameter import carried_change
+from ..cycle.accuracy.refinement import cycle_with_calibrated_errors, max_matrix_distance, newton_tolerance
+from ..cycle.along_parameter import interpolated_change
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, multiplier_change, relative_change
+from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix, bordered_matrix_of
-from .bordered.scale import Scale, deflection_of
+from .bordered.scale import ArcLengthScale, deflection_of
 from .errors import BranchCalibration, BranchDerivatives
 
-ARC_STEPS = StepControl(
+ARC_STEP_CONTROL = StepControl(
     first_length=0.02,
     max_length=0.25,
     min_length=5e-6,
@@ -33,10 +33,10 @@ ARC_STEPS = StepControl(
     max_error=0.1,
     prediction_order=4,
     max_angle=0.45,
-    max_ratio=2.0,
+    max_length_ratio=2.0,
 )
-"""Control of the arc-length steps along a branch. Arc length is dimensionless (`Scale`): on a step of 0.1 the
-deflection, the period and the parameter each change by at most about a tenth."""
+"""Control of the arc-length steps along a branch. Arc length is dimensionless (`ArcLengthScale`): on a step
+of 0.1 the deflection, the period and the parameter each change by at most about a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class PreviousCycle:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ArcPoint:
+class BranchCycle:
     """A cycle of a branch, with the derivatives of the branch at this cycle, the error calibration, and the
     length of the next step."""
 
@@ -69,7 +69,7 @@ class ArcPoint:
     """The previous cycle of the branch; None for the first cycle."""
 
     @property
-    def scale(self) -> Scale:
+    def scale(self) -> ArcLengthScale:
         return self.derivatives.scale
 
     @property
@@ -90,18 +90,18 @@ class ArcPoint:
     @property
     def workspace(self) -> NewtonWorkspace:
         """Memory of Newton's matrices, in which the matrix of this cycle was assembled."""
-        return self.cycle.converged.workspace
+        return self.cycle.converged_orbit.workspace
 
     @property
-    def coordinate(self) -> float:
+    def parameter_coordinate(self) -> float:
         """Coordinate of the continuation parameter: 1/k for a stiffness k, otherwise the value itself."""
-        return self.orbit.form.rod.coordinate(self.scale.parameter)
+        return self.orbit.form.rod.coordinate(self.scale.parameter_name)
 
     @property
     def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length; changes sign at a
         fold."""
-        return self.derivatives.parameter_slope
+        return self.derivatives.parameter_rate
 
     @property
     def deflection(self) -> float:
@@ -109,11 +109,11 @@ class ArcPoint:
         return deflection_of(self.orbit)
 
     @cached_property
-    def partial_multipliers(self) -> Complex:
+    def multipliers_over_solved_part(self) -> Complex:
         """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
-        values = bordered_matrix_of(self.cycle.converged).partial_multipliers
+        values = bordered_matrix_of(self.cycle.converged_orbit).multipliers_over_solved_part
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def arc_length_condition(self, length: float) -> BorderCondition:
@@ -126,113 +126,112 @@ class ArcPoint:
         change = length * self.tangent
         if self.previous is not None:
             change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
-        return moved_orbit(self.orbit, self.scale.parameter, change)
+        return moved_orbit(self.orbit, self.scale.parameter_name, change)
 
     def _cubic_coefficients(self, before: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
         its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
         cubic."""
-        name = self.scale.parameter
+        name = self.scale.parameter_name
         mesh = mesh_of(self.orbit)
         last = mesh.interpolated_orbit(before.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
-        slope = np.append(carried_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
+        slope = np.append(interpolated_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.unit_tangent @ (self.scale.components(self.orbit) - self.scale.components(last)))
         rate = float(self.unit_tangent @ self.scale.directional_derivative(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        apart = np.append(last.values - self.orbit.values, coordinate - self.coordinate)
+        apart = np.append(last.values - self.orbit.values, coordinate - self.parameter_coordinate)
         # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
         A = (apart + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def branch_derivatives(found: ConvergedOrbit, scale: Scale, tangent: Array) -> BranchDerivatives:
+def branch_derivatives(found: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
     """Scale and unit tangent of a branch at the cycle `found`. scale: scale at another cycle of the branch.
-    tangent: tangent of any length, (N + 1,).
-
-    In the result curvature and multiplier rate are 0, to be set by the caller.
-    """
-    own = Scale.at_orbit(found.orbit, scale.parameter, scale.min_deflection_unit)
+    tangent: tangent of any length, (N + 1,). In the result `parameter_curvature` and `multiplier_rate` are 0,
+    to be set by the caller."""
+    own = ArcLengthScale.at_orbit(found.orbit, scale.parameter_name, scale.min_deflection_unit)
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
 
 
-def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
+def tangent_at(orbit: Orbit, scale: ArcLengthScale, side: Array, matrix: BorderedMatrix) -> Array:
     """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. scale: units of the
     components. side: direction in components (deflection, log period, parameter), (3,); the tangent makes an
     acute angle with `side`."""
-    tangent = matrix.direction(side)
+    tangent = matrix.branch_tangent(side)
     # A null vector has no sign; the branch must not turn back.
     return tangent if scale.directional_derivative(orbit, tangent) @ side > 0 else -tangent
 
 
-def next_point(start: ArcPoint, accuracy: float) -> ArcPoint:
+def next_cycle(start: BranchCycle, accuracy: float) -> BranchCycle:
     """The next cycle of a branch after `start`, to a relative accuracy; raises Unsolvable if the shortest
     step fails."""
-    end, length = advance(partial(_step_to_length, start, accuracy), start.next_arc_length, ARC_STEPS)
+    end, length = advance(partial(_step_of_length, start, accuracy), start.next_arc_length, ARC_STEP_CONTROL)
     # The cubic through two cycles with tangents errs in the fourth power of the step, hence the order.
     return replace(
-        end.solution, next_arc_length=ARC_STEPS.next_length(length, end, ARC_STEPS.prediction_order)
+        end.solution,
+        next_arc_length=ARC_STEP_CONTROL.next_length(length, end, ARC_STEP_CONTROL.prediction_order),
     )
 
 
-def cycle_at_length(start: ArcPoint, length: float, accuracy: float) -> ArcPoint:
+def cycle_at_length(start: BranchCycle, length: float, accuracy: float) -> BranchCycle:
     """The cycle at the arc length `length` from `start`, to a relative accuracy; raises Unsolvable if no
     cycle is found, or if the prediction error or the angle is so large that the cycle may lie on another
     branch."""
-    return ARC_STEPS.require_small_errors(_step_to_length(start, accuracy, length)).solution
+    return ARC_STEP_CONTROL.require_small_errors(_step_of_length(start, accuracy, length)).solution
 
 
-def _step_to_length(start: ArcPoint, accuracy: float, length: float) -> StepResult[ArcPoint]:
+def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepResult[BranchCycle]:
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
     and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch an
     allowed prediction error is replaced by `target_error`."""
     condition = start.arc_length_condition(length)
     predicted = start.predicted_orbit(length)
     tolerance = newton_tolerance(accuracy)
-    found = condition.solve_cycle(predicted, tolerance, start.workspace, matrix_distance(accuracy))
+    found = condition.solve_cycle(predicted, tolerance, start.workspace, max_matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.previous is None and off <= ARC_STEPS.max_error:
+    if start.previous is None and off <= ARC_STEP_CONTROL.max_error:
         off = (
-            ARC_STEPS.target_error
+            ARC_STEP_CONTROL.target_error
         )  # the error of the tangent predictor does not predict the error of the cubic
     tangent = tangent_at(found.orbit, start.scale, start.unit_tangent, bordered_matrix_of(found))
     cosine = float(
         start.scale.directional_derivative(found.orbit, tangent) @ start.unit_tangent
     )  # both have unit length
     return StepResult(
-        cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy), off, cosine
+        branch_cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy), off, cosine
     )
 
 
-def arc_length_between(start: ArcPoint, end: ArcPoint) -> float:
+def arc_length_between(start: BranchCycle, end: BranchCycle) -> float:
     """Arc length from the cycle `start` to the cycle `end`, measured along the tangent at `start`."""
     return float(
         start.unit_tangent @ (start.scale.components(end.orbit) - start.scale.components(start.orbit))
     )
 
 
-def cycle_with_calibrated_errors(
-    start: ArcPoint, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
-) -> ArcPoint:
+def branch_cycle_with_calibrated_errors(
+    start: BranchCycle, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
+) -> BranchCycle:
     """The solved orbit `found` as the cycle of the branch at the arc length `length` from `start`, with
     errors estimated from the calibration of `start`.
 
     tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step. accuracy:
     relative accuracy of `found`.
     """
-    cycle = with_calibrated_errors(start.calibration.at_parameter, found, accuracy)
+    cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, found, accuracy)
     derivatives = branch_derivatives(found, start.scale, tangent)
-    curvature = (derivatives.parameter_slope - start.parameter_rate) / length
-    changed = multiplier_change(cycle.multipliers, start.cycle.multipliers) / length
-    return ArcPoint(
+    curvature = (derivatives.parameter_rate - start.parameter_rate) / length
+    changed = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
+    return BranchCycle(
         cycle=cycle,
-        derivatives=replace(derivatives, curvature=curvature, multiplier_rate=changed),
+        derivatives=replace(derivatives, parameter_curvature=curvature, multiplier_rate=changed),
         next_arc_length=ahead,
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,

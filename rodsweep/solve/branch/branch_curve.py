@@ -10,7 +10,7 @@ from ...model.floquet import min_unstable_multipliers
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
-from .arc import ArcPoint
+from .arc import BranchCycle
 from .special.point import SpecialPoint
 from .symmetry import SymmetryBreaking
 
@@ -29,11 +29,11 @@ class BranchPoint:
     multiplier: float
     """Modulus of the largest nontrivial Floquet multiplier."""
     unstable_count: int
-    """Number of nontrivial Floquet multipliers outside the unit circle; -1 if one of them has modulus 1
-    within its error."""
+    """Number of nontrivial Floquet multipliers outside the unit circle; -1 if the modulus of one of these
+    multipliers is 1 within its error."""
 
     @classmethod
-    def from_cycle(cls, point: ArcPoint, accuracy: float) -> "BranchPoint":
+    def from_cycle(cls, point: BranchCycle, accuracy: float) -> "BranchPoint":
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle
@@ -41,7 +41,7 @@ class BranchPoint:
         beyond = sizes - 1
         undecided = bool((np.abs(beyond) <= _multiplier_modulus_error(point)).any())
         return cls(
-            at=getattr(point.orbit.form.rod, point.scale.parameter),
+            at=getattr(point.orbit.form.rod, point.scale.parameter_name),
             at_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
@@ -56,20 +56,20 @@ class BranchPoint:
         return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
-def _multiplier_modulus_error(point: ArcPoint) -> float:
+def _multiplier_modulus_error(point: BranchCycle) -> float:
     """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
     relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_error
+    return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
 
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """The last special point of a branch; complete, end_hopf, end_breaking and list_full: as in
+    """The end of a branch. special_point: last special point of the branch; other fields as in
     `BranchCurve`."""
 
-    special: SpecialPoint
+    special_point: SpecialPoint
     complete: bool
     end_hopf: int = -1
     end_breaking: SymmetryBreaking | None = None
@@ -99,8 +99,9 @@ class BranchCurve:
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies beyond the present last cycle, and sets its `after`."""
-        self.special_points.append(replace(special, after=len(self.points) - 1))
+        """Appends a special point that lies beyond the present last cycle, and sets its
+        `index_of_cycle_before`."""
+        self.special_points.append(replace(special, index_of_cycle_before=len(self.points) - 1))
 
     def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
         """Appends the special points `between`, which lie between the present last cycle and the next cycle.
@@ -117,12 +118,14 @@ class BranchCurve:
     def remove_last_cycles(self, count: int) -> None:
         """Removes the last `count` cycles, and all special points beyond the first removed cycle."""
         del self.points[-count:]
-        self.special_points[:] = [point for point in self.special_points if point.after < len(self.points)]
+        self.special_points[:] = [
+            point for point in self.special_points if point.index_of_cycle_before < len(self.points)
+        ]
 
     def end(self, end: BranchEnd) -> None:
         """Appends the end of the branch as its last special point, and sets the fields for the end of the
         branch."""
-        self.add_special_point(end.special)
+        self.add_special_point(end.special_point)
         self.complete = end.complete
         self.list_full = end.list_full
         self.end_hopf = end.end_hopf

@@ -7,18 +7,18 @@ from math import nan
 import numpy as np
 
 from ..point import Unsolvable
-from .arc import ArcPoint
+from .arc import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .mesh_choice import with_errors_in_accuracy
+from .mesh_choice import with_errors_within_accuracy
 from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
-def end_point(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
+def branch_end_point(point: BranchCycle, reason: EndReason, message: str = "") -> SpecialPoint:
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
     the caller. message: cause of a failure."""
     measures = point.cycle.measures
-    at = getattr(point.orbit.form.rod, point.scale.parameter)
+    at = getattr(point.orbit.form.rod, point.scale.parameter_name)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,
@@ -34,21 +34,21 @@ class BranchRecord:
     """Record of the cycles of a branch during the continuation. The errors of a cycle are final after errors
     have been measured at this cycle or at a later cycle."""
 
-    def __init__(self, curve: BranchCurve, accuracy: float, first: ArcPoint) -> None:
+    def __init__(self, curve: BranchCurve, accuracy: float, first: BranchCycle) -> None:
         """curve: the branch, to which cycles are appended. accuracy: relative accuracy. first: the first
         cycle, with measured errors."""
         self.curve = curve
         self.accuracy = accuracy
         self._last_measured = first
-        self._unmeasured: list[ArcPoint] = []
+        self._unmeasured: list[BranchCycle] = []
         curve.points.append(BranchPoint.from_cycle(first, accuracy))
 
-    def append(self, point: ArcPoint) -> None:
+    def append(self, point: BranchCycle) -> None:
         """Appends the cycle `point`, whose errors are not measured."""
         self._unmeasured.append(point)
         self.curve.points.append(BranchPoint.from_cycle(point, self.accuracy))
 
-    def assign_errors(self, condition: BorderCondition | None = None) -> ArcPoint:
+    def assign_errors(self, condition: BorderCondition | None = None) -> BranchCycle:
         """Measures or interpolates the errors of all cycles appended since the last measurement, and solves
         cycles again on other meshes until all errors are within the accuracy. Returns the last cycle; raises
         Unsolvable.
@@ -57,7 +57,9 @@ class BranchRecord:
         length is unchanged.
         """
         if self._unmeasured:
-            points = with_errors_in_accuracy(self._last_measured, self._unmeasured, self.accuracy, condition)
+            points = with_errors_within_accuracy(
+                self._last_measured, self._unmeasured, self.accuracy, condition
+            )
             self.curve.replace_last_cycles([BranchPoint.from_cycle(point, self.accuracy) for point in points])
             self._last_measured = points[-1]
             self._unmeasured = []
@@ -72,13 +74,13 @@ class BranchRecord:
         except Unsolvable as why:
             curve.remove_last_cycles(len(self._unmeasured))
             message = f"the errors of the next cycles cannot be measured: {why}"
-            special = end_point(self._last_measured, EndReason.no_cycle_found, message)
-            end = replace(end, special=special, complete=False)
-        special = end.special
+            special = branch_end_point(self._last_measured, EndReason.no_cycle_found, message)
+            end = replace(end, special_point=special, complete=False)
+        special = end.special_point
         last = curve.points[-1]
         if np.isnan(special.error):
             special = replace(special, error=last.at_error * abs(special.at))
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
             special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
-        curve.end(replace(end, special=special))
+        curve.end(replace(end, special_point=special))

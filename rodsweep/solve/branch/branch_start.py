@@ -14,18 +14,18 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.unstable_modes import Crossing
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
 from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import stages_for, wanted_mesh
+from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..point import Unsolvable
-from .arc import ArcPoint
+from .arc import BranchCycle
 from .bordered.condition import BorderCondition
-from .bordered.scale import Scale, deflection_of
+from .bordered.scale import ArcLengthScale, deflection_of
 from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
@@ -36,13 +36,14 @@ class BranchStartSettings:
 
     first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
     """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
-    max_amplitude_share: float = 0.05
+    max_amplitude_ratio: float = 0.05
     """Upper limit of the amplitude of the first cycle, divided by
     |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
     inaccurate."""
     min_deflection_amplitude: float = 0.1
-    """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a `Scale`."""
-    amplitude_ratios: tuple[float, float] = 0.5, 2.0
+    """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a
+    `ArcLengthScale`."""
+    allowed_amplitude_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
     frequency_rounding: float = 1e-14
@@ -59,13 +60,14 @@ ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HopfBranchStart:
-    """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
-    off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf point."""
+    """A Hopf point along the continuation parameter `parameter_name`, with the normal form of the cycles that
+    branch off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf
+    point."""
 
     crossing: Crossing
     rod: Rod
-    name: str
-    coordinate: float
+    parameter_name: str
+    parameter_coordinate: float
     """Coordinate of the parameter at the Hopf point: 1/k for a stiffness k, otherwise the value itself."""
     growth_slope: complex
     """Derivative dw/d(coordinate) of the critical eigenvalue w at the Hopf point; w in 1/tau2."""
@@ -88,10 +90,10 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        turned = -1.0 if Path(self.rod, self.name).is_compliance else 1.0
+        turned = -1.0 if Path(self.rod, self.parameter_name).is_compliance else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
-        squared = -turned * self.growth_slope.real * self.coordinate / self.coefficients.landau.real
+        squared = -turned * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
 
     @property
@@ -109,7 +111,7 @@ class HopfBranchStart:
     def period_error(self) -> float:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
-        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
+        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.parameter_coordinate)
         return (
             abs(self.growth_slope) * parameter_error / self.crossing.frequency
             + BRANCH_START_SETTINGS.frequency_rounding
@@ -124,7 +126,7 @@ class HopfBranchStart:
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
+def hopf_branch_start(path: Path, crossing: Crossing) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
@@ -134,8 +136,8 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
-        name=path.name,
-        coordinate=path.coordinate(crossing.at),
+        parameter_name=path.name,
+        parameter_coordinate=path.coordinate(crossing.at),
         growth_slope=complex(slope),
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
@@ -157,17 +159,17 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     )
 
 
-def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
+def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> BranchCycle:
     """The first cycle of the branch from the Hopf point `hopf`, to a relative accuracy; raises Unsolvable.
 
     workspace: memory of Newton's matrices.
     """
     a = abs(hopf.amplitude_coefficient)
-    usual = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
+    usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
-    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.first_accuracy, True)):
+    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
         for share in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_share * a)
+            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a)
             try:
                 return _cycle_of_amplitude(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:
@@ -182,7 +184,7 @@ def _cycle_of_amplitude(
     finer: bool,
     accuracy: float,
     workspace: NewtonWorkspace,
-) -> ArcPoint:
+) -> BranchCycle:
     """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
     L, solved to the relative `accuracy`; raises Unsolvable.
 
@@ -192,21 +194,21 @@ def _cycle_of_amplitude(
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = wanted_mesh(start, aim, stages_for(aim)).interpolated_orbit(start)
+        start = mesh_from_tails(start, aim, cheapest_stage_count(aim)).interpolated_orbit(start)
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = Scale.at_orbit(start, hopf.name, least)
+    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace)
+    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
     near = rough.orbit
-    y = float(near.form.tip_coordinates(near.start)[1])
+    y = float(near.form.tip_coordinates(near.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
-    least_ratio, largest_ratio = BRANCH_START_SETTINGS.amplitude_ratios
+    least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
+    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
+    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     born = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, born, accuracy)
 
@@ -217,7 +219,7 @@ def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     change, frequency = hopf.parameter_change_and_frequency(amplitude)
     form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
     try:
-        form = form.with_coordinate(hopf.name, hopf.coordinate + change)
+        form = form.with_coordinate(hopf.parameter_name, hopf.parameter_coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     return orbit_of_amplitude(hopf.normal_form, form, amplitude, frequency)

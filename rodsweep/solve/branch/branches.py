@@ -1,9 +1,7 @@
 """The task `branch` for one rod: all branches of cycles from Hopf points along a parameter, to their ends.
-
 The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
 only once, from the first Hopf point. At a symmetry breaking on such a branch, the branch of asymmetric cycles
-is followed too. Cycles on other branches are not found.
-"""
+is followed too. Cycles on other branches are not found."""
 
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -17,7 +15,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
 from .branch_curve import BranchCurve
-from .branch_start import hopf_point
+from .branch_start import hopf_branch_start
 from .computing_time import fractions_before_branches
 from .following import BranchLimits, follow_asymmetric_branch, follow_branch
 from .special.point import SPECIAL_POINT_SETTINGS, EndReason
@@ -108,7 +106,7 @@ def solve_branches(
     memory = workspace or NewtonWorkspace()
     try:
         return outcome_or_failure(
-            lambda: _solve_or_raise(rod, request, memory),
+            lambda: _solve_branches_or_raise(rod, request, memory),
             lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
         )
     finally:
@@ -123,7 +121,7 @@ def warm_up() -> None:
     )
 
 
-def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
+def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
     low, high, crushed = _uncrushed_range(rod, request)
     if not low < high:
         why = "the force crushes the rod everywhere in the range"
@@ -134,7 +132,7 @@ def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace
     failures = []
     for crossing in found.crossings:
         try:
-            hopfs.append(hopf_point(path, crossing))
+            hopfs.append(hopf_branch_start(path, crossing))
         except FAILURES as error:
             failures.append(f"the Hopf point at {request.along} = {crossing.at:.12g}: {cause_of(error)}")
     ends = (path.coordinate(low), path.coordinate(high))
@@ -193,7 +191,9 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
     arrived: set[int] = set()
     left = limits.max_cycles
     count = len(limits.hopfs)
-    shares = fractions_before_branches([hopf.coordinate for hopf in limits.hopfs], limits.ends)
+    shares = fractions_before_branches(
+        [hopf.parameter_coordinate for hopf in limits.hopfs], limits.coordinate_range
+    )
     for number in range(count):
         if number in arrived:
             continue

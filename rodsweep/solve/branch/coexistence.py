@@ -75,12 +75,12 @@ class StableStates(IntEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
-    `StableStates` at each parameter value, (values,). special: special points of all branches. seconds:
-    computing time."""
+    `StableStates` at each parameter value, (values,). special_points: special points of all branches.
+    message: for the user, or "". seconds: computing time."""
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
-    special: tuple[SpecialPoint, ...]
+    special_points: tuple[SpecialPoint, ...]
     status: CoexistenceStatus
     message: str = ""
     seconds: float = 0.0
@@ -107,7 +107,7 @@ def solve_coexistence(
     return CoexistenceRow(
         straight_rod_row=row,
         stable_states=states,
-        special=special_points_of(branches),
+        special_points=special_points_of(branches),
         status=status,
         message="; ".join(filter(None, [message, _undecided_values_text(request.name, undecided)])),
         seconds=row.seconds + branches.seconds,
@@ -168,11 +168,11 @@ def _status_and_message_of_row(
 class StabilityInterval:
     """Interval of the parameter that a branch covers between two successive special points, with the
     stability of the cycles. certain_range, possible_range: the interval, shortened and extended by the errors
-    of the special points. stable: 1 if the cycles are stable, 0 if unstable, -1 if undecided."""
+    of the special points. stability: 1 if the cycles are stable, 0 if unstable, -1 if undecided."""
 
     certain_range: tuple[float, float]
     possible_range: tuple[float, float]
-    stable: int
+    stability: int
 
 
 def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> NDArray[np.int8]:
@@ -185,10 +185,10 @@ def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> N
     intervals = [interval for curve in branches.curves for interval in stability_intervals(curve)]
     # No stable cycle is claimed where the stability is undecided, or within the error of an interval's end.
     for interval in intervals:
-        if interval.stable:
+        if interval.stability:
             found[(values >= interval.possible_range[0]) & (values <= interval.possible_range[1])] = -1
     for interval in intervals:
-        if interval.stable > 0:
+        if interval.stability > 0:
             found[(values > interval.certain_range[0]) & (values < interval.certain_range[1])] = 1
     return found
 
@@ -199,7 +199,8 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     intervals = []
     for one, other in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
         signs = {
-            point.min_unstable_multipliers for point in curve.points[one.after + 1 : other.after + 1]
+            point.min_unstable_multipliers
+            for point in curve.points[one.index_of_cycle_before + 1 : other.index_of_cycle_before + 1]
         } - {-1}
         # Stability changes at special points only. If cycles between two special points disagree, it is
         # undecided.

@@ -2,11 +2,11 @@
 and the error of the parameter.
 
 The cycle is solved at the same arc length on two finer meshes, the first finer in space, the second finer in
-time; this system is regular at a fold. The three cycles have slightly different parameter values. The two
-cycles on finer meshes are therefore moved along the branch to the parameter value of the given cycle. The
-remaining differences are the errors of period, extrema and multiplier at equal parameter. The error of the
-parameter is the parameter difference of the cycles at equal deflection. This error stays small near a Hopf
-point and near a fold, where all other quantities vary steeply with the parameter.
+time; this system is regular at a fold. The two cycles on finer meshes are then moved along the branch to the
+parameter value of the given cycle. The remaining differences are the errors of period, extrema and multiplier
+at equal parameter. The error of the parameter is the parameter difference of the cycles at equal deflection.
+This error stays small near a Hopf point and near a fold, where all other quantities vary steeply with the
+parameter.
 """
 
 from dataclasses import dataclass, replace
@@ -20,14 +20,14 @@ from ..cycle.accuracy.calibration import MULTIPLIER_INDEX, Calibration, calibrat
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
-from ..cycle.along_parameter import carried_change
+from ..cycle.along_parameter import interpolated_change
 from ..orbit.measures import CyclePath
-from ..orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of
+from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM, path_differences
+from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX, path_differences
 from .bordered.condition import BorderCondition, moved_orbit
-from .bordered.scale import Scale
+from .bordered.scale import ArcLengthScale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,18 +36,18 @@ class BranchErrorSettings:
 
     max_sensitivity: float = 120.0
     """Limit of the sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p. At larger
-    sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy,
-    by the factor sensitivity/limit, because p has an error too. The limit is a fifth above the documented
-    limit of 100, because a user estimates the sensitivity from two cycles."""
-    min_deflection_share: float = 0.1
+    sensitivities, as near a Hopf point or a fold, the allowed errors at equal p are larger than the accuracy
+    by the factor sensitivity/limit. A fifth above the documented limit, because a user estimates the
+    sensitivity from cycles."""
+    min_deflection_rate_ratio: float = 0.1
     """Lower limit of |d(deflection)/ds| in the parameter error at equal deflection, divided by
     |d(parameter)/ds|, s: arc length. Without this limit the error would be infinite where the deflection is
-    stationary along the branch."""
+    stationary."""
     interpolation_factor: float = 2.0
     """Safety factor on interpolated errors."""
     min_error: float = 1e-16
     """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
-    newton_tolerance_share: float = 0.01
+    newton_tolerance_ratio: float = 0.01
     """Tolerance of Newton's method on the two finer meshes of an error measurement, divided by the
     accuracy."""
     sensitivity_step: float = 1e-4
@@ -61,66 +61,67 @@ BRANCH_ERROR_SETTINGS = BranchErrorSettings()
 class BranchDerivatives:
     """Derivatives of a branch with respect to arc length at a cycle, in the units of `scale`."""
 
-    scale: Scale
+    scale: ArcLengthScale
     tangent: Array
     """Tangent of the branch with unit arc length, (N + 1,): derivatives of orbit values and parameter
     coordinate."""
     unit_tangent: Array
     """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
-    curvature: float
+    parameter_curvature: float
     """Second derivative of the scaled parameter coordinate with respect to arc length."""
     multiplier_rate: float
     """Modulus of the derivative of the largest multiplier with respect to arc length."""
 
     @property
-    def parameter_slope(self) -> float:
+    def parameter_rate(self) -> float:
         """Derivative of the scaled parameter coordinate with respect to arc length; 0 at a fold."""
         return float(self.unit_tangent[2])
 
-    def arc_length_for_change(self, off: float) -> float:
+    def arc_length_for_parameter_change(self, off: float) -> float:
         """Arc length over which the scaled parameter coordinate changes by `off`. Near a fold the parameter
-        may never change by `off`; the result there has the modulus 2 sqrt(|off/curvature|), an upper bound of
-        the arc length."""
+        may never change by `off`; near a fold the result has the modulus 2 sqrt(|off/curvature|), an upper
+        bound of the arc length."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
-        if self.parameter_slope**2 >= 4 * abs(self.curvature * off):
-            return off / self.parameter_slope
-        way = np.copysign(1.0, off * self.parameter_slope)
-        # At a fold `off` is quadratic in the length s: rate s + curvature s^2/2 = off. This is an upper bound
-        # of the root.
-        return float(way * 2 * (abs(off) / max(abs(self.curvature), EXPONENT_SETTINGS.least_divisor)) ** 0.5)
+        if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * off):
+            return off / self.parameter_rate
+        way = np.copysign(1.0, off * self.parameter_rate)
+        # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = off.
+        return float(
+            way * 2 * (abs(off) / max(abs(self.parameter_curvature), EXPONENT_SETTINGS.least_divisor)) ** 0.5
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class BranchCalibration:
-    """Measured errors of a mesh at a cycle of a branch. at_parameter: errors at equal parameter.
+    """Measured errors of a mesh at a cycle of a branch. at_equal_parameter: errors at equal parameter.
     parameter_errors: relative errors of the parameter at equal deflection, caused by the mesh in space and by
     the mesh in time, (2,). sensitivity: |(p/y) dy/dp|, p: parameter, y: largest tip y."""
 
-    at_parameter: Calibration
+    at_equal_parameter: Calibration
     parameter_errors: Array
     sensitivity: float
 
     @property
     def mesh(self) -> OrbitMesh:
-        return self.at_parameter.mesh
+        return self.at_equal_parameter.mesh
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Errors of the cycle at equal parameter, at least a fraction of the relative accuracy."""
-        return self.at_parameter.errors(accuracy)
+        return self.at_equal_parameter.errors(accuracy)
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
         the relative accuracy."""
         return max(
             CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
-            CYCLE_ERROR_SETTINGS.min_error_share * accuracy,
+            CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy,
             CYCLE_ERROR_SETTINGS.rounding_error,
         )
 
-    def largest_error(self, accuracy: float) -> float:
+    def largest_weighted_error(self, accuracy: float) -> float:
         """The error that must not exceed the relative accuracy: the larger of the parameter error and the
         largest error at equal parameter, divided by max(1, sensitivity/max_sensitivity of the settings)."""
-        return self._limiting_errors.errors(accuracy).largest_error
+        return self._limiting_errors.errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh for a relative accuracy of the cycle; the next finer mesh if none suffices."""
@@ -132,24 +133,24 @@ class BranchCalibration:
 
     @cached_property
     def _limiting_errors(self) -> Calibration:
-        """Errors from which the mesh is chosen: errors at equal parameter, reduced as in `largest_error`, and
-        the parameter error."""
+        """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
+        `largest_weighted_error`, and the parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
         steep = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
-        parts = [self.at_parameter.space / steep, self.at_parameter.time / steep]
+        parts = [self.at_equal_parameter.space_errors / steep, self.at_equal_parameter.time_errors / steep]
         for part, own in zip(parts, self.parameter_errors, strict=True):
-            part[PERIOD_CHANGE] = max(part[PERIOD_CHANGE], own)
-        return replace(self.at_parameter, space=parts[0], time=parts[1])
+            part[PERIOD_INDEX] = max(part[PERIOD_INDEX], own)
+        return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
 
     @cached_property
     def _parameter_errors_only(self) -> Calibration:
         """A calibration in which the errors of period, largest y, extrema and path equal the parameter error
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
-        numbers = [PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH]
-        parts = [self.at_parameter.space.copy(), self.at_parameter.time.copy()]
+        numbers = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
+        parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
         for part, own in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = own
-        return replace(self.at_parameter, space=parts[0], time=parts[1])
+        return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
 
     def interpolate(
         self, other: "BranchCalibration", share: float, sensitivity: float
@@ -157,16 +158,18 @@ class BranchCalibration:
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
         errors of the second measured cycle. share: fraction of the arc length from the first measured cycle
         to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the interpolated
-        cycle. See `_interpolated_errors` for the formula."""
+        cycle."""
         mean = [
             _interpolated_errors(one, another, share)
             for one, another in (
-                (self.at_parameter.space, other.at_parameter.space),
-                (self.at_parameter.time, other.at_parameter.time),
+                (self.at_equal_parameter.space_errors, other.at_equal_parameter.space_errors),
+                (self.at_equal_parameter.time_errors, other.at_equal_parameter.time_errors),
                 (self.parameter_errors, other.parameter_errors),
             )
         ]
-        known = replace(self.at_parameter, space=mean[0], time=mean[1], error_growth=np.ones(2))
+        known = replace(
+            self.at_equal_parameter, space_errors=mean[0], time_errors=mean[1], error_growth=np.ones(2)
+        )
         return BranchCalibration(known, mean[2], sensitivity)
 
 
@@ -181,26 +184,25 @@ def _interpolated_errors(one: Array, other: Array, share: float) -> Array:
     return bounded
 
 
-def measured_errors(
+def measured_branch_calibration(
     found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
 ) -> BranchCalibration:
     """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
     Unsolvable. derivatives: derivatives of the branch at `found`. accuracy: relative accuracy of `found`.
-    before: calibration at a previous cycle, from which convergence rates are estimated; None if there is no
-    such cycle."""
+    before: calibration at a previous cycle, for the convergence rates; None if there is no such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
     condition = BorderCondition.at_arc_length(derivatives.scale, derivatives.unit_tangent, orbit)
     rough = CyclePath(orbit)
-    multipliers = multipliers_of(found)[0]
+    multipliers = multipliers_and_trivial_error(found)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on_mesh(
+        fine = condition.solve_on_mesh(
             target,
             found,
-            BRANCH_ERROR_SETTINGS.newton_tolerance_share * accuracy,
-            FINER_MESH_SETTINGS.matrix_distance,
+            BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy,
+            FINER_MESH_SETTINGS.max_matrix_distance,
         )
         part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
@@ -219,19 +221,19 @@ def _differences_between_meshes(
     orbit = rough.orbit
     scale = derivatives.scale
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
-    length = derivatives.arc_length_for_change(off)
+    length = derivatives.arc_length_for_parameter_change(off)
     target = mesh_of(fine.orbit)
-    along = np.append(carried_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
+    along = np.append(interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
-    slid = moved_orbit(fine.orbit, scale.parameter, length * along)
-    change = multiplier_change(multipliers, multipliers_of(fine)[0]) + abs(
+    slid = moved_orbit(fine.orbit, scale.parameter_name, length * along)
+    change = largest_multiplier_difference(multipliers, multipliers_and_trivial_error(fine)[0]) + abs(
         length * derivatives.multiplier_rate
     )
     by_deflection = abs(derivatives.unit_tangent[0])
-    by_parameter = abs(derivatives.parameter_slope)
+    by_parameter = abs(derivatives.parameter_rate)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(off * derivatives.unit_tangent[0] - deflection * derivatives.parameter_slope)
-    own = apart / max(by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_share * by_parameter)
+    apart = abs(off * derivatives.unit_tangent[0] - deflection * derivatives.parameter_rate)
+    own = apart / max(by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * by_parameter)
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
@@ -240,9 +242,9 @@ def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
     step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
-    ahead = CyclePath(moved_orbit(orbit, derivatives.scale.parameter, step))
+    ahead = CyclePath(moved_orbit(orbit, derivatives.scale.parameter_name, step))
     y = path.extrema["tip_y_max"]
     other = ahead.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
-        abs(derivatives.parameter_slope), EXPONENT_SETTINGS.least_divisor
+        abs(derivatives.parameter_rate), EXPONENT_SETTINGS.least_divisor
     )

@@ -11,17 +11,17 @@ from ...wording import counted
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
+from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
-from .branch_record import BranchRecord, end_point
+from .branch_record import BranchRecord, branch_end_point
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
-from .mesh_choice import measurement_due
+from .mesh_choice import is_measurement_due
 from .range_end import cycle_at_range_end, range_end_condition
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
-from .special.points import special_points
+from .special.points import special_points_between
 from .symmetry import (
     BRANCH_END_SETTINGS,
     SymmetryBreaking,
@@ -37,9 +37,9 @@ class BranchLimits:
 
     hopfs: Sequence[HopfBranchStart]
     """Hopf points of the rod within the range."""
-    ends: tuple[float, float]
+    coordinate_range: tuple[float, float]
     """Smallest and largest coordinate of the continuation parameter, at which branches end."""
-    reasons: tuple[EndReason, EndReason]
+    end_reasons: tuple[EndReason, EndReason]
     """Reasons for the end of a branch at the smallest and at the largest coordinate."""
     accuracy: float
     max_cycles: int
@@ -63,15 +63,15 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     `limits.breakings[which]`; a failure is stored in the last special point."""
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
-    curve.add_special_point(replace(breaking.point, message="", orbit=None))
+    curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
 
-    def first() -> ArcPoint:
+    def first() -> BranchCycle:
         return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
 
     return _follow_to_end(curve, limits, first)
 
 
-def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], ArcPoint]) -> BranchCurve:
+def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], BranchCycle]) -> BranchCurve:
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
     solves the first cycle."""
     if limits.max_cycles < 1:
@@ -84,33 +84,35 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
         return curve
     outside = _index_of_passed_range_end(start, limits)
     if outside >= 0:
-        curve.end(BranchEnd(_end_without_cycle(curve, limits.reasons[outside]), complete=True))
+        curve.end(BranchEnd(_end_without_cycle(curve, limits.end_reasons[outside]), complete=True))
         return curve
     return follow_from_cycle(curve, start, limits)
 
 
-def follow_from_cycle(curve: BranchCurve, first: ArcPoint, limits: BranchLimits) -> BranchCurve:
+def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimits) -> BranchCurve:
     """The branch `curve`, followed to its end from its first cycle `first`, which has measured errors."""
     trail = BranchRecord(curve, limits.accuracy, first)
-    going: ArcPoint | BranchEnd = first
-    while isinstance(going, ArcPoint):
+    going: BranchCycle | BranchEnd = first
+    while isinstance(going, BranchCycle):
         report(partial(_branch_progress, curve, going, limits))
         going = _append_next_cycle(trail, going, limits)
     trail.end(going)
     return curve
 
 
-def _branch_progress(curve: BranchCurve, start: ArcPoint, limits: BranchLimits) -> SolvePosition:
+def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
-    name = start.scale.parameter
+    name = start.scale.parameter_name
     # The end of the range towards which the parameter moves at present.
-    aim = limits.ends[1 if start.unit_tangent[-1] > 0 else 0]
-    value = PARAMETERS[name].value(start.coordinate)
+    aim = limits.coordinate_range[1 if start.unit_tangent[-1] > 0 else 0]
+    value = PARAMETERS[name].value(start.parameter_coordinate)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
     return SolvePosition(
         words,
-        fraction_done(PARAMETERS[name].coordinate(curve.special_points[0].at), start.coordinate, aim),
+        fraction_done(
+            PARAMETERS[name].coordinate(curve.special_points[0].at), start.parameter_coordinate, aim
+        ),
     )
 
 
@@ -127,28 +129,30 @@ def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "")
     )
 
 
-def _index_of_passed_range_end(point: ArcPoint, limits: BranchLimits) -> int:
+def _index_of_passed_range_end(point: BranchCycle, limits: BranchLimits) -> int:
     """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
-    low, high = limits.ends
-    if point.coordinate < low:
+    low, high = limits.coordinate_range
+    if point.parameter_coordinate < low:
         return 0
-    return 1 if point.coordinate > high else -1
+    return 1 if point.parameter_coordinate > high else -1
 
 
-def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _append_next_cycle(
+    record: BranchRecord, start: BranchCycle, limits: BranchLimits
+) -> BranchCycle | BranchEnd:
     """Appends the next cycle after `start`, and the special points before this cycle, to the branch. Returns
-    the last cycle, from which the branch continues, or the end of the branch. If a step to the mirror image
-    is too long, nothing is appended, and `start` with half the step length is returned."""
+    the last cycle, from which the branch continues, or the end of the branch; if a step to the mirror image
+    is too long, `start` with half the step length, without a new cycle."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(end_point(start, EndReason.list_full), complete=False, list_full=True)
+        return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
-        end = next_point(start, limits.accuracy)
+        end = next_cycle(start, limits.accuracy)
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
         outside = _index_of_passed_range_end(end, limits)
-        range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
+        range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
         if range_end is not None:
             end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _step_hides_corner(start, end):
@@ -161,88 +165,86 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
             )
         _add_special_points(curve, start, end, limits)
         record.append(end)
-        last = record.assign_errors(range_end) if range_end is not None or measurement_due(end) else end
+        last = record.assign_errors(range_end) if range_end is not None or is_measurement_due(end) else end
     except Unsolvable as why:
         message = f"no further cycle of the branch is found: {why}"
-        return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, message), complete=False)
     if range_end is None:
         return last
-    at = getattr(last.orbit.form.rod, last.scale.parameter)
+    at = getattr(last.orbit.form.rod, last.scale.parameter_name)
     error = BRANCH_END_SETTINGS.range_end_error * abs(at)
-    return BranchEnd(replace(end_point(last, limits.reasons[outside]), error=error), complete=True)
+    return BranchEnd(replace(branch_end_point(last, limits.end_reasons[outside]), error=error), complete=True)
 
 
-def _add_special_points(curve: BranchCurve, start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> None:
+def _add_special_points(
+    curve: BranchCurve, start: BranchCycle, end: BranchCycle, limits: BranchLimits
+) -> None:
     """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
     step = partial(cycle_at_length, accuracy=limits.accuracy)
-    curve.add_special_points(*special_points(start, end, step, limits.accuracy))
+    curve.add_special_points(*special_points_between(start, end, step, limits.accuracy))
 
 
-def _passed_mirror_image(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> bool:
+def _passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
     """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
     if start.orbit.is_symmetric:
         return passed_hopf_point(start, end)
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
-def _step_hides_corner(start: ArcPoint, end: ArcPoint) -> bool:
-    """Whether the largest tip y has a corner on the last step, and the step is too long for a figure of the
-    corner.
-
-    At a corner a different maximum of y(t) becomes the largest. A figure locates a corner from two cycles
-    before and two cycles after the corner.
-    """
+def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
+    """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
+    largest), and the step is too long for a figure, which locates a corner from two cycles before and two
+    cycles after the corner."""
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
     other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
     return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
 
 
-def passed_hopf_point(start: ArcPoint, end: ArcPoint) -> bool:
+def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start, "m3")
-    # t = 0 is the time of the largest y; the moments at this time change sign where the amplitude passes 0.
-    return float(one @ layout.stress_field(end.orbit.start, "m3")) < 0
+    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
+    return float(one @ layout.stress_field(end.orbit.start_state, "m3")) < 0
 
 
-def _end_at_hopf(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
     `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
-        if shorter < ARC_STEPS.min_length:
+        if shorter < ARC_STEP_CONTROL.min_length:
             raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
         return replace(start, next_arc_length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
     share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
-    at = start.coordinate - share * tangent[-1]
+    at = start.parameter_coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.coordinate - hopf.coordinate
-        ) + rounding * abs(hopf.coordinate)
+            start.parameter_coordinate - hopf.parameter_coordinate
+        ) + rounding * abs(hopf.parameter_coordinate)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
         period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
-        if abs(at - hopf.coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
+        if abs(at - hopf.parameter_coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
 
 
-def _end_at_breaking(start: ArcPoint, end: ArcPoint, limits: BranchLimits) -> ArcPoint | BranchEnd:
+def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
-    near), or `start` with half the step, if `start` is too asymmetric to extrapolate. Raises Unsolvable."""
+    near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
     which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
     if which is None:
         return replace(start, next_arc_length=arc_length_between(start, end) / 2)
     if which >= 0:
         breaking = limits.breakings[which]
-        special = replace(breaking.point, message="", orbit=None)
+        special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric, but no known symmetry breaking is near"
-    return BranchEnd(end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance, with_calibrated_errors
-from ..orbit.newton import ConvergedOrbit, multipliers_of
+from ..cycle.accuracy.refinement import cycle_with_calibrated_errors, max_matrix_distance, newton_tolerance
+from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, branch_derivatives, tangent_at
+from .arc import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
-from .bordered.scale import Scale
-from .errors import BranchCalibration, measured_errors, sensitivity_of
+from .bordered.scale import ArcLengthScale
+from .errors import BranchCalibration, measured_branch_calibration, sensitivity_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,10 +24,10 @@ class BranchMeshSettings:
 
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
-    max_cheaper_cost: float = 0.5
+    max_cheaper_cost_ratio: float = 0.5
     """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the present cost
     is at most this number."""
-    planned_error: float = 0.5
+    planned_error_ratio: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
     next cycles too."""
     min_parameter_rate_ratio: float = 0.7
@@ -37,9 +37,9 @@ class BranchMeshSettings:
     max_tail_growth: float = 2.0
     """Errors are measured, not interpolated, if the coefficient tails predict that the errors have grown by
     more than this factor since each of the two measured cycles."""
-    max_unmeasured: int = 3
+    max_steps_between_measurements: int = 3
     """Maximum number of steps between two cycles with measured errors."""
-    remeasure_growth: float = 4.0
+    max_growth_since_measurement: float = 4.0
     """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
     factor since the last measurement."""
 
@@ -48,8 +48,8 @@ BRANCH_MESH_SETTINGS = BranchMeshSettings()
 
 
 def first_measured_cycle(
-    found: ConvergedOrbit, scale: Scale, side: Array, born: float, accuracy: float
-) -> ArcPoint:
+    found: ConvergedOrbit, scale: ArcLengthScale, side: Array, born: float, accuracy: float
+) -> BranchCycle:
     """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on
     another mesh if necessary; raises Unsolvable.
 
@@ -60,57 +60,61 @@ def first_measured_cycle(
     derivatives = branch_derivatives(
         found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found))
     )
-    multipliers = multipliers_of(found)[0]
+    multipliers = multipliers_and_trivial_error(found)[0]
     lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
-        derivatives, curvature=derivatives.parameter_slope / born, multiplier_rate=2 * lost / born
+        derivatives, parameter_curvature=derivatives.parameter_rate / born, multiplier_rate=2 * lost / born
     )
-    calibration = measured_errors(found, derivatives, accuracy, None)
-    cycle = with_calibrated_errors(calibration.at_parameter, found, accuracy)
+    calibration = measured_branch_calibration(found, derivatives, accuracy, None)
+    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, found, accuracy)
     return solve_on_sufficient_mesh(
-        ArcPoint(
+        BranchCycle(
             cycle=cycle,
             derivatives=derivatives,
-            next_arc_length=ARC_STEPS.first_length,
+            next_arc_length=ARC_STEP_CONTROL.first_length,
             calibration=calibration,
         ),
         accuracy,
     )
 
 
-def measurement_due(point: ArcPoint) -> bool:
+def is_measurement_due(point: BranchCycle) -> bool:
     """Whether the errors of a cycle must be measured: the last measured cycle is too many steps away, or the
     errors have grown too much since that cycle."""
-    growth = float(point.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max())
+    growth = float(point.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max())
     return (
-        point.steps_since_measured >= BRANCH_MESH_SETTINGS.max_unmeasured
-        or growth > BRANCH_MESH_SETTINGS.remeasure_growth
+        point.steps_since_measured >= BRANCH_MESH_SETTINGS.max_steps_between_measurements
+        or growth > BRANCH_MESH_SETTINGS.max_growth_since_measurement
     )
 
 
-def with_measured_errors(point: ArcPoint, accuracy: float) -> ArcPoint:
+def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
     """The same cycle with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
     accuracy of the cycle."""
-    before = point.calibration.at_parameter
+    before = point.calibration.at_equal_parameter
     return with_calibration(
-        point, measured_errors(point.cycle.converged, point.derivatives, accuracy, before), accuracy
+        point,
+        measured_branch_calibration(point.cycle.converged_orbit, point.derivatives, accuracy, before),
+        accuracy,
     )
 
 
-def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
+def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
     """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
     interpolated at this cycle. In the result the number of unmeasured steps is 0."""
-    cycle = with_calibrated_errors(calibration.at_parameter, point.cycle.converged, accuracy)
+    cycle = cycle_with_calibrated_errors(
+        calibration.at_equal_parameter, point.cycle.converged_orbit, accuracy
+    )
     return replace(
         point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0
     )
 
 
 def solve_on_sufficient_mesh(
-    point: ArcPoint, accuracy: float, condition: BorderCondition | None = None
-) -> ArcPoint:
+    point: BranchCycle, accuracy: float, condition: BorderCondition | None = None
+) -> BranchCycle:
     """The same cycle with measured errors within the relative accuracy, on a mesh chosen for this accuracy;
     raises Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every
     mesh; by default the condition that its arc length is unchanged."""
@@ -120,10 +124,12 @@ def solve_on_sufficient_mesh(
         if point.steps_since_measured:
             point = with_measured_errors(point, accuracy)
         known = point.calibration
-        enough = known.largest_error(accuracy) <= accuracy
-        planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error * accuracy)
+        enough = known.largest_weighted_error(accuracy) <= accuracy
+        planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if enough and (finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost * known.mesh.cost):
+        if enough and (
+            finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * known.mesh.cost
+        ):
             return point
         if not enough:
             finest = True
@@ -134,31 +140,33 @@ def solve_on_sufficient_mesh(
     raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
 
 
-def solved_on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: BorderCondition, accuracy: float) -> ArcPoint:
+def solved_on_mesh(
+    point: BranchCycle, mesh: OrbitMesh, condition: BorderCondition, accuracy: float
+) -> BranchCycle:
     """The same cycle solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
-    found = condition.on_mesh(
-        mesh, point.cycle.converged, newton_tolerance(accuracy), matrix_distance(accuracy)
+    found = condition.solve_on_mesh(
+        mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), max_matrix_distance(accuracy)
     )
     tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))
     known = point.derivatives
     derivatives = replace(
         branch_derivatives(found, point.scale, tangent),
-        curvature=known.curvature,
+        parameter_curvature=known.parameter_curvature,
         multiplier_rate=known.multiplier_rate,
     )
     return replace(
         point,
-        cycle=with_calibrated_errors(point.calibration.at_parameter, found, accuracy),
+        cycle=cycle_with_calibrated_errors(point.calibration.at_equal_parameter, found, accuracy),
         derivatives=derivatives,
         steps_since_measured=1,
     )
 
 
-def with_errors_in_accuracy(
-    last: ArcPoint, points: Sequence[ArcPoint], accuracy: float, condition: BorderCondition | None
-) -> list[ArcPoint]:
+def with_errors_within_accuracy(
+    last: BranchCycle, points: Sequence[BranchCycle], accuracy: float, condition: BorderCondition | None
+) -> list[BranchCycle]:
     """The cycles `points`, which follow the measured cycle `last`, all with errors within the accuracy;
     raises Unsolvable.
 
@@ -177,14 +185,14 @@ def with_errors_in_accuracy(
     end = solve_on_sufficient_mesh(end, accuracy, condition)
     again = [
         point
-        if point.calibration.largest_error(accuracy) <= accuracy
+        if point.calibration.largest_weighted_error(accuracy) <= accuracy
         else _cycle_on_mesh_of(end, point, accuracy)
         for point in known
     ]
     return [*again, end]
 
 
-def _cycle_on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
+def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> BranchCycle:
     """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
     sufficient mesh if these errors are too large; raises Unsolvable."""
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.arc_length_condition(0.0), accuracy)
@@ -194,8 +202,8 @@ def _cycle_on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoi
 
 
 def _with_interpolated_errors(
-    last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float
-) -> ArcPoint:
+    last: BranchCycle, point: BranchCycle, end: BranchCycle, share: float, accuracy: float
+) -> BranchCycle:
     """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
     same mesh; raises Unsolvable.
 
@@ -208,7 +216,9 @@ def _with_interpolated_errors(
     slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
         abs(one.parameter_rate) for one in ends
     )
-    grown = min(one.calibration.at_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends)
+    grown = min(
+        one.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends
+    )
     if slow or float(grown) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
     known = last.calibration.interpolate(

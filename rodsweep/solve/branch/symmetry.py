@@ -2,10 +2,10 @@
 
 A symmetric cycle equals its own mirror image half a period later. A branch of asymmetric cycles crosses the
 symmetric branch where a multiplier of the half-period map composed with the reflection is -1. The two halves
-of the asymmetric branch are mirror images of each other, shifted by half a period. Only one half is followed,
+of the asymmetric branch are mirror images of each other, shifted by half a period; only one half is followed,
 with cycles solved over the whole period. Near the crossing the deflection at t = 0 is linear in the
 asymmetry; parameter and period are quadratic. Where an asymmetric branch returns to a symmetric cycle, the
-branch continues as its own mirror image. A branch that ends at a Hopf point has the same property.
+branch continues as its own mirror image, as does a branch that ends at a Hopf point.
 """
 
 from collections.abc import Sequence
@@ -14,19 +14,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit, node_times
-from ..orbit.orbit_mesh import stages_for, wanted_mesh
+from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import Unsolvable
-from .arc import ARC_STEPS, ArcPoint, arc_length_between
+from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
-from .bordered.scale import Scale, deflection_of
+from .bordered.scale import ArcLengthScale, deflection_of
 from .branch_start import ALONG_DEFLECTION
 from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
@@ -91,12 +91,12 @@ ASYMMETRIC_START_SETTINGS = AsymmetricStartSettings()
 
 @dataclass(frozen=True, slots=True)
 class SymmetryBreaking:
-    """A symmetry breaking on a branch. branch: number of the branch, from 1. index: index of the symmetry
-    breaking in the list of special points of this branch, from 0."""
+    """A symmetry breaking on a branch. branch_number: number of the branch, from 1. special_point_index:
+    index of the symmetry breaking in the list of special points of this branch, from 0."""
 
-    branch: int
-    index: int
-    point: SpecialPoint
+    branch_number: int
+    special_point_index: int
+    special_point: SpecialPoint
 
 
 def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[SymmetryBreaking]:
@@ -113,20 +113,22 @@ def symmetry_breakings_in(branches: Sequence[Sequence[SpecialPoint]]) -> list[Sy
 def extended_to_whole_period(orbit: Orbit) -> Orbit:
     """A symmetric orbit, which stores half a period, extended by its symmetry to the whole period and to
     twice as many time intervals."""
-    intervals = 2 * orbit.intervals
-    times = 2 * node_times(intervals, orbit.stages)
+    intervals = 2 * orbit.interval_count
+    times = 2 * node_times(intervals, orbit.stage_count)
     later = times > 1
     points = orbit.states_at(np.where(later, times - 1, times))
     # The second half of the period is the mirror image of the first.
     points[later] = orbit.symmetry.apply(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
-    return replace(orbit, symmetry=NO_SYMMETRY, intervals=intervals, values=values)
+    return replace(orbit, symmetry=NO_SYMMETRY, interval_count=intervals, values=values)
 
 
 def asymmetry(orbit: Orbit) -> Array:
     """Asymmetry of an orbit: bending moments at t = 0 plus bending moments half a period later, (nodes,); 0
     for a symmetric orbit."""
-    return _bending_moments(orbit.start, orbit) + _bending_moments(orbit.states_at(np.array([0.5]))[0], orbit)
+    return _bending_moments(orbit.start_state, orbit) + _bending_moments(
+        orbit.states_at(np.array([0.5]))[0], orbit
+    )
 
 
 def _bending_moments(states: Array, orbit: Orbit) -> Array:
@@ -136,13 +138,13 @@ def _bending_moments(states: Array, orbit: Orbit) -> Array:
 
 def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
-) -> ArcPoint:
+) -> BranchCycle:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
     relative accuracy; raises Unsolvable. The cycle has a larger largest tip y than its mirror image."""
-    if breaking.point.orbit is None:
+    if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
-    whole = extended_to_whole_period(breaking.point.orbit)
-    scale = Scale.at_orbit(whole, name, 0.0)
+    whole = extended_to_whole_period(breaking.special_point.orbit)
+    scale = ArcLengthScale.at_orbit(whole, name, 0.0)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
@@ -159,70 +161,66 @@ def first_asymmetric_cycle(
     raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
 
 
-def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
+def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> BranchCycle:
     """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
-
     whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
-    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle.
-    """
+    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle."""
     scale = whole.scale
     border = np.sign(change) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_tolerance, whole.workspace)
+    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, whole.workspace)
     near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
         raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
-    aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
-    mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on_mesh(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
+    aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
+    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
+    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 
 def reaches_symmetric_cycle(
-    start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
+    start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> bool:
-    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles.
-
-    The asymmetry then changes sign or almost vanishes; or the parameter turns back near a symmetry breaking
-    in `known`, because a mesh without the symmetry of the cycle perturbs the crossing of the branches.
-    """
+    """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
+    changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `known`, because
+    a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
     reference = asymmetry(start.orbit)
-    other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.intervals, end.orbit.stages)
+    other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
     lost = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
     if float(asymmetry(other) @ reference) < lost:
         return True
-    turns_back = start.parameter_rate * end.parameter_rate < 0 and _nearly_symmetric(start)
+    turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
     return turns_back and _nearest_symmetry_breaking(start, known, accuracy) >= 0
 
 
-def _relative_asymmetry(start: ArcPoint) -> float:
+def _relative_asymmetry(start: BranchCycle) -> float:
     """Largest nodal asymmetry of a cycle, divided by its largest bending moment."""
     orbit = start.orbit
-    return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.points, orbit)).max())
+    return float(np.abs(asymmetry(orbit)).max() / np.abs(_bending_moments(orbit.all_states, orbit)).max())
 
 
-def _nearly_symmetric(start: ArcPoint) -> bool:
+def _is_nearly_symmetric(start: BranchCycle) -> bool:
     return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry
 
 
 def symmetry_breaking_between(
-    start: ArcPoint, end: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float
+    start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
     does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
     needed. Raises Unsolvable if no shorter step is allowed."""
-    which = _nearest_symmetry_breaking(start, known, accuracy) if _nearly_symmetric(start) else -1
+    which = _nearest_symmetry_breaking(start, known, accuracy) if _is_nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
         return which
-    if arc_length_between(start, end) / 2 < ARC_STEPS.min_length:
+    if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
         raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
     return None
 
 
-def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
+def _nearest_symmetry_breaking(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
     """Index of the symmetry breaking in `known` with the parameter and period at which the extrapolated
     asymmetry of the branch vanishes; -1 if no symmetry breaking in `known` agrees within the tolerances."""
     orbit = start.orbit
@@ -233,13 +231,17 @@ def _nearest_symmetry_breaking(start: ArcPoint, known: Sequence[SymmetryBreaking
     if falls <= 0:
         return -1
     # Parameter and period are quadratic in the asymmetry.
-    period, at = (orbit.period, start.coordinate) + float(present @ present) / falls / 2 * start.tangent[-2:]
+    period, at = (orbit.period, start.parameter_coordinate) + float(
+        present @ present
+    ) / falls / 2 * start.tangent[-2:]
     for which, breaking in enumerate(known):
-        symmetric = breaking.point.orbit
+        symmetric = breaking.special_point.orbit
         if symmetric is None:
             continue
-        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter)
-        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.coordinate - symmetric_at)
+        symmetric_at = symmetric.form.rod.coordinate(start.scale.parameter_name)
+        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
+            start.parameter_coordinate - symmetric_at
+        )
         tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period

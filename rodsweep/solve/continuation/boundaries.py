@@ -15,7 +15,7 @@ Curve = TypeVar("Curve")
 
 
 class BoundaryProblem(Protocol[Curve]):
-    """Interface of `trace_boundaries` to the curves through seed points, which are identified by their
+    """Interface of `trace_boundaries` to the curves through seed points. A seed point is identified by its
     index."""
 
     def next_seed(self, left: Sequence[int]) -> int:
@@ -37,12 +37,13 @@ class BoundaryProblem(Protocol[Curve]):
 
 @dataclass(frozen=True, slots=True)
 class Boundaries(Generic[Curve]):
-    """All curves through the seed points of a plane. agreement: largest distance of a seed point from its
-    curve, divided by the length of a row. untraced: number of seed points that lie on no traced curve."""
+    """All curves through the seed points of a plane. largest_seed_distance: largest distance of a seed point
+    from its curve, divided by the length of a row; 0 if no seed point lies on a curve. untraced_count: number
+    of seed points that lie on no traced curve."""
 
     curves: tuple[Curve, ...]
-    agreement: float
-    untraced: int
+    largest_seed_distance: float
+    untraced_count: int
 
 
 @dataclass(slots=True)
@@ -50,9 +51,10 @@ class BoundarySearch(Generic[Curve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
-    each seed point from the nearest curve so far, by index. missing_items: numbers of the work items whose
-    missing results stopped the search. open_seeds: indices of the seed points that lie on no curve so far and
-    were not tried, without the seed point at which the search stopped.
+    each seed point from the nearest curve so far, by index. curves: curves traced so far, each only once.
+    missing_items: numbers of the work items whose missing results stopped the search. open_seeds: indices of
+    the seed points that lie on no curve so far and were not tried, without the seed point at which the search
+    stopped.
     """
 
     tolerance: float
@@ -72,8 +74,9 @@ class BoundarySearch(Generic[Curve]):
 def trace_boundaries(
     problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
 ) -> BoundarySearch[Curve]:
-    """Traces curves until every seed point lies on a curve or was tried, or until the result of an item of
-    work is missing. seeds: indices of the seed points. agree: `BoundarySearch.tolerance`."""
+    """State of a search after curves were traced until every seed point lies on a curve or was tried, or
+    until the result of a work item is missing. seeds: indices of the seed points. agree:
+    `BoundarySearch.tolerance`."""
     search: BoundarySearch[Curve] = BoundarySearch(agree, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
     while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:

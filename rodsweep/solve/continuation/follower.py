@@ -26,11 +26,11 @@ Solution = TypeVar("Solution")
 
 class StepResult(NamedTuple, Generic[Solution]):
     """The solution one step ahead on a curve. prediction_error: relative distance of the solution from its
-    prediction. cosine: cosine of the angle by which the direction of the curve changes in the step."""
+    prediction. turn_cosine: cosine of the angle by which the direction of the curve changes in the step."""
 
     solution: Solution
     prediction_error: float
-    cosine: float
+    turn_cosine: float
 
 
 class CurveProblem(Protocol[Solution]):
@@ -56,7 +56,7 @@ class CurveProblem(Protocol[Solution]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """Step length control along a curve. Raises ValueError unless `max_ratio` exceeds 1."""
+    """Step length control along a curve. Raises ValueError unless `max_length_ratio` exceeds 1."""
 
     first_length: float
     """First step length."""
@@ -76,39 +76,42 @@ class StepControl:
     """The length of the next step is chosen for this angle, in radians, between successive steps."""
     max_angle: float
     """Largest angle in radians between successive steps; a step with a larger angle fails."""
-    max_ratio: float
+    max_length_ratio: float
     """Largest ratio of a step length to the length of the last accepted step."""
-    min_ratio: float = 0.5
+    min_length_ratio: float = 0.5
     """Smallest ratio of the next chosen step length to the length of the last accepted step; failed steps are
     halved further."""
     max_solutions: int = 5000
     """Maximum number of solutions on a curve."""
-    min_measured: float = 1e-9
+    min_error_or_angle: float = 1e-9
     """Lower limit of the prediction error, and of the angle in radians, in the choice of a step length; this
     limit avoids a division by 0."""
 
     def __post_init__(self) -> None:
-        if not self.max_ratio > 1:
-            raise ValueError(f"max_ratio = {self.max_ratio} must be above 1, so that steps can grow")
+        if not self.max_length_ratio > 1:
+            raise ValueError(
+                f"max_length_ratio = {self.max_length_ratio} must be above 1, so that steps can grow"
+            )
 
     def require_small_errors(self, there: StepResult[Solution]) -> StepResult[Solution]:
         """The result `there` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
         if not there.prediction_error <= self.max_error:
             raise Unsolvable("the corrected solution is too far from its prediction")
-        if not _angle(there.cosine) <= self.max_angle:
+        if not _angle(there.turn_cosine) <= self.max_angle:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
         return there
 
     def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
-        """Length of the next step, from the prediction error and the angle of the last step. length: length
-        of the last, accepted step. there: result of the last step. solutions: number of solutions so far."""
+        """Length of the next step, from the prediction error and the angle of the last step, within the
+        limits of the ratio to the last length and at most `max_length`. length: length of the last, accepted
+        step. there: result of the last step. solutions: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
-        by_distance = (self.target_error / max(there.prediction_error, self.min_measured)) ** (
+        by_distance = (self.target_error / max(there.prediction_error, self.min_error_or_angle)) ** (
             1 / min(self.prediction_order, solutions)
         )
-        by_turn = self.target_angle / max(_angle(there.cosine), self.min_measured)
-        factor = min(max(min(by_distance, by_turn), self.min_ratio), self.max_ratio)
+        by_turn = self.target_angle / max(_angle(there.turn_cosine), self.min_error_or_angle)
+        factor = min(max(min(by_distance, by_turn), self.min_length_ratio), self.max_length_ratio)
         return min(self.max_length, length * factor)
 
 
@@ -120,31 +123,33 @@ def _angle(cosine: float) -> float:
 class CurveStop(Enum):
     """Reason for the end of a curve."""
 
-    margin = "a margin is zero"
+    zero_margin = "a margin is zero"
     closed = "the curve returned to its start"
-    lost = "no solution was found beyond the last solution"
-    full = "the curve has the maximum number of solutions"
+    no_further_solution = "no solution was found beyond the last solution"
+    max_solutions = "the curve has the maximum number of solutions"
 
 
 @dataclass(frozen=True, slots=True)
 class Curve(Generic[Solution]):
-    """Solutions in order from the start of the curve, and the reason for the end of the curve.
+    """Solutions in order from the start of the curve, and the reason for the end of the curve. A closed curve
+    has its start as the last solution, too.
 
-    margin: index of the margin that becomes negative at the end, or -1. If the zero of this margin was
-    located, the last solution is the solution at the zero.
+    margin_index: index of the margin that becomes negative at the end; -1 for another end. If the zero of
+    this margin was located, the last solution is the solution at the zero.
     """
 
     solutions: list[Solution]
-    end: CurveStop
-    margin: int = -1
+    end_reason: CurveStop
+    margin_index: int = -1
 
 
 def advance(
     step: Callable[[float], StepResult[Solution]], length: float, control: StepControl
 ) -> tuple[StepResult[Solution], float]:
     """(next solution of a curve, length of the successful step); raises the error of the last step if no step
-    succeeds. length: first step length, halved after every failed step. step: function that returns the
-    solution one step of a given length ahead, or raises an error of FAILURES."""
+    succeeds. length: first step length, at most `control.max_length`. A step that fails, or whose prediction
+    error or angle is too large, is repeated with half the length, if `control.min_length` allows. step:
+    function that returns the solution one step of a given length ahead, or raises an error of FAILURES."""
     length = min(length, control.max_length)
     while True:
         try:
@@ -171,25 +176,26 @@ def follow_curve(
         try:
             there, length = advance(partial(problem.step, solutions), length, control)
         except FAILURES:
-            return Curve(solutions, CurveStop.lost)
+            return Curve(solutions, CurveStop.no_further_solution)
         ahead = problem.margins(there.solution)
         outside = first_crossed_margin(margins, ahead)
         if outside >= 0:
             last = problem.located_zero(solutions, there.solution, outside)
-            return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
+            return Curve(solutions if last is None else [*solutions, last], CurveStop.zero_margin, outside)
         if problem.is_closed_by(solutions, there.solution):
             # `start` is appended again, so that the curve is closed exactly.
             return Curve([*solutions, start], CurveStop.closed)
         solutions.append(there.solution)
         margins = ahead
         length = control.next_length(length, there, len(solutions))
-    return Curve(solutions, CurveStop.full)
+    return Curve(solutions, CurveStop.max_solutions)
 
 
 def first_crossed_margin(before: Array, after: Array) -> int:
-    """Index of the first margin that becomes negative along a step; -1 if no margin becomes negative. before,
-    after: margins at the two ends of the step, (margins,), between which each margin is interpolated
-    linearly."""
+    """Index of the margin that becomes 0 first along a step, among the margins that decrease to a negative
+    value; -1 if there is no such margin. A margin that is negative before the step counts if it decreases
+    further. before, after: margins at the two ends of the step, (margins,), between which each margin is
+    interpolated linearly."""
     # A negative margin that grows does not end the curve, which enters from beyond this limit.
     falls = (after < 0) & (after < before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.

@@ -15,9 +15,9 @@ from ...arrays import Array
 from ...discretization.stress.form import StressForm
 from ..continuation.follower import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_orbit_matrix
+from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_matrix_within_distance
 from ..orbit.normalised import (
-    normalised,
+    normalised_orbit_values,
     normalised_tangent,
     polynomial_weights,
     predicted_normalised_values,
@@ -36,7 +36,7 @@ class CyclePredictionSettings:
     max_prediction_distance: float = 0.3
     """Largest relative distance of a cycle from its prediction; a cycle at a larger distance is rejected,
     because the cycle may lie on another branch."""
-    max_tangent_distance: float = 1e-2
+    max_matrix_distance: float = 1e-2
     """The tangent is computed from Newton's last matrix if the matrix was assembled at most at this relative
     distance from the solution; otherwise a new matrix is assembled."""
     max_earlier_orbits: int = 4
@@ -49,14 +49,14 @@ class CyclePredictionSettings:
 CYCLE_PREDICTION_SETTINGS = CyclePredictionSettings()
 
 
-PARAMETER_STEPS = StepControl(
+PARAMETER_STEP_CONTROL = StepControl(
     first_length=0.5,
     max_length=1.0,
     min_length=2.0**-6,
     target_error=0.15,
     prediction_order=3,
     max_angle=inf,
-    max_ratio=3.0,
+    max_length_ratio=3.0,
     max_solutions=100,
 )
 """Control of the steps into which a parameter change is divided; a step length is a fraction of this change.
@@ -69,30 +69,31 @@ class CyclePredictor:
     """Polynomial in one parameter that predicts orbits on the branch of the solved orbit `orbit`, by Hermite
     interpolation.
 
-    data: normalised values of orbits or their parameter derivatives, (m, N + 1), N: number of orbit values;
-    the first datum is the derivative at the solved orbit. offsets: parameter coordinate of each datum minus
-    the parameter coordinate of the solved orbit, (m,). orders: 0 for values, 1 for a derivative, (m,).
+    values_and_derivatives: normalised values of orbits, or their parameter derivatives, (m, N + 1), N: number
+    of orbit values; the first row is the derivative at the solved orbit. parameter_offsets: parameter
+    coordinate of each row minus the parameter coordinate of the solved orbit, (m,). derivative_orders: 0 for
+    values, 1 for a derivative, (m,).
     """
 
     orbit: Orbit
-    offsets: Array
-    orders: Array
-    data: Array
+    parameter_offsets: Array
+    derivative_orders: Array
+    values_and_derivatives: Array
 
     @property
-    def tangent(self) -> Array:
+    def normalised_tangent(self) -> Array:
         """Parameter derivative of the normalised values at the solved orbit, (N + 1,)."""
-        return self.data[0]
+        return self.values_and_derivatives[0]
 
     @cached_property
-    def values(self) -> Array:
-        """Values of the solved orbit as in `normalised`, (N + 1,)."""
-        return normalised(self.orbit)
+    def normalised_values(self) -> Array:
+        """Values of the solved orbit as in `normalised_orbit_values`, (N + 1,)."""
+        return normalised_orbit_values(self.orbit)
 
     def weights(self, step: float) -> Array:
-        """Weights, (m,), of the data in the predicted change over a step of the parameter coordinate; see
-        `polynomial_weights`."""
-        weights: Array = polynomial_weights(self.offsets, self.orders, step)
+        """Weights, (m,), of the rows of `values_and_derivatives` in the predicted change over a step of the
+        parameter coordinate; see `polynomial_weights`."""
+        weights: Array = polynomial_weights(self.parameter_offsets, self.derivative_orders, step)
         return weights
 
     def predicted_orbit(self, form: StressForm, name: str) -> Orbit:
@@ -103,7 +104,9 @@ class CyclePredictor:
         positive.
         """
         step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
-        values = predicted_normalised_values(self.values, self.data, self.orders, self.weights(step))
+        values = predicted_normalised_values(
+            self.normalised_values, self.values_and_derivatives, self.derivative_orders, self.weights(step)
+        )
         # The last value, the squared size, goes linearly through 0 at a Hopf point, where cycles end.
         if not values[-1] > 0:
             raise Unsolvable("no cycle is predicted: the branch ends before this parameter value")
@@ -113,14 +116,20 @@ class CyclePredictor:
         )
 
     def on_mesh(self, target: OrbitMesh) -> "CyclePredictor":
-        """This predictor with the solved orbit and all data interpolated to the mesh `target`."""
+        """This predictor with the solved orbit and all values and derivatives interpolated to the mesh
+        `target`."""
         if target == mesh_of(self.orbit):
             return self
-        data = [np.append(carried_change(self.orbit, row[:-1], target), row[-1]) for row in self.data]
-        return replace(self, orbit=target.interpolated_orbit(self.orbit), data=np.array(data))
+        data = [
+            np.append(interpolated_change(self.orbit, row[:-1], target), row[-1])
+            for row in self.values_and_derivatives
+        ]
+        return replace(
+            self, orbit=target.interpolated_orbit(self.orbit), values_and_derivatives=np.array(data)
+        )
 
 
-def carried_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
+def interpolated_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
     (N of the target,)."""
     return target.interpolated_orbit(replace(orbit, values=change)).values
@@ -145,21 +154,23 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     last = before.on_mesh(mesh_of(orbit))
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
     if last is not before:
-        return CyclePredictor(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
-    older = np.flatnonzero(before.orders == 0)[: CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1]
-    places = [0.0, -step, *(before.offsets[older] - step)]
+        return CyclePredictor(
+            orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.normalised_tangent])
+        )
+    older = np.flatnonzero(before.derivative_orders == 0)[: CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1]
+    places = [0.0, -step, *(before.parameter_offsets[older] - step)]
     # All offsets shift by the step, because the newest orbit has the offset 0.
-    data = [tangent, before.values, *before.data[older]]
+    data = [tangent, before.normalised_values, *before.values_and_derivatives[older]]
     orders = [1.0] + [0.0] * (1 + len(older))
     if 1 + len(older) < CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent:
         places.append(-step)
-        data.append(before.tangent)
+        data.append(before.normalised_tangent)
         orders.append(1.0)
     return CyclePredictor(orbit, np.array(places), np.array(orders), np.array(data))
 
 
 def relative_parameter_difference(one: StressForm, other: StressForm, name: str) -> float:
-    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods."""
+    """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods; 0 if a = b."""
     a = one.rod.coordinate(name)
     b = other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
@@ -193,7 +204,7 @@ def orbit_in_steps(
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)
     share = 0.0
-    length = PARAMETER_STEPS.first_length
+    length = PARAMETER_STEP_CONTROL.first_length
     predictor = start
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
@@ -203,9 +214,9 @@ def orbit_in_steps(
         found = orbit_near_prediction(predicted, tolerance, workspace, name)
         return StepResult(found, _prediction_error(predicted, found), 1.0)
 
-    for _ in range(PARAMETER_STEPS.max_solutions):
+    for _ in range(PARAMETER_STEP_CONTROL.max_solutions):
         try:
-            ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEPS)
+            ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEP_CONTROL)
         except Unsolvable as why:
             raise Unsolvable(
                 "the branch of cycles cannot be followed: the branch ends or has a fold"
@@ -214,11 +225,11 @@ def orbit_in_steps(
         if share >= 1.0:
             return ahead.solution
         predictor = predictor_from(
-            with_orbit_matrix(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_tangent_distance, name),
+            with_matrix_within_distance(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_matrix_distance, name),
             predictor,
             name,
         )
-        length = PARAMETER_STEPS.next_length(length, ahead, PARAMETER_STEPS.prediction_order)
+        length = PARAMETER_STEP_CONTROL.next_length(length, ahead, PARAMETER_STEP_CONTROL.prediction_order)
     raise Unsolvable(
-        f"the branch of cycles was not followed to its end in {PARAMETER_STEPS.max_solutions} steps"
+        f"the branch of cycles was not followed to its end in {PARAMETER_STEP_CONTROL.max_solutions} steps"
     )

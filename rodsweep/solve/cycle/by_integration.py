@@ -1,10 +1,9 @@
 """The limit cycle of one rod by time integration alone: task `limit_cycle` with `method: integration`.
 
-ARKIMEX integrates the motion until the motion repeats. Collocation is not used. The characteristic
-determinant gives only the leading eigenvalue of the straight rod, which is stored. No Floquet multiplier is
-computed: a motion that settles on a cycle shows that the cycle is stable in the plane. Period and extrema are
-measured on two settled motions, the second on a finer mesh with a smaller tolerance; the difference of the
-two results gives the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
+The characteristic determinant gives only the leading eigenvalue of the straight rod, which is stored. No
+Floquet multiplier is computed: a motion that settles on a cycle shows that the cycle is stable in the plane.
+Period and extrema are measured on two settled motions, the second on a finer mesh with a smaller tolerance;
+the difference gives the error estimate. Near a Hopf point a motion may not settle within the allowed periods.
 """
 
 from collections import deque
@@ -29,22 +28,22 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
-from .accuracy.integration_errors import errors_of_pair
+from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
 from .settled_motion import NoCycleFound, SettledMotion
 from .status import MarchedStatus
-from .straight_rod import straight_rod
-from .transient.from_motion import form_states
+from .straight_rod import straight_rod_stability
+from .transient.from_motion import collocation_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURN_SETTINGS,
     early_end,
+    not_settled_text,
     repetition,
     section_crossings,
     tip_angle_row,
     until_returns,
-    why_not_settled,
 )
 
 
@@ -66,39 +65,43 @@ class _MarchedMotion:
         self.limiting_rod = rod
         self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        tolerance = MARCHING_SETTINGS.local_tolerance * request.accuracy
+        tolerance = MARCHING_SETTINGS.local_tolerance_ratio * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
-        self.beam = self._beam()
-        self.mode = leading_mode(self.beam)
+        self.beam = self._new_beam()
+        self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
-        w = straight_rod(self.limiting_rod).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
+        w = straight_rod_stability(
+            self.limiting_rod
+        ).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
         straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
         try:
-            z = relax_fast_components(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
+            z = relax_fast_components(
+                self.beam, self.request.amplitude * self.leading_mode.z.real, self.leading_mode.period
+            )
             settled = self._integrate_until_settled(z)
-            path = self._path(settled)
+            path = self._measured_path(settled)
             in_limit = self.rod != self.limiting_rod
             share = MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
             enough = self.request.accuracy * share
             for _ in range(MARCHING_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
-                path = self._path(settled)
-                errors = errors_of_pair(
-                    before, path, MARCHING_SETTINGS.settled_distance * self.request.accuracy
+                path = self._measured_path(settled)
+                errors = errors_of_two_integrations(
+                    before, path, MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy
                 )
-                if errors.largest_error <= enough:
+                if errors.largest_weighted_error <= enough:
                     break
             if in_limit:
-                errors = self._limit_errors(settled, path, errors)
+                errors = self._errors_in_limit(settled, path, errors)
         except NoCycleFound as end:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, path, errors)
 
-    def _beam(self) -> Beam:
+    def _new_beam(self) -> Beam:
         return Beam(self.rod, self.mesh)
 
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
@@ -106,25 +109,27 @@ class _MarchedMotion:
         before = self.beam
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
         self.scheme = replace(
-            self.scheme, tolerance=MARCHING_SETTINGS.tolerance_ratio * self.scheme.tolerance
+            self.scheme, tolerance=MARCHING_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
-        self.beam = self._beam()
-        z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.z))
-        return self._integrate_until_settled(relax_fast_components(self.beam, z, self.mode.period))
+        self.beam = self._new_beam()
+        z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.state))
+        return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
 
     def _integrate_until_settled(self, z: Array) -> SettledMotion:
-        """Integrates from the state z, (unknowns,), until the motion has settled, or raises NoCycleFound."""
+        """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
-        step = self.mode.period / MARCHING_SETTINGS.first_steps_per_period
+        step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
         last = nan
         rate = 0.0
         most = self.request.most_periods
         while self.return_count < most:
             report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
-            run = self._run(
+            run = self._integrate(
                 z,
-                MARCHING_SETTINGS.max_run_duration * MARCHING_SETTINGS.returns_per_test * self.mode.period,
+                MARCHING_SETTINGS.max_run_duration_ratio
+                * MARCHING_SETTINGS.returns_per_test
+                * self.leading_mode.period,
                 step,
                 until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
@@ -134,12 +139,12 @@ class _MarchedMotion:
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
-            if self.mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
+            if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            noise = MARCHING_SETTINGS.return_noise * self.scheme.tolerance
+            noise = MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance
             # Below the noise the quotient of two distances is not the contraction rate per return.
             if last > noise:
                 rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING_SETTINGS.returns_per_test)
@@ -147,11 +152,11 @@ class _MarchedMotion:
                 rate = 0.0 if distance <= noise else 1.0
             last = distance
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-            if distance <= MARCHING_SETTINGS.settled_distance * self.request.accuracy * (1 - rate):
+            if distance <= MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy * (1 - rate):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(MarchedStatus.not_settled, why_not_settled(self.return_count, len(past), last))
+        raise NoCycleFound(MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), last))
 
-    def _run(
+    def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
     ) -> Trajectory:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
@@ -173,7 +178,7 @@ class _MarchedMotion:
             left = float(rough - run.times[before])
             z = run.states[before]
             if left > 0:
-                z = self._run(z, left, left, RunLimit()).states[-1]
+                z = self._integrate(z, left, left, RunLimit()).states[-1]
             rates = self.beam.state_derivative(z[None])[0]
             # A Newton step in time from the interpolated crossing: theta is smooth there.
             late = float(row @ z) / float(row @ rates)
@@ -181,34 +186,37 @@ class _MarchedMotion:
             states[i] = z - late * rates
         return times, states
 
-    def _path(self, settled: SettledMotion) -> CyclePath:
+    def _measured_path(self, settled: SettledMotion) -> CyclePath:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
-        returns = settled.turns + 2
-        limit = until_returns(tip_angle_row(self.beam), settled.z, returns)
-        tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measured_tolerance)
-        duration = MARCHING_SETTINGS.max_run_duration * returns * self.mode.period
+        returns = settled.returns_per_period + 2
+        limit = until_returns(tip_angle_row(self.beam), settled.state, returns)
+        tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
+        duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.leading_mode.period
         scheme = replace(self.scheme, tolerance=tolerance)
-        run = self._run(settled.z, duration, settled.step, limit, scheme)
+        run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]
-        if len(times) <= settled.turns:
+        if len(times) <= settled.returns_per_period:
             raise NoCycleFound(
                 MarchedStatus.not_settled, f"the tip stops returning after {self.return_count} returns"
             )
-        period = float(times[settled.turns] - times[0])
+        period = float(times[settled.returns_per_period] - times[0])
         spline = CubicSpline(run.times, run.states)
-        stages = MARCHING_SETTINGS.measured_stages
+        stages = MARCHING_SETTINGS.measurement_stages
         states = spline(
-            times[0] + period * node_times(MARCHING_SETTINGS.measured_intervals * settled.turns, stages)
+            times[0]
+            + period
+            * node_times(
+                MARCHING_SETTINGS.measurement_intervals_per_return * settled.returns_per_period, stages
+            )
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(
-            Orbit.from_states(form, NO_SYMMETRY, period, form_states(self.beam, form, states), stages)
+            Orbit.from_states(form, NO_SYMMETRY, period, collocation_states(self.beam, form, states), stages)
         )
 
-    def _limit_errors(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
-        """`errors` plus the error of integrating a nearby rod instead of a limiting rod.
-
-        Raises NoCycleFound."""
+    def _errors_in_limit(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
+        """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
+        NoCycleFound."""
         known = path.orbit.form.rod
         limit = self.limiting_rod
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
@@ -217,9 +225,9 @@ class _MarchedMotion:
             name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
         }
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
-        self.beam = self._beam()
-        z = relax_fast_components(self.beam, settled.z, self.mode.period)
-        more = errors_of_pair(path, self._path(self._integrate_until_settled(z)), 0.0)
+        self.beam = self._new_beam()
+        z = relax_fast_components(self.beam, settled.state, self.leading_mode.period)
+        more = errors_of_two_integrations(path, self._measured_path(self._integrate_until_settled(z)), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,
             errors.amplitude_error + more.amplitude_error,
@@ -229,13 +237,14 @@ class _MarchedMotion:
 
     def _with_measures(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
         """The outcome `straight` with the status, measures and errors of the settled cycle of `path`."""
-        enough = errors.largest_error <= self.request.accuracy
+        enough = errors.largest_weighted_error <= self.request.accuracy
         cycle = replace(
             straight,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
             message=""
             if enough
-            else f"the cycle's errors, up to {errors.largest_error:.1e}, exceed the requested accuracy",
+            else f"the cycle's errors, up to {errors.largest_weighted_error:.1e}, exceed "
+            "the requested accuracy",
             periods=self.return_count,
         )
         return with_measures(cycle, self.request, path, measures_of(path), errors)

@@ -18,13 +18,13 @@ from .second_state import SecondState
 class MotionShapes:
     """Shapes of the rod at equidistant times from the start of a motion, for an animation.
 
-    shapes: x, y in L, (2, frames, nodes). step: time between two shapes, in tau2. is_whole: False if the
-    maximum number of time steps or of shapes cut off the end of the motion.
+    shapes: x, y in L, (2, frames, nodes). time_step: time between two shapes, in tau2. is_complete: False if
+    the maximum number of time steps or of shapes cut off the end of the motion.
     """
 
-    step: float
+    time_step: float
     shapes: Array
-    is_whole: bool
+    is_complete: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class CycleRequest:
     """Number of shapes per return of the tip that are stored for an animation; 0 for no animation."""
 
     @property
-    def is_traced(self) -> bool:
+    def is_recorded(self) -> bool:
         """Whether the tip's path or the rod's shapes are stored from the start of the motion on; the motion
         is then always integrated."""
         return self.transient > 0 or self.frames > 0
@@ -67,7 +67,8 @@ class CycleRequest:
 @dataclass(frozen=True, kw_only=True)
 class Cycle:
     """Outcome of the task limit_cycle for one rod, with the quantities of the cycle; unknown quantities are
-    NaN or None.
+    NaN or None. message: for the user, or "". seconds: computing time. elements, order: number and order of
+    the elements of the mesh, 0 if unknown.
 
     For a motion on a torus only the multipliers of the unstable cycle inside the torus are known. Time series
     over a period start where the tip's y rises through its mean.
@@ -95,7 +96,7 @@ class Cycle:
     """Modulus of the largest nontrivial Floquet multiplier."""
     multipliers: Complex | None = None
     """Largest nontrivial Floquet multipliers by descending modulus, padded with NaN,
-    (MULTIPLIER_LIST.length,)."""
+    (MULTIPLIER_LIST_SETTINGS.length,)."""
     trivial_multiplier_error: float = nan
     """Modulus of the difference between the computed trivial multiplier and 1."""
     tip: Array | None = None
@@ -124,13 +125,13 @@ def with_measures(
     amplitudes = padded_or_cut(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
-        elements=mesh.elements,
+        elements=mesh.element_count,
         order=mesh.order,
         measures=replace(measures, harmonic_amplitude=amplitudes),
         errors=errors,
-        tip=path.tip(request.samples) if request.samples else None,
+        tip=path.tip_from_mean_crossing(request.samples) if request.samples else None,
         energy=path.energy_and_powers(request.samples) if request.samples else None,
-        shape=path.shapes(request.shapes, request.nodes) if request.shapes else None,
+        shape=path.shapes_from_mean_crossing(request.shapes, request.nodes) if request.shapes else None,
     )
 
 

@@ -20,22 +20,22 @@ from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import newton, with_orbit_matrix
+from ..orbit.newton import newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
 from .along_parameter import orbit_in_steps, predictor_from
-from .straight_rod import straight_rod
-from .transient.motion_mesh import coarse_mesh
+from .straight_rod import straight_rod_stability
+from .transient.motion_mesh import coarse_mesh_along_branch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HopfStartSettings:
     """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
 
-    scan_step: float = 0.07
+    force_scan_ratio: float = 0.07
     """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
     min_force: float = 1e-2
     """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
@@ -45,27 +45,27 @@ class HopfStartSettings:
     at this point. Bisection ends at this relative width of the interval of the force."""
     max_newton_steps: int = 15
     """Maximum number of Newton steps to a Hopf point."""
-    converged_growth: float = 4.0
-    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth times the error estimate
-    of w."""
-    converged_step: float = 1e-15
-    """Newton's method for the Hopf point has also converged if |step of F| <= converged_step |F|."""
+    converged_growth_in_errors: float = 4.0
+    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth_in_errors times the
+    error estimate of w."""
+    converged_force_step: float = 1e-15
+    """Newton's method for the Hopf point has also converged if |step of F| <= converged_force_step |F|."""
     normal_form_accuracy: float = 1e-3
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
-    start_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
+    start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
     """Relative distances of the force above the Hopf point at which Newton's method starts from the normal
     form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
     normal form has an error of 25 percent at the first distance, of 10 percent at the second."""
     squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""
-    max_direct_distance: float = 1e-2
+    max_direct_force_distance: float = 1e-2
     """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
     form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
-    intervals: int = 8
+    coarse_intervals: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
-    stages: int = 3
+    coarse_stages: int = 3
     """Number of collocation stages per interval of the coarse mesh."""
     branch_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
@@ -85,11 +85,8 @@ class HopfPointBelow:
 
 def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
     """The leading eigenvalue of the straight rod, in 1/tau2 with Im >= 0; raises Unsolvable if the spectrum
-    fails.
-
-    near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search.
-    """
-    found = straight_rod(rod, None if near is None else np.array([near]), certify=False)
+    fails. near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search."""
+    found = straight_rod_stability(rod, None if near is None else np.array([near]), certify=False)
     if isnan(found.error):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
     return found.w
@@ -97,12 +94,13 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     """The nearest Hopf point below the force of the rod at which the leading mode becomes unstable; None if
-    no such Hopf point is found. Raises Unsolvable."""
+    not found. Raises Unsolvable if a leading eigenvalue is unknown, or if the unstable mode does not
+    oscillate."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:
         # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
-        lower = F * (1 - HOPF_START_SETTINGS.scan_step)
+        lower = F * (1 - HOPF_START_SETTINGS.force_scan_ratio)
         below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _hopf_point_between(rod, (lower, below), (F, above))
@@ -149,9 +147,9 @@ def _newton_hopf_point(
         if not (slope.real and isfinite(slope.real)):
             return None
         step = -w.real / slope.real
-        if abs(w.real) <= HOPF_START_SETTINGS.converged_growth * error or abs(
+        if abs(w.real) <= HOPF_START_SETTINGS.converged_growth_in_errors * error or abs(
             step
-        ) <= HOPF_START_SETTINGS.converged_step * abs(F):
+        ) <= HOPF_START_SETTINGS.converged_force_step * abs(F):
             return HopfPointBelow(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
@@ -172,10 +170,10 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces")
-    if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_distance) >= rod.F:
+    if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
-    coarse = replace(form, mesh=coarse_mesh(rod))
-    for distance in HOPF_START_SETTINGS.start_distances:
+    coarse = replace(form, mesh=coarse_mesh_along_branch(rod))
+    for distance in HOPF_START_SETTINGS.start_force_distances:
         try:
             return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
@@ -183,7 +181,7 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     raise why
 
 
-def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
+def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """Approximate orbit, by the normal form, to which a motion from the leading mode converges near a Hopf
     point.
 
@@ -195,12 +193,12 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
     slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
-    if not w.real <= HOPF_START_SETTINGS.max_direct_distance * rate:
+    if not w.real <= HOPF_START_SETTINGS.max_direct_force_distance * rate:
         raise Unsolvable(f"F = {form.rod.F:g} is too far from a Hopf point for the normal form")
     normal = _normal_form(form, w)
     if not normal.is_supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_distance * rate / -normal.c.real:
+    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_force_distance * rate / -normal.c.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
     if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second pair of modes may be unstable, so the normal form is not valid")
@@ -215,13 +213,13 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
 
 def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
-    raises Unsolvable."""
+    raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.branch_tolerance
-    found = with_orbit_matrix(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    found = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.squared_y_and_frequency(F)[0]
     least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
-    if not least < found.orbit.form.tip_coordinates(found.orbit.start)[1] ** 2 / squared < most:
+    if not least < found.orbit.form.tip_coordinates(found.orbit.start_state)[1] ** 2 / squared < most:
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
         return found.orbit
@@ -237,7 +235,7 @@ def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:
 def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
     """The orbit of the rod in `form` with the motion of a normal form. amplitude: largest tip y, in L.
     frequency: in 1/tau2."""
-    times = node_times(HOPF_START_SETTINGS.intervals, HOPF_START_SETTINGS.stages)
+    times = node_times(HOPF_START_SETTINGS.coarse_intervals, HOPF_START_SETTINGS.coarse_stages)
     X = normal.cycle_states(amplitude, np.pi * times)
     S, V = normal.form.stresses_and_velocities(X)
     source = normal.form.mesh
@@ -245,4 +243,6 @@ def orbit_of_amplitude(normal: NormalForm, form: StressForm, amplitude: float, f
     states = form.layout.state(
         interpolate_stress(form.rod, S, source, target), V @ interpolation_matrix(source, target).T
     )
-    return Orbit.from_states(form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.stages)
+    return Orbit.from_states(
+        form, REFLECTION, 2 * np.pi / frequency, states, HOPF_START_SETTINGS.coarse_stages
+    )

@@ -29,7 +29,7 @@ from .neighbour import Neighbour, cycle_from_neighbour
 from .second_state import second_state
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
-from .straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
+from .straight_rod import StraightRodStability, eigenvalues_to_follow, straight_rod_stability
 from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_meshes
 from .transient.shape_trace import ShapeTrace
 from .transient.torus import classify_quasiperiodic
@@ -77,17 +77,17 @@ def solve_cycle(
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
-        stability = straight_rod(rod, start.eigenvalues if start else None)
-        cycle = _solve_or_raise(rod, request, stability, start, along, memory)
-        return _with_second_state(rod, _checked_by_spectrum(cycle, stability), stability)
+        stability = straight_rod_stability(rod, start.eigenvalues if start else None)
+        cycle = _solve_cycle_or_raise(rod, request, stability, start, along, memory)
+        return _with_second_state(rod, _with_status_by_spectrum(cycle, stability), stability)
 
     return outcome_or_failure(solve, failed)
 
 
-def _solve_or_raise(
+def _solve_cycle_or_raise(
     rod: Rod,
     request: CycleRequest,
-    stability: StraightRod,
+    stability: StraightRodStability,
     neighbour: Neighbour | None,
     along: str | None,
     workspace: NewtonWorkspace,
@@ -95,26 +95,26 @@ def _solve_or_raise(
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
     if request.start == "hopf":
-        return _cycle_from_hopf(_form_of_motion(rod), request, straight, stability, workspace)
+        return _cycle_from_hopf(_form_on_motion_mesh(rod), request, straight, stability, workspace)
     found = None
     if neighbour is not None and along is not None:
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
         with suppress(Unsolvable):
             found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
-    elif neighbour is None and not request.is_traced:
-        found = stable_cycle_near_hopf(_form_of_motion(rod), w, request, along, workspace)
+    elif neighbour is None and not request.is_recorded:
+        found = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, along, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), found, request)
-        return _with_chain_state(cycle, found, neighbour, along, request.accuracy, stability)
+        return _with_neighbour(cycle, found, neighbour, along, request.accuracy, stability)
     by_mode = neighbour is None and request.tip is None
     decays = reason_for_decay(rod, w, request.amplitude) if by_mode else ""
-    if decays and not request.is_traced:
+    if decays and not request.is_recorded:
         return replace(straight, message=decays)
     unstable = found if found is not None and found.stable is False else None
     for mesh in motion_meshes(rod, request.transient > 0):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
         transient = Transient(StressForm(rod, mesh), stability, request, along, unstable, workspace)
-        end = _cycle_from_motion(transient, request, neighbour)
+        end = _outcome_of_motion(transient, request, neighbour)
         if not transient.unsolved_message:
             break
     cycle = _with_motion_data(straight, transient, end, request)
@@ -124,10 +124,10 @@ def _solve_or_raise(
     if end.cycle is None:
         return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
     cycle = _with_cycle_quantities(cycle, end.cycle, request)
-    return _with_chain_state(cycle, end.cycle, None, along, request.accuracy, stability)
+    return _with_neighbour(cycle, end.cycle, None, along, request.accuracy, stability)
 
 
-def _form_of_motion(rod: Rod) -> StressForm:
+def _form_on_motion_mesh(rod: Rod) -> StressForm:
     """Discretization of a rod on the first mesh for the integration of its motion."""
     return StressForm(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.accuracy))
 
@@ -140,8 +140,8 @@ def _with_motion_data(
     trace = transient.record
     return replace(
         straight,
-        periods=end.periods,
-        elements=transient.form.mesh.elements,
+        periods=end.return_count,
+        elements=transient.form.mesh.element_count,
         order=transient.form.mesh.order,
         transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
         motion_shapes=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
@@ -151,16 +151,16 @@ def _with_motion_data(
 def _recorded_shapes(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
     """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
     returns = [time for time, _ in transient.past_returns]
-    return trace.motion(returns, transient.mode.period, request.frames, request.nodes)
+    return trace.motion_shapes(returns, transient.leading_mode.period, request.frames, request.nodes)
 
 
-def _with_chain_state(
+def _with_neighbour(
     cycle: Cycle,
     found: RefinedCycle,
     before: Neighbour | None,
     along: str | None,
     accuracy: float,
-    stability: StraightRod,
+    stability: StraightRodStability,
 ) -> Cycle:
     """The outcome `cycle` with the data of the solved cycle `found` from which the next rod of a chain
     starts; unchanged outside a chain (`along` is None). before: data of the previous rod, or None. along:
@@ -172,15 +172,15 @@ def _with_chain_state(
     return replace(cycle, neighbour=Neighbour.from_cycle(found, before, along, accuracy, eigenvalues))
 
 
-def _checked_by_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
+def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> Cycle:
     """The outcome `cycle`, with the status `not_settled` and a reason instead of the status `straight` unless
     the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
         return cycle
-    return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability)
+    return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability_text)
 
 
-def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
+def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRodStability) -> Cycle:
     """The outcome `cycle` with the second stable state of the rod, as far as known, and a message about this
     state."""
     state, F, why = second_state(rod, cycle.status, stability.stable)
@@ -192,7 +192,7 @@ def _cycle_from_hopf(
     form: StressForm,
     request: CycleRequest,
     straight: Cycle,
-    stability: StraightRod,
+    stability: StraightRodStability,
     workspace: NewtonWorkspace,
 ) -> Cycle:
     """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
@@ -212,7 +212,7 @@ def _cycle_from_hopf(
     return _with_cycle_quantities(replace(straight, status=status, message=message), found, request)
 
 
-def _cycle_from_motion(
+def _outcome_of_motion(
     transient: Transient, request: CycleRequest, neighbour: Neighbour | None
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
@@ -221,10 +221,10 @@ def _cycle_from_motion(
     if request.tip is not None:
         start = equilibrium_at_tip(beam, *request.tip)
     elif neighbour is None:
-        start = request.amplitude * transient.mode.z.real
+        start = request.amplitude * transient.leading_mode.z.real
     else:
         orbit = neighbour.predictor.orbit
-        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start))
+        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start_state))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 
@@ -244,6 +244,6 @@ def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
         cycle,
         multiplier=found.largest_multiplier,
         multipliers=mu,
-        trivial_multiplier_error=found.trivial_error,
+        trivial_multiplier_error=found.trivial_multiplier_error,
         errors=replace(cycle.errors, multiplier_error=found.errors.multiplier_error),
     )

@@ -8,28 +8,28 @@ class MarchingSettings:
     """Settings for a limit cycle by time integration alone: tolerances, convergence to the cycle, comparison
     of two integrations."""
 
-    local_tolerance: float = 0.01
+    local_tolerance_ratio: float = 0.01
     """Local tolerance of the integrator divided by the requested accuracy; the errors of a cycle reach ten
     times the local tolerance."""
-    tolerance_ratio: float = 0.2
+    successive_tolerance_ratio: float = 0.2
     """Local tolerance of an integration divided by the tolerance of the previous integration."""
     order_increase: int = 2
     """Increase of the element order from an integration to the next, finer integration."""
     max_comparisons: int = 3
     """Maximum number of comparisons of two successive integrations of increasing accuracy."""
-    settled_distance: float = 0.1
+    settled_distance_ratio: float = 0.1
     """A motion has settled if its relative distance from the cycle is at most this fraction of the
     accuracy."""
-    return_noise: float = 10.0
+    return_noise_ratio: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
     first_steps_per_period: int = 1000
     """Period of the leading mode divided by the first time step of a motion."""
-    max_run_duration: int = 3
+    max_run_duration_ratio: int = 3
     """Longest duration of a run divided by (number of returns * period of the leading mode)."""
     returns_per_test: int = 5
     """Number of returns of the tip between two tests whether the motion repeats."""
-    pair_factor: float = 2.0
+    pair_error_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
     pair_error_share_in_limit: float = 0.5
     """For a limiting rod, such as a rod with k1 = inf, integrations are refined until their error is at most
@@ -39,13 +39,13 @@ class MarchingSettings:
     """A limiting rod is approximated by an integrated rod and, for the error estimate, by a second rod that
     is farther from the limit by this factor. Cycles change in proportion to the distance from the limit, so
     with the factor 2 the difference of the two cycles is the error of the nearer rod."""
-    max_measured_tolerance: float = 2e-8
+    max_measurement_tolerance: float = 2e-8
     """Largest local tolerance of the integration from which the cycle is measured. With a larger tolerance,
     the time steps (20 per period at an accuracy of 1e-3) are too long for cubic interpolation: time
     derivatives had errors of 1 to 5 % (`test_marched.py`)."""
-    measured_stages: int = 3
+    measurement_stages: int = 3
     """Number of collocation stages per interval of the orbit from which the cycle is measured."""
-    measured_intervals: int = 48
+    measurement_intervals_per_return: int = 48
     """Number of time intervals, per return of the tip, of the orbit from which the cycle is measured."""
 
 

@@ -20,14 +20,19 @@ from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.newton import ConvergedOrbit, newton, with_orbit_matrix
+from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
-from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
+from .accuracy.refinement import (
+    cycle_with_calibrated_errors,
+    cycle_with_measured_errors,
+    max_matrix_distance,
+    newton_tolerance,
+)
 from .along_parameter import (
     CyclePredictor,
     orbit_in_steps,
@@ -41,15 +46,15 @@ from .along_parameter import (
 class NextMeshSettings:
     """Settings for the choice of the next mesh in a chain of cycles."""
 
-    max_error_of_same_mesh: float = 0.9
+    max_error_ratio_of_same_mesh: float = 0.9
     """A mesh is sufficient for the next cycle if the error of the present cycle is at most this fraction of
     the accuracy."""
-    max_new_mesh_cost: float = 0.8
+    max_new_mesh_cost_ratio: float = 0.8
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
     at most this."""
-    max_new_mesh_cost_when_calibrated: float = 0.5
-    """This limit replaces `max_new_mesh_cost` if the errors were measured at the present cycle: measuring the
-    errors of a new mesh costs as much as three cycles."""
+    max_new_mesh_cost_ratio_if_measured: float = 0.5
+    """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the present cycle:
+    measuring the errors of a new mesh costs as much as three cycles."""
 
 
 NEXT_MESH_SETTINGS = NextMeshSettings()
@@ -57,7 +62,7 @@ NEXT_MESH_SETTINGS = NextMeshSettings()
 
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
 """Value of `Neighbour.eigenvalues` if the eigenvalues are not known."""
-Arrays = dict[str, Array]
+CheckpointArrays = dict[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,10 +91,10 @@ class Neighbour:
         """Data of the cycle `found`, which was solved with its tangent. before: data of the previous rod of
         the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as in
         `Neighbour`."""
-        branch = predictor_from(found.converged, before.predictor if before else None, name)
+        branch = predictor_from(found.converged_orbit, before.predictor if before else None, name)
         return cls(branch, *_next_mesh_and_calibration(found, before, name, accuracy), eigenvalues)
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> CheckpointArrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
         orders (m,), eigenvalues (n,), meshes, symmetry, rod with its build, and calibration; N, m: as in
         `CyclePredictor`."""
@@ -102,23 +107,23 @@ class Neighbour:
             "symmetric": np.array(orbit.is_symmetric),
             "mesh": mesh_of(orbit).as_array,
             "orbit": orbit.values,
-            "places": branch.offsets,
-            "orders": branch.orders,
-            "data": branch.data,
+            "places": branch.parameter_offsets,
+            "orders": branch.derivative_orders,
+            "data": branch.values_and_derivatives,
             "next_mesh": self.next_mesh.as_array,
             "eigenvalues": self.eigenvalues,
         } | self.calibration.arrays()
 
     @classmethod
-    def from_arrays(cls, arrays: Arrays) -> "Neighbour":
+    def from_arrays(cls, arrays: CheckpointArrays) -> "Neighbour":
         """The neighbour from the named arrays that `Neighbour.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["mesh"])
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
         rod = Rod(**parameters, build=Build.from_text(bytes(arrays["build"]).decode()))
         symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
-        form = StressForm(rod, mesh.grid)
-        orbit = Orbit(form, symmetry, mesh.intervals, mesh.stages, arrays["orbit"])
+        form = StressForm(rod, mesh.space_mesh)
+        orbit = Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"])
         branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
         return cls(branch, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex))
 
@@ -131,14 +136,14 @@ def _next_mesh_and_calibration(
     parameter. accuracy: requested relative accuracy."""
     present = mesh_of(found.orbit)
     known = found.calibration
-    fits = found.errors.largest_error <= NEXT_MESH_SETTINGS.max_error_of_same_mesh * accuracy
-    if known.reach and not fits:
+    fits = found.errors.largest_weighted_error <= NEXT_MESH_SETTINGS.max_error_ratio_of_same_mesh * accuracy
+    if known.parameter_change and not fits:
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
-        return present, known.rates_only
+        return present, known.with_outdated_errors
     share = inf if not fits else _max_cost_ratio(found, before, name)
     planned = known.cheapest_mesh(accuracy) if share else present
     if share and planned.cost <= share * present.cost:
-        return planned, known.rates_only
+        return planned, known.with_outdated_errors
     return present, known
 
 
@@ -147,12 +152,12 @@ def _max_cost_ratio(found: RefinedCycle, before: "Neighbour | None", name: str) 
     remains in use. before: data of the previous rod, or None. name: varied parameter."""
     if before is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
-        return NEXT_MESH_SETTINGS.max_new_mesh_cost
-    if not found.calibration.reach:
-        return NEXT_MESH_SETTINGS.max_new_mesh_cost_when_calibrated
+        return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
+    if not found.calibration.parameter_change:
+        return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_if_measured
     step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
     # If the errors must be measured again anyway, another mesh needs no additional measurement.
-    return 0.0 if found.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost
+    return 0.0 if found.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
 
 
 def cycle_from_neighbour(
@@ -174,10 +179,10 @@ def cycle_from_neighbour(
         found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     )
     if known.is_valid:
-        cycle = with_calibrated_errors(known, found, accuracy)
-        if cycle.errors.largest_error <= accuracy:
+        cycle = cycle_with_calibrated_errors(known, found, accuracy)
+        if cycle.errors.largest_weighted_error <= accuracy:
             return cycle
-    return calibrated_cycle(found, known, accuracy, name)
+    return cycle_with_measured_errors(found, known, accuracy, name)
 
 
 def _cycle_on_next_mesh(
@@ -195,4 +200,4 @@ def _cycle_on_next_mesh(
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.predictor.on_mesh(target.coarser), form, name, tolerance, workspace)
         found = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
-    return with_orbit_matrix(found, matrix_distance(accuracy), name)
+    return with_matrix_within_distance(found, max_matrix_distance(accuracy), name)

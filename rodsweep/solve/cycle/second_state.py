@@ -16,8 +16,10 @@ from .status import CycleStatus
 
 
 class SecondState(IntEnum):
-    """Second stable state of a rod, as far as known; the result file stores the value. straight: the straight
-    rod. cycle_possible: a cycle may exist, because a subcritical Hopf point is near."""
+    """Second stable state of a rod, as far as known; the result file stores the value. not_known: the search
+    failed, or the stability of the straight rod is not known. none_known: no second stable state is known.
+    straight: the straight rod. cycle_possible: a cycle may exist, because a subcritical Hopf point is
+    near."""
 
     not_known = -1
     none_known = 0

@@ -8,12 +8,12 @@ from .status import MarchedStatus
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that has settled on a cycle. z: present state, (unknowns,). turns: number of returns of the
-    tip to theta = 0 per period. step: last time step, in tau2."""
+    """A motion that has settled on a cycle. z: present state, (unknowns,). returns_per_period: number of
+    returns of the tip to theta = 0 per period. last_time_step: last time step, in tau2."""
 
-    z: Array
-    turns: int
-    step: float
+    state: Array
+    returns_per_period: int
+    last_time_step: float
 
 
 class NoCycleFound(Exception):

@@ -16,7 +16,7 @@ from ..point import Unsolvable
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest
-from .hopf_start import small_orbit
+from .hopf_start import orbit_near_hopf
 from .status import CycleStatus
 from .transient.transient_settings import TRANSIENT_SETTINGS
 
@@ -44,11 +44,15 @@ def stable_cycle_near_hopf(
     tangent of the cycle is computed, or None. workspace: memory of Newton's matrices.
     """
     try:
-        found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, workspace, along)
+        found = refined_cycle(orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, along)
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
-    return found if settled and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance else None
+    return (
+        found
+        if settled and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
+        else None
+    )
 
 
 def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:

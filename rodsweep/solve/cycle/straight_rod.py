@@ -26,7 +26,7 @@ class StraightRodSettings:
     the leading eigenvalue w. The task spectrum has the same criterion."""
     accuracy: float = 1e-9
     """Relative accuracy of the leading eigenvalue."""
-    chain_eigenvalues: int = 6
+    followed_eigenvalue_count: int = 6
     """Number of eigenvalues of a nonuniform arm that are followed along a chain of rods. Near most Hopf
     points, with this many eigenvalues, a few values of the characteristic determinant prove which eigenvalue
     leads; a count of the eigenvalues takes three times as long."""
@@ -39,18 +39,18 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True, slots=True)
-class StraightRod:
+class StraightRodStability:
     """Leading eigenvalue w of the straight rod, Im w >= 0, and its error estimate, in 1/tau2; w and error are
     NaN if w is not known.
 
-    message: reason why w is not known. followed: eigenvalues that were followed from a similar rod, (n,), the
-    leading eigenvalue first; empty if w was found by a search.
+    message: reason why w is not known. followed_eigenvalues: eigenvalues that were followed from a similar
+    rod, (n,), the leading eigenvalue first; empty if w was found by a search.
     """
 
     w: complex
     error: float
     message: str = ""
-    followed: Complex = field(default_factory=NO_EIGENVALUES.copy, compare=False)
+    followed_eigenvalues: Complex = field(default_factory=NO_EIGENVALUES.copy, compare=False)
 
     @property
     def stable(self) -> bool | None:
@@ -71,7 +71,7 @@ class StraightRod:
         return 0.0 if self.stable is None else self.w.real
 
     @property
-    def unproved_stability(self) -> str:
+    def unproved_stability_text(self) -> str:
         """Message that the straight rod is not proved stable although its integrated motion decays; "" if the
         straight rod is stable."""
         if self.stable:
@@ -84,7 +84,9 @@ class StraightRod:
         return f"{rate}, so the straight rod is unstable, although the integrated motion decays"
 
 
-def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) -> StraightRod:
+def straight_rod_stability(
+    rod: Rod, near: Complex | None = None, certify: bool = True
+) -> StraightRodStability:
     """The leading eigenvalue of a rod with its error estimate.
 
     near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
@@ -93,22 +95,23 @@ def straight_rod(rod: Rod, near: Complex | None = None, certify: bool = True) ->
     request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
     leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
     if leader is not None:
-        return StraightRod(leader.w, leader.error, followed=leader.eigenvalues)
+        return StraightRodStability(leader.w, leader.error, followed_eigenvalues=leader.eigenvalues)
     found = solve_spectrum(rod, request)
     if isnan(found.error_estimate[0]):
-        return StraightRod(complex(nan, nan), nan, found.message)
+        return StraightRodStability(complex(nan, nan), nan, found.message)
     w = complex(found.eigenvalues[0])
-    return StraightRod(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))
+    return StraightRodStability(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))
 
 
-def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
+def eigenvalues_to_follow(rod: Rod, found: StraightRodStability) -> Complex:
     """Eigenvalues of `rod`, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
-    can be followed. found: leading eigenvalue of `rod`."""
-    if len(found.followed):
-        return found.followed
+    can be followed: the followed eigenvalues of `found`, if any; else several eigenvalues of a nonuniform
+    rod, if their search succeeds; else the leading eigenvalue of `found` alone. found: stability of `rod`."""
+    if len(found.followed_eigenvalues):
+        return found.followed_eigenvalues
     if not rod.uniform:
         request = SpectrumRequest(
-            STRAIGHT_ROD_SETTINGS.chain_eigenvalues, STRAIGHT_ROD_SETTINGS.accuracy, True
+            STRAIGHT_ROD_SETTINGS.followed_eigenvalue_count, STRAIGHT_ROD_SETTINGS.accuracy, True
         )
         w = solve_spectrum(rod, request).eigenvalues
         if np.isfinite(w).all():

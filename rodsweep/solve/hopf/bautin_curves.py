@@ -38,8 +38,8 @@ class BautinEnd(IntEnum):
 
 END_BY_STOP_REASON = {
     CurveStop.closed: BautinEnd.closed,
-    CurveStop.lost: BautinEnd.not_found,
-    CurveStop.full: BautinEnd.list_full,
+    CurveStop.no_further_solution: BautinEnd.not_found,
+    CurveStop.max_solutions: BautinEnd.list_full,
 }
 """`BautinEnd` for each `CurveStop` except `margin`, which means an end of a parameter's range."""
 
@@ -226,9 +226,9 @@ def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_
             places += [*_requested_points_between(space, here, there), there]
         except (*FAILURES, ValueError):
             return places, BautinEnd.not_found
-    if curve.end is CurveStop.margin:
-        return places, BautinEnd.range_end if curve.margin // 2 == 2 else BautinEnd.plane_edge
-    return places, END_BY_STOP_REASON[curve.end]
+    if curve.end_reason is CurveStop.zero_margin:
+        return places, BautinEnd.range_end if curve.margin_index // 2 == 2 else BautinEnd.plane_edge
+    return places, END_BY_STOP_REASON[curve.end_reason]
 
 
 def _report_point_count(places: Sequence[_CurvePoint]) -> None:

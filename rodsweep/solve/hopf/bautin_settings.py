@@ -11,7 +11,7 @@ BAUTIN_STEPS = StepControl(
     min_length=1e-4,
     max_error=0.2,
     max_angle=inf,
-    max_ratio=1.5,
+    max_length_ratio=1.5,
     max_solutions=2000,
 )
 """Step length control along a curve. Each parameter's range has length 1; the prediction error is divided by

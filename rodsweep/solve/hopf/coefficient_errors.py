@@ -169,7 +169,7 @@ def _coefficients_with_errors(
         amplitude_coefficient_error=(slope_off / abs(slope.real) + c_off / abs(c.real) + force_error) / 2,
         frequency_slope=b,
         frequency_slope_error=b_off / abs(b) if b else math.inf,
-        elements=normal.form.mesh.elements,
+        elements=normal.form.mesh.element_count,
         order=normal.form.mesh.order,
     )
 

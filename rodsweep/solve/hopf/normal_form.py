@@ -160,7 +160,7 @@ def elements_for_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
     if not rod.standard:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
-    return with_odd_order(Elements(equal_edges(resolution.elements), resolution.order))
+    return with_odd_order(Elements(equal_edges(resolution.element_count), resolution.order))
 
 
 def with_odd_order(elements: Elements) -> Elements:
@@ -187,7 +187,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
     `accuracy` and `NORMAL_FORM_SETTINGS.found`, or if the mesh has too many nodes.
     """
-    nodes = elements.nodes
+    nodes = elements.node_count
     limit = NORMAL_FORM_SETTINGS.max_nodes if rod.standard else NORMAL_FORM_SETTINGS.max_arm_nodes
     if nodes > limit:
         raise Unsolvable(

@@ -78,7 +78,9 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        placeholder_vectors(Resolution(form.mesh.elements, form.mesh.order), len(eigenvalues), len(points)),
+        placeholder_vectors(
+            Resolution(form.mesh.element_count, form.mesh.order), len(eigenvalues), len(points)
+        ),
         right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
         deformation=form.strains(X, points),
         left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),

@@ -133,7 +133,7 @@ class CallbackWorkspace:
     """Arrays and context record used by the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
-        n = plane_layout(mesh.nodes).unknowns
+        n = plane_layout(mesh.node_count).unknowns
         self.base = np.zeros(n)
         self._mesh = mesh  # the callbacks read the mesh's arrays by address, so the mesh must stay alive
         self._arrays = mesh.matrices._asdict() | {
@@ -147,7 +147,7 @@ class CallbackWorkspace:
         }
         self._vectors = [PETSc.Vec().createSeq(n, comm=PETSc.COMM_SELF) for _ in range(2)]
         self.context = np.zeros((), CONTEXT_DTYPE)
-        self._set_context_fields({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
+        self._set_context_fields({"nodes": mesh.node_count + 1, "unknowns": n, "matrix_due": AT_BASE})
         self._set_context_fields({name: array.ctypes.data for name, array in self._arrays.items()})
 
     def _set_context_fields(self, values: Mapping[str, float]) -> None:

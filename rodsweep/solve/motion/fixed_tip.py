@@ -84,7 +84,7 @@ class _BentRod:
         self.mesh = beam.mesh
         self._straight_beam = beam
         self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
-        size = beam.mesh.nodes + 1
+        size = beam.mesh.node_count + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]

@@ -103,7 +103,7 @@ class Integrator:
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
         self.workspace = CallbackWorkspace(mesh)
-        unknowns = plane_layout(mesh.nodes).unknowns
+        unknowns = plane_layout(mesh.node_count).unknowns
         self.vector = PETSc.Vec().createSeq(unknowns, comm=PETSc.COMM_SELF)
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()

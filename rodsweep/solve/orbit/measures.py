@@ -1,8 +1,9 @@
 """Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-At the starts of the intervals, which are equidistant in time, strains and strain rates have the full order of
-the collocation. The trigonometric polynomial through strains and strain rates converges spectrally; extrema
-are computed from this polynomial. Means are integrals by the quadrature of the collocation.
+At the starts of all intervals except the last, which are equidistant in time, strains and strain rates have
+the full order of the collocation. The trigonometric polynomial through strains and strain rates converges
+spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature of the
+collocation.
 """
 
 from dataclasses import dataclass, field
@@ -37,9 +38,9 @@ class Measures:
     """Scalar measures and harmonics of a cycle, with the names in the result file; NaN if unknown.
 
     period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L, and theta, in rad.
-    harmonic_amplitude: harmonics of the tip's y from the first, in L. injection_..., dissipation_...: mean of
-    the power, and rms of its fluctuation, in k3/(L tau2). energy_imbalance: mean injection/mean dissipation -
-    1. least_stretch: smallest h1.
+    harmonic_amplitude: amplitudes of the harmonics of the tip's y from the first, (harmonics,), in L.
+    injection_..., dissipation_...: mean of the power, and rms of its fluctuation, in k3/(L tau2).
+    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1 at the nodes.
     """
 
     period: float = nan
@@ -59,15 +60,15 @@ class Measures:
 
 
 class CyclePath:
-    """Motion of an orbit over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
-    `coefficients` and `samples` of its `TipPath`."""
+    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
+    as in `TipPath`."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
         grid = orbit.form.mesh
-        self._ends = np.ascontiguousarray(orbit.regular_states)
+        self._equidistant_states = np.ascontiguousarray(orbit.equidistant_states)
         matrices = tip_matrices(grid)
-        self._path = tip_path(self._ends, orbit.period, orbit.semidiscrete, matrices)
+        self._path = tip_path(self._equidistant_states, orbit.period, orbit.semidiscrete_equations, matrices)
         self.tip_coefficients = self._path.tip_coefficients
         self.tip_samples = self._path.tip_samples
 
@@ -119,52 +120,52 @@ class CyclePath:
         return int(self.tip_samples[:, 1].argmax()) / len(self.tip_samples)
 
     @cached_property
-    def start_phase(self) -> float:
+    def mean_crossing_time(self) -> float:
         """Time at which the tip's y rises through its mean, counted from the start of the orbit, in
         periods."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
-    def tip(self, samples: int) -> Array:
-        """(x, y, theta) of the tip at `samples` equidistant times of a period from `start_phase`, (3,
+    def tip_from_mean_crossing(self, samples: int) -> Array:
+        """(x, y, theta) of the tip at `samples` equidistant times of a period from `mean_crossing_time`, (3,
         samples)."""
-        return self._series_from_start_phase(self.tip_coefficients, samples).T
+        return self._series_from_mean_crossing(self.tip_coefficients, samples).T
 
     def energy_and_powers(self, samples: int) -> Array:
         """(elastic energy U, injected power, dissipated power) at `samples` equidistant times of a period
-        from `start_phase`, (3, samples)."""
+        from `mean_crossing_time`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
-        theta = self.tip(samples)[2]
-        dx, dy, _ = self._series_from_start_phase(times[:, None] * self.tip_coefficients, samples).T
+        theta = self.tip_from_mean_crossing(samples)[2]
+        dx, dy, _ = self._series_from_mean_crossing(times[:, None] * self.tip_coefficients, samples).T
         # Power of the follower force: F along -e1 of the tip, times the tip's velocity.
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
-        U = self.orbit.form.elastic_energy(self._ends)
-        power = np.empty((2, len(self._ends)))
-        write_powers(self._ends, power, self.orbit.semidiscrete)
+        U = self.orbit.form.elastic_energy(self._equidistant_states)
+        power = np.empty((2, len(self._equidistant_states)))
+        write_powers(self._equidistant_states, power, self.orbit.semidiscrete_equations)
         rates = (power[0] - power[1]) * period
         if self.orbit.is_symmetric:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             rates = np.tile(rates, 2)
         c = hermite_coefficients(U, rates)
-        U, change = self._series_from_start_phase(np.stack([c, times[: len(c)] * c], axis=1), samples).T
+        U, change = self._series_from_mean_crossing(np.stack([c, times[: len(c)] * c], axis=1), samples).T
         # The energy balance holds to rounding error: dissipation is injection minus dU/dt.
         return np.stack([U, injection, injection - change])
 
-    def shapes(self, count: int, nodes: int) -> Array:
-        """(x, y, theta) of the rod at `count` equidistant times of a period from `start_phase` and at `nodes`
-        Lobatto nodes, (3, count, nodes)."""
-        strains = self._series_from_start_phase(self.strain_coefficients, count).swapaxes(0, 1)
+    def shapes_from_mean_crossing(self, count: int, nodes: int) -> Array:
+        """(x, y, theta) of the rod at `count` equidistant times of a period from `mean_crossing_time` and at
+        `nodes` Lobatto nodes, (3, count, nodes)."""
+        strains = self._series_from_mean_crossing(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
         return shape_from_strains(
             grid, np.ascontiguousarray(strains), np.zeros(3)
         ) @ _matrix_to_lobatto_nodes(grid, nodes)
 
-    def _series_from_start_phase(self, c: Complex, count: int) -> Array:
-        """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `start_phase`, (count,
-        ...). c: Fourier coefficients c_k, (coefficients, ...)."""
-        turns = np.exp(2j * np.pi * self.start_phase * np.arange(len(c)))
+    def _series_from_mean_crossing(self, c: Complex, count: int) -> Array:
+        """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `mean_crossing_time`,
+        (count, ...). c: Fourier coefficients c_k, (coefficients, ...)."""
+        turns = np.exp(2j * np.pi * self.mean_crossing_time * np.arange(len(c)))
         return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
@@ -180,7 +181,7 @@ def measures_of(path: CyclePath) -> Measures:
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
     mean = power_means_and_least_stretch(
-        np.ascontiguousarray(orbit.states), orbit.collocation.weights, orbit.semidiscrete
+        np.ascontiguousarray(orbit.stage_states), orbit.collocation.weights, orbit.semidiscrete_equations
     )
     return Measures(
         period=orbit.period,

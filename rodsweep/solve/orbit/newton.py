@@ -18,15 +18,16 @@ class OrbitNewtonSettings:
     """Settings of Newton's method for a periodic orbit, with or without a parameter among the unknowns."""
 
     new_matrix_ratio: float = 0.1
-    """A new Newton matrix is assembled and eliminated if the ratio of successive Newton steps exceeds this
-    number."""
+    """A new Newton matrix is assembled and eliminated if the relative change in a Newton step exceeds this
+    number times the change in the previous step; without a parameter among the unknowns, also if it exceeds
+    this number itself."""
     longest_step: float = 0.5
     """Largest relative change of state, period or parameter in one iteration. If the parameter is unknown, a
     longer step is a failure. Otherwise a longer step is shortened; the iteration fails if a step after the
     first is longer than this number and longer than the step before."""
     max_iterations: int = 12
     """Maximum number of iterations; slower convergence means that there is no orbit near the start."""
-    quadratic_error: float = 1e5
+    quadratic_error_factor: float = 1e5
     """Bound of the relative error after a Newton step with the matrix at the iterate, divided by the squared
     relative step. Nearly neutral orbits come close to this bound."""
 
@@ -34,7 +35,7 @@ class OrbitNewtonSettings:
 ORBIT_NEWTON_SETTINGS = OrbitNewtonSettings()
 
 
-class HasMultipliers(Protocol):
+class NewtonMatrix(Protocol):
     """Newton's matrix of an orbit with a method for the Floquet multipliers. tangent: derivative of the orbit
     values with respect to a parameter coordinate, (N,), or None. workspace: memory of the matrix."""
 
@@ -52,7 +53,7 @@ class ConvergedOrbit:
     `orbit` from the iterate at which `matrix` was assembled."""
 
     orbit: Orbit
-    matrix: HasMultipliers
+    matrix: NewtonMatrix
     matrix_distance: float
 
     @property
@@ -93,7 +94,9 @@ def newton(
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
         left = (
-            ORBIT_NEWTON_SETTINGS.quadratic_error * change**2 if fresh else change * min(1.0, change / last)
+            ORBIT_NEWTON_SETTINGS.quadratic_error_factor * change**2
+            if fresh
+            else change * min(1.0, change / last)
         )
         if left <= tolerance:
             return ConvergedOrbit(orbit, matrix, distance)
@@ -111,7 +114,9 @@ def newton(
     )
 
 
-def with_orbit_matrix(found: ConvergedOrbit, distance: float, parameter: str | None = None) -> ConvergedOrbit:
+def with_matrix_within_distance(
+    found: ConvergedOrbit, distance: float, parameter: str | None = None
+) -> ConvergedOrbit:
     """The orbit `found`, after one more Newton step if its matrix was assembled at a relative distance of
     more than `distance` from the orbit. parameter: as in `newton`."""
     if found.matrix_distance <= distance:
@@ -127,7 +132,7 @@ def newton_step(found: ConvergedOrbit, parameter: str | None = None) -> Converge
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
-def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
+def multipliers_and_trivial_error(found: ConvergedOrbit) -> tuple[Complex, float]:
     """Returns (multipliers, distance): nontrivial Floquet multipliers by descending modulus, (rank - 1,), and
     the distance of the computed trivial multiplier from 1."""
     values = found.matrix.multipliers()
@@ -137,7 +142,7 @@ def multipliers_of(found: ConvergedOrbit) -> tuple[Complex, float]:
     return others, float(abs(values[trivial] - 1))
 
 
-def multiplier_change(multipliers: Complex, others: Complex) -> float:
+def largest_multiplier_difference(multipliers: Complex, others: Complex) -> float:
     """Error of the largest multiplier, from the multipliers on two meshes: the distance of `multipliers[0]`
     from the nearest of `others`, or the difference of the two largest moduli, whichever is larger; 0 if a
     list is empty.
@@ -157,4 +162,4 @@ def multiplier_change(multipliers: Complex, others: Complex) -> float:
 def relative_change(orbit: Orbit, step: Array) -> float:
     """Largest relative change of n2, m3 and the period in the Newton step `step`, (N,): the largest change of
     each quantity, divided by the largest modulus of this quantity; inf if the step is not finite."""
-    return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))
+    return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.node_count))

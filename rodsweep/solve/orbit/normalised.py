@@ -38,11 +38,11 @@ def reflection_arrays(orbit: Orbit) -> ReflectionArrays:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_reflection_arrays(layout: StateLayout, mesh: Mesh) -> ReflectionArrays:
     return ReflectionArrays(
-        REFLECTION.is_reversed(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
+        REFLECTION.reversal_mask(layout), layout.state_with_stresses({"m3": mesh.quadrature[:-1]})
     )
 
 
-def normalised(orbit: Orbit) -> Array:
+def normalised_orbit_values(orbit: Orbit) -> Array:
     """Normalised values of an orbit, (N + 1,): the orbit values, in which all components that change sign
     under the reflection are divided by the size of the orbit; at the end, the squared size."""
     values: Array = normalised_values(orbit.values, reflection_arrays(orbit))
@@ -58,7 +58,8 @@ def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
 
 @compiled_for_vectors
 def normalised_values(values: Array, r: ReflectionArrays) -> Array:
-    """Compiled `normalised`: normalised values, (N + 1,), of the orbit with the given `values`, (N,)."""
+    """Compiled `normalised_orbit_values`: normalised values, (N + 1,), of the orbit with the given `values`,
+    (N,)."""
     squared = moment_inner_product(values, values, r)
     out = np.empty(len(values) + 1)
     out[:-1] = values
@@ -122,7 +123,7 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
 
 @compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
-    """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
+    """Compiled `tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
     values and derivative of the orbit values, (N,)."""
     squared = moment_inner_product(values, values, r)
     change = 2 * moment_inner_product(values, tangent, r)

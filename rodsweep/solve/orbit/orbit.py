@@ -23,8 +23,8 @@ from .symmetry import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of the rod and space mesh of `form`, on K time intervals with s collocation stages
-    each.
+    """A periodic orbit of the rod and space mesh of `form`, with K = `interval_count` time intervals and s =
+    `stage_count` collocation stages in each interval.
 
     values: states at t = 0 and at the stages of all intervals, in order, then the period in tau2, (N,), N =
     (1 + K s) n + 1, n: unknowns of a state.
@@ -32,8 +32,8 @@ class Orbit:
 
     form: StressForm
     symmetry: Symmetry
-    intervals: int
-    stages: int
+    interval_count: int
+    stage_count: int
     values: Array
 
     @classmethod
@@ -50,54 +50,55 @@ class Orbit:
         return float(self.values[-1])
 
     @property
-    def points(self) -> Array:
+    def all_states(self) -> Array:
         """States at t = 0 and at the stages of all intervals, (1 + K s, n)."""
-        return self.values[:-1].reshape(1 + self.intervals * self.stages, -1)
+        return self.values[:-1].reshape(1 + self.interval_count * self.stage_count, -1)
 
     @property
-    def start(self) -> Array:
+    def start_state(self) -> Array:
         """State at t = 0, (n,)."""
-        return self.points[0]
+        return self.all_states[0]
 
     @property
-    def states(self) -> Array:
+    def stage_states(self) -> Array:
         """States at the stages of each interval, (K, s, n)."""
-        return self.points[1:].reshape(self.intervals, self.stages, -1)
+        return self.all_states[1:].reshape(self.interval_count, self.stage_count, -1)
 
     @property
-    def states_at_starts(self) -> Array:
+    def states_at_interval_starts(self) -> Array:
         """States at the starts of the intervals, (K, n)."""
-        return self.points[: -1 : self.stages]
+        return self.all_states[: -1 : self.stage_count]
 
     @property
-    def regular_states(self) -> Array:
+    def equidistant_states(self) -> Array:
         """States at the starts of all intervals except the last, which are equidistant in time, (K - 1,
         n)."""
-        return self.states_at_starts[:-1]
+        return self.states_at_interval_starts[:-1]
 
     @property
     def collocation(self) -> Collocation:
-        return radau_method(self.stages)
+        return radau_method(self.stage_count)
 
     @property
-    def duration(self) -> float:
+    def solved_duration(self) -> float:
         """Duration of the solved part of the period in tau2: half the period or the whole period."""
         return self.period / self.symmetry.period_parts
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether the solved part is shorter than the period (`symmetry.parts` > 1)."""
+        """Whether the solved part is shorter than the period (`symmetry.period_parts` > 1)."""
         return self.symmetry.period_parts > 1
 
     @property
-    def semidiscrete(self) -> SemidiscreteEquations:
-        return _semidiscrete(self.form, self.symmetry, self.intervals, self.stages)
+    def semidiscrete_equations(self) -> SemidiscreteEquations:
+        return _semidiscrete(self.form, self.symmetry, self.interval_count, self.stage_count)
 
     @property
-    def size(self) -> float:
-        """Size of the motion: largest energy norm of the states over the period, in units of sqrt(energy)."""
+    def max_energy_norm(self) -> float:
+        """Largest energy norm of the states at the equidistant times, in units of sqrt(energy): the size of
+        the motion."""
         # The norm is the same in the part of the period that follows by symmetry.
-        return float(self.form.energy_norm(self.regular_states).max())
+        return float(self.form.energy_norm(self.equidistant_states).max())
 
     def plus_change(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit with the values `values` + `share` * `change`; change: (N,)."""
@@ -105,14 +106,14 @@ class Orbit:
 
     def states_at(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
-        at: Array = time_evaluation_matrix((self.intervals, self.stages), times) @ self.points
+        at: Array = time_evaluation_matrix((self.interval_count, self.stage_count), times) @ self.all_states
         return at
 
     def on_mesh(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
         """The orbit interpolated to the space mesh `grid` and to `intervals` time intervals with `stages`
         stages each."""
-        points = self.points
-        source = self.intervals, self.stages
+        points = self.all_states
+        source = self.interval_count, self.stage_count
         target = intervals, stages
         if target != source:
             points = time_interpolation_matrix(source, target) @ points
@@ -121,8 +122,8 @@ class Orbit:
         return replace(
             self,
             form=replace(self.form, mesh=grid),
-            intervals=intervals,
-            stages=stages,
+            interval_count=intervals,
+            stage_count=stages,
             values=np.append(points.ravel(), self.period),
         )
 

@@ -8,7 +8,7 @@ from ...model.rod import Rod
 from .measures import CyclePath
 from .orbit import Orbit
 
-PERIOD_CHANGE, LARGEST_Y, WORST_EXTREMUM, WHOLE_PATH = range(4)
+PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
 """Indices into the array that `path_differences` returns."""
 
 
@@ -30,7 +30,7 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 def rod_difference(one: Orbit, other: Orbit) -> float:
     """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
-    orbit `other`."""
+    orbit `other`; absolute for a parameter of `other` that is 0."""
     a, b = (_rod_coordinates(orbit.form.rod) for orbit in (one, other))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())

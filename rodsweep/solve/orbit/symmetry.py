@@ -45,7 +45,7 @@ class Symmetry:
         returned: Array = self.matrix(layout).T @ flow
         return returned
 
-    def is_reversed(self, layout: StateLayout) -> Array:
+    def reversal_mask(self, layout: StateLayout) -> Array:
         """1 for components of a state that change sign under S, 0 for components that S leaves unchanged,
         (unknowns,)."""
         return (1 - self.apply(np.ones(layout.unknowns), layout)) / 2

@@ -45,12 +45,12 @@ COEFFICIENT_TAIL_SETTINGS = CoefficientTailSettings()
 @dataclass(frozen=True, slots=True)
 class Tails:
     """Tails of an orbit. space: size of the last Legendre coefficients in space, divided by the largest
-    coefficient. time: size of the last coefficient in time, divided by the largest value. decay: decrease of
-    the natural logarithm of the coefficients in space per order."""
+    coefficient. time: size of the last coefficient in time, divided by the largest value. space_decay:
+    decrease of the natural logarithm of the coefficients in space per order."""
 
     space: float
     time: float
-    decay: float
+    space_decay: float
 
 
 def tails_of(orbit: Orbit) -> Tails:
@@ -87,26 +87,26 @@ def _space_coefficients(orbit: Orbit) -> Array:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, over all elements and the ends
     of all time intervals, (3, p + 1), p: order of the elements."""
     grid = orbit.form.mesh
-    ends = np.ascontiguousarray(orbit.states[:, -1])
+    ends = np.ascontiguousarray(orbit.stage_states[:, -1])
     if not orbit.form.has_continuous_stresses:
-        c = np.abs(_stresses_by_element(orbit, ends) @ _legendre_analysis_on_element(grid.order))
+        c = np.abs(_stresses_by_element(orbit, ends) @ _analysis_matrix_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
-    return largest_coefficients(ends, grid.elements, _legendre_analysis_on_element(grid.order))
+    return largest_coefficients(ends, grid.element_count, _analysis_matrix_on_element(grid.order))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _legendre_analysis_on_element(order: int) -> Array:
+def _analysis_matrix_on_element(order: int) -> Array:
     """Matrix, (p + 1, p + 1): a row of values at the nodes of an element of order p times this matrix is the
     row of Legendre coefficients."""
-    return np.ascontiguousarray(legendre_analysis(2 * uniform_mesh(1, order).positions - 1).T)
+    return np.ascontiguousarray(legendre_analysis_matrix(2 * uniform_mesh(1, order).positions - 1).T)
 
 
 @compiled_for_vectors
 def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, (3, p + 1), p: order of the
     elements, over all elements and all `states`, (m, n). elements: number of elements. analysis: as returned
-    by `_legendre_analysis_on_element`."""
+    by `_analysis_matrix_on_element`."""
     size = len(analysis)
     nodes = elements * (size - 1)
     largest = np.zeros((PLANE_COMPONENT_COUNT, size))
@@ -132,12 +132,14 @@ def smooth_tails(orbit: Orbit) -> Array:
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
     grid = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
-        fields = _stresses_by_element(orbit, orbit.points)
-        ends = np.linalg.norm(fields @ _last_analysis_columns(grid.order), axis=-1).max(axis=(1, 2))
+        fields = _stresses_by_element(orbit, orbit.all_states)
+        ends = np.linalg.norm(fields @ _last_columns_of_analysis_matrix(grid.order), axis=-1).max(axis=(1, 2))
         largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
         in_space = float((ends / largest).max())
     else:
-        in_space = largest_tail_in_space(orbit.points, grid.elements, _last_analysis_columns(grid.order))
+        in_space = largest_tail_in_space(
+            orbit.all_states, grid.element_count, _last_columns_of_analysis_matrix(grid.order)
+        )
     return np.array([in_space, _tail_in_time(orbit)])
 
 
@@ -149,11 +151,11 @@ def _stresses_by_element(orbit: Orbit, states: Array) -> Array:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _last_analysis_columns(order: int) -> Array:
-    """Last columns of `_legendre_analysis_on_element`, (p + 1,
+def _last_columns_of_analysis_matrix(order: int) -> Array:
+    """Last columns of `_analysis_matrix_on_element`, (p + 1,
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients`)."""
     return np.ascontiguousarray(
-        _legendre_analysis_on_element(order)[:, -COEFFICIENT_TAIL_SETTINGS.last_coefficients :]
+        _analysis_matrix_on_element(order)[:, -COEFFICIENT_TAIL_SETTINGS.last_coefficients :]
     )
 
 
@@ -189,7 +191,9 @@ def largest_tail_in_space(points: Array, elements: int, analysis: Array) -> floa
 
 def _tail_in_time(orbit: Orbit) -> float:
     """Largest relative tail in time of n1, n2 and m3 (see `largest_tail_in_time`)."""
-    return largest_tail_in_time(orbit.points, _last_coefficient_weights(orbit.stages), orbit.form.mesh.nodes)
+    return largest_tail_in_time(
+        orbit.all_states, _last_coefficient_weights(orbit.stage_count), orbit.form.mesh.node_count
+    )
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
@@ -197,7 +201,7 @@ def _last_coefficient_weights(stages: int) -> Array:
     """Weights, (s + 1,), with which the values at the start and the stages of an interval give its last
     Legendre coefficient."""
     nodes: Array = np.append(0.0, radau_method(stages).nodes)
-    row: Array = legendre_analysis(2 * nodes - 1)[-1]
+    row: Array = legendre_analysis_matrix(2 * nodes - 1)[-1]
     return row
 
 
@@ -231,6 +235,6 @@ def largest_tail_in_time(points: Array, row: Array, nodes: int) -> float:
     return float(worst)
 
 
-def legendre_analysis(nodes: Array) -> Array:
+def legendre_analysis_matrix(nodes: Array) -> Array:
     """Matrix, (n, n), that maps values at `nodes`, (n,), in [-1, 1] to Legendre coefficients."""
     return np.linalg.inv(legendre.legvander(nodes, len(nodes) - 1))

@@ -37,7 +37,7 @@ class UniformSolver(ShiftInvertSolver):
     """Krylov-Schur solver for all uniform rods on one mesh of equal elements."""
 
     def __init__(self, resolution: Resolution):
-        self.pencil: Pencil = assemble_pencil(resolution.elements, resolution.order)
+        self.pencil: Pencil = assemble_pencil(resolution.element_count, resolution.order)
         super().__init__(self.pencil, self.pencil.nodal_masses)
         if self.dense:
             self.dense_terms = self.pencil.dense_terms()

@@ -243,7 +243,7 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
         error_estimate=errors_with_rounding(found.w, found.error, problem.rod)[: request.modes],
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
-        elements=best.candidates.mesh.elements,
+        elements=best.candidates.mesh.element_count,
         order=best.candidates.mesh.order,
         vectors=vectors_on_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),
         message=message,

@@ -88,7 +88,7 @@ class PencilPattern(Protocol):
         """Material coordinate u of all nodes, including the clamp, (nodes + 1,)."""
 
     @property
-    def nodes(self) -> int:
+    def node_count(self) -> int:
         """Number of nodes without the clamp."""
 
     @property
@@ -116,7 +116,7 @@ class ShiftInvertSolver(ABC):
     """
 
     def __init__(self, pattern: PencilPattern, mass: Array):
-        self.nodes = pattern.nodes
+        self.nodes = pattern.node_count
         n = pattern.unknowns
         package = sparse_package()
         self.dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
@@ -135,10 +135,10 @@ class ShiftInvertSolver(ABC):
             [n, n], csr=(self.row_starts, self.row_starts[:-1], np.ones(n)), comm=PETSc.COMM_SELF
         )
         first = np.zeros(n)
-        distance = (1 - pattern.positions[1:]) * pattern.nodes / KRYLOV_SETTINGS.first_vector_width
-        first[: pattern.nodes] = np.exp(-(distance**2)) * np.sqrt(mass)
-        first[pattern.nodes : 2 * pattern.nodes] = (
-            KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.nodes]
+        distance = (1 - pattern.positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.first_vector_width
+        first[: pattern.node_count] = np.exp(-(distance**2)) * np.sqrt(mass)
+        first[pattern.node_count : 2 * pattern.node_count] = (
+            KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.node_count]
         )
         self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)

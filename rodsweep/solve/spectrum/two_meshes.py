@@ -182,7 +182,7 @@ def _spectrum_of_mesh(
         eigenvalues=w[:modes],
         error_estimate=error[:modes],
         unstable_count=unstable if known else -1,
-        elements=mesh.elements,
+        elements=mesh.element_count,
         order=mesh.order,
         vectors=vectors_on_nodes(problem, request, mesh, vectors),
     )

@@ -58,7 +58,7 @@ class DiagramCurves:
         cached. number: number of the row.
         """
         if len(self.special) < MAX_KEPT_ROWS:
-            self.special[number] = row.special
+            self.special[number] = row.special_points
         return row
 
     def initial_data(self, items: "SpecialBoundaries", chosen: Sequence[int]) -> "dict[int, Any]":
@@ -176,7 +176,9 @@ class DiagramCurves:
         found = curves_through(plane, [seed for seed in seeds if seed is not None])
         # If a list is full, its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
-        return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
+        return replace(
+            found, untraced_count=found.untraced_count + int(cut[np.isfinite(rows)].clip(min=0).sum())
+        )
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
         """Special points of the branches of the row `number`, cached or computed again."""

@@ -55,7 +55,7 @@ def curve_record(
     values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
         declared, "fold", "fold_", folds
     )
-    values |= {"curve_agreement": found.agreement, "curves_untraced": found.untraced}
+    values |= {"curve_agreement": found.largest_seed_distance, "curves_untraced": found.untraced_count}
     return _filled_variables(declared, values | more)
 
 
@@ -106,7 +106,7 @@ def cycle_curve_record(
     """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
-        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
+        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing_points)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
         for (beside, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
             named = dict(zip(plane, (point.at, point.row_value), strict=True)) | beside | reasons
@@ -114,8 +114,8 @@ def cycle_curve_record(
     declared = cycle_curve_variables(*plane)
     values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
-        "cycle_curve_agreement": found.agreement,
-        "cycle_curves_untraced": found.untraced,
+        "cycle_curve_agreement": found.largest_seed_distance,
+        "cycle_curves_untraced": found.untraced_count,
     }
     return _filled_variables(declared, values)
 
@@ -162,9 +162,12 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
-    rows = [outcome_values(variables, point, prefix="cycle_special_", names=own) for point in result.special]
+    rows = [
+        outcome_values(variables, point, prefix="cycle_special_", names=own)
+        for point in result.special_points
+    ]
     values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL)
-    values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
+    values |= {"cycle_special_count": len(result.special_points), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
@@ -216,4 +219,4 @@ def with_hopf_ends(
 
     known = [point for curve in criticalities for point in curve.points]
     curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)
-    return replace(found, curves=curves, untraced=found.untraced + unstored)
+    return replace(found, curves=curves, untraced_count=found.untraced_count + unstored)

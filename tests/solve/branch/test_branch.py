@@ -15,7 +15,7 @@ from rodsweep.solve import seldom_used_kernels
 from rodsweep.solve.branch import branch_start, branches, following
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
@@ -52,7 +52,7 @@ def first_branch(rod, stop, accuracy=1e-7):
     """The branch from the first Hopf point alone."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, stop).crossings[0]
-    hopf = hopf_point(Path(rod, "F"), crossing)
+    hopf = hopf_branch_start(Path(rod, "F"), crossing)
     return follow_branch(
         0, BranchLimits([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace())
     )
@@ -78,12 +78,12 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     assert 199.16 < fold.at < 199.1602
     assert fold.error < 1e-9 * fold.at
     unstable = [point.unstable_count for point in curve.points]
-    turn = fold.after + 1
+    turn = fold.index_of_cycle_before + 1
     assert unstable == [0] * turn + [1] * (len(unstable) - turn)
     assert all(point.at_error <= 1e-7 for point in curve.points)
     steep = [abs(slope) > 100 for slope in slopes(curve)]
     assert all(
-        point.errors.largest_error <= 1e-7
+        point.errors.largest_weighted_error <= 1e-7
         for point, is_steep in zip(curve.points, steep, strict=True)
         if not is_steep
     )
@@ -182,7 +182,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     assert kinds(curve) == ["hopf", "torus", "end"]
     torus = only(curve, SpecialKind.torus)
     assert torus.error < 1e-9 * torus.at
-    after = torus.after + 1
+    after = torus.index_of_cycle_before + 1
     assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
@@ -243,14 +243,14 @@ def test_rod_without_a_hopf_point_has_no_branch():
 
 
 def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
-    made = following.next_point
+    made = following.next_cycle
 
     def lost(here, accuracy):
-        if here.coordinate > 75:
+        if here.parameter_coordinate > 75:
             raise Unsolvable("there is no cycle near on the branch")
         return made(here, accuracy)
 
-    monkeypatch.setattr(following, "next_point", lost)
+    monkeypatch.setattr(following, "next_cycle", lost)
     solved.cache_clear()
     found = solved(SHORT)
     solved.cache_clear()
@@ -323,8 +323,8 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     monkeypatch.setattr(branch_start, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
-    orbit = first_cycle(hopf_point(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
-    assert float(orbit.form.tip_coordinates(orbit.start)[1]) == pytest.approx(smallest, rel=1e-3)
+    orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
+    assert float(orbit.form.tip_coordinates(orbit.start_state)[1]) == pytest.approx(smallest, rel=1e-3)
 
 
 @survey_only
@@ -334,7 +334,7 @@ def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_
     rod = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
     crossing = pair_crossings(Path(rod, "F"), start, start + 5).crossings[0]
     ends = ((0.0, stop), (EndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
-    curve = follow_branch(0, BranchLimits([hopf_point(Path(rod, "F"), crossing)], *ends))
+    curve = follow_branch(0, BranchLimits([hopf_branch_start(Path(rod, "F"), crossing)], *ends))
     assert curve.complete
     assert curve.special_points[-1].at == pytest.approx(stop)
     assert max(point.multiplier for point in curve.points) > 1e20

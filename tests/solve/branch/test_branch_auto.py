@@ -15,12 +15,12 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import cycle_at_length, next_point
-from rodsweep.solve.branch.branch_start import first_cycle, hopf_point
-from rodsweep.solve.branch.mesh_choice import measurement_due, solve_on_sufficient_mesh
+from rodsweep.solve.branch.arc import cycle_at_length, next_cycle
+from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
+from rodsweep.solve.branch.mesh_choice import is_measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.branch.special.points import special_points
+from rodsweep.solve.branch.special.points import special_points_between
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -69,18 +69,23 @@ def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
-    here, special = first_cycle(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
+    here, special = (
+        first_cycle(hopf_branch_start(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()),
+        None,
+    )
     while True:
-        there = next_point(here, ACCURACY)
-        for point in special_points(here, there, partial(cycle_at_length, accuracy=ACCURACY), ACCURACY)[0]:
+        there = next_cycle(here, ACCURACY)
+        for point in special_points_between(
+            here, there, partial(cycle_at_length, accuracy=ACCURACY), ACCURACY
+        )[0]:
             if point.kind == kind:
                 special = point
-        if special is not None and (there.coordinate - F) * (here.coordinate - F) <= 0:
+        if special is not None and (there.parameter_coordinate - F) * (here.parameter_coordinate - F) <= 0:
             edge = range_end_condition(here, F)
             return special, solve_on_sufficient_mesh(
                 cycle_at_range_end(here, there, edge, ACCURACY), ACCURACY, edge
             )
-        here = solve_on_sufficient_mesh(there, ACCURACY) if measurement_due(there) else there
+        here = solve_on_sufficient_mesh(there, ACCURACY) if is_measurement_due(there) else there
 
 
 @pytest.mark.long

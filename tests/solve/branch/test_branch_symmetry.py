@@ -13,9 +13,9 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
 from rodsweep.solve.branch import following
-from rodsweep.solve.branch.arc import next_point
+from rodsweep.solve.branch.arc import next_cycle
 from rodsweep.solve.branch.branch_curve import BranchCurve
-from rodsweep.solve.branch.branch_start import hopf_point
+from rodsweep.solve.branch.branch_start import hopf_branch_start
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
 from rodsweep.solve.branch.following import (
     BranchLimits,
@@ -47,7 +47,7 @@ def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     path = Path(straight, "F")
-    hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
+    hopf = hopf_branch_start(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
@@ -80,7 +80,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
     born, fold, end = asymmetric.special_points
     # NaN does not equal NaN, but has the same text.
-    assert repr(born) == repr(following.replace(symmetric.special_points[1], after=-1))
+    assert repr(born) == repr(following.replace(symmetric.special_points[1], index_of_cycle_before=-1))
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5
@@ -88,10 +88,10 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert max(born.error, fold.error) < 1e-3
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
-    turn = symmetric.special_points[1].after + 1
+    turn = symmetric.special_points[1].index_of_cycle_before + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
-    turn = fold.after + 1
+    turn = fold.index_of_cycle_before + 1
     assert {point.unstable_count for point in asymmetric.points[:turn]} - {-1} == {1}
     assert {point.unstable_count for point in asymmetric.points[turn:]} - {-1} == {0}
 
@@ -111,8 +111,8 @@ def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmet
 def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
-    orbit = next_point(here, ROUGH).orbit
-    p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
+    orbit = next_cycle(here, ROUGH).orbit
+    p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.node_count
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
     def rate(_, x):
@@ -120,13 +120,13 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
         return F / p.mass
 
     times = orbit.period * np.array([0.5, 1.0])
-    size = np.abs(orbit.points).max()
-    found = solve_ivp(rate, (0, times[1]), orbit.start, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
+    size = np.abs(orbit.all_states).max()
+    found = solve_ivp(rate, (0, times[1]), orbit.start_state, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
     half, whole = found.y.T
-    assert np.abs(whole - orbit.start).max() < 0.01 * size
+    assert np.abs(whole - orbit.start_state).max() < 0.01 * size
     assert np.abs(half - orbit.states_at(np.array([0.5]))[0]).max() < 0.01 * size
     moments = slice(2 * nodes, 3 * nodes)
-    assert np.abs(half + orbit.start)[moments].max() > 0.05 * np.abs(orbit.start[moments]).max()
+    assert np.abs(half + orbit.start_state)[moments].max() > 0.05 * np.abs(orbit.start_state[moments]).max()
 
 
 def turned_back(here):
@@ -138,7 +138,7 @@ def turned_back(here):
 def test_followed_back_the_branch_ends_where_it_was_born(known):
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
-        here = next_point(here, ROUGH)
+        here = next_cycle(here, ROUGH)
     curve = follow_from_cycle(
         BranchCurve(start_hopf=-1), turned_back(solve_on_sufficient_mesh(here, ROUGH)), known
     )
@@ -148,14 +148,15 @@ def test_followed_back_the_branch_ends_where_it_was_born(known):
 
 
 def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
-    orbit = known.breakings[0].point.orbit
+    orbit = known.breakings[0].special_point.orbit
     whole = extended_to_whole_period(orbit)
     assert not whole.is_symmetric
     times = np.linspace(0, 1, 21)
     assert (
-        np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max() < 1e-4 * np.abs(orbit.points).max()
+        np.abs(whole.states_at(times / 2) - orbit.states_at(times)).max()
+        < 1e-4 * np.abs(orbit.all_states).max()
     )
-    assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start).max()
+    assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start_state).max()
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
@@ -171,7 +172,7 @@ def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
     here, there = (
         SimpleNamespace(
             parameter_rate=1.0,
-            partial_multipliers=np.array([h, 0.1, 0.2j, -0.2j]),
+            multipliers_over_solved_part=np.array([h, 0.1, 0.2j, -0.2j]),
             orbit=SimpleNamespace(is_symmetric=has),
         )
         for h in (-0.9, -1.1)

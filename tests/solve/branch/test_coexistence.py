@@ -19,7 +19,7 @@ from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.bordered.scale import Scale
+from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
@@ -65,11 +65,11 @@ def fig_2c():
 def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2c):
     assert fig_2c.status == CoexistenceStatus.ok
     assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]
-    kinds = [point.kind for point in fig_2c.special]
+    kinds = [point.kind for point in fig_2c.special_points]
     assert kinds == [SpecialKind.hopf, SpecialKind.fold, SpecialKind.hopf]
-    assert fig_2c.special[1].at == pytest.approx(FOLD, abs=2e-9)
-    assert fig_2c.special[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
-    assert fig_2c.special[1].error <= 1e-9 * FOLD
+    assert fig_2c.special_points[1].at == pytest.approx(FOLD, abs=2e-9)
+    assert fig_2c.special_points[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
+    assert fig_2c.special_points[1].error <= 1e-9 * FOLD
 
 
 def test_a_cycle_on_the_last_value_of_a_row_counts():
@@ -133,7 +133,7 @@ def test_a_list_of_special_points_that_is_full_is_told():
 def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
-    (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
+    (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
@@ -147,20 +147,20 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.at
-    end = curve.vanishing[0]
+    end = curve.vanishing_points[0]
     assert abs(end.at - BAUTIN_F) <= end.error
     assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
-    assert curve.vanishing[1] is None
+    assert curve.vanishing_points[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
 
 
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
-    (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
-    scale = Scale.at_orbit(fold.orbit, "F", 0.0)
+    (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
+    scale = ArcLengthScale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
-    ahead = scale.directional_derivative(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
+    ahead = scale.directional_derivative(fold.orbit, own.branch_tangent(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
     truth = FoldFunction(own, border, has_small_cycles=False).value(fold.orbit)
     other = (

@@ -23,7 +23,7 @@ STEPS = StepControl(
     min_length=1e-6,
     target_angle=0.1,
     max_angle=0.3,
-    max_ratio=2.0,
+    max_length_ratio=2.0,
     max_solutions=500,
 )
 
@@ -91,7 +91,7 @@ def followed(curve, control=STEPS, start=0.0):
 def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
     curve = Ellipse(a, b)
     found = followed(curve, start=start)
-    assert found.end is CurveStop.closed
+    assert found.end_reason is CurveStop.closed
     assert found.solutions[0] is found.solutions[-1]
     angles = np.unwrap([curve.angle(point) for point in found.solutions])
     assert angles[-1] - angles[0] == pytest.approx(2 * np.pi, abs=1e-9)
@@ -101,14 +101,14 @@ def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
 @given(st.floats(0.3, 3.0), st.floats(-0.95, 0.95))
 def test_a_curve_ends_where_its_margin_is_zero(b, share):
     found = followed(Ellipse(1.0, b, least=share), start=np.arccos(share) / 2)
-    assert (found.end, found.margin) == (CurveStop.margin, 0)
+    assert (found.end_reason, found.margin_index) == (CurveStop.zero_margin, 0)
     assert found.solutions[-1] == pytest.approx([share, b * np.sqrt(1 - share**2)], abs=1e-12)
     assert (np.array(found.solutions[:-1])[:, 0] > share).all()
 
 
 def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():
     found = followed(Ellipse(1.0, 1.0, gap=(1.0, 1.5)))
-    assert found.end is CurveStop.lost
+    assert found.end_reason is CurveStop.no_further_solution
     assert Ellipse(1.0, 1.0).angle(found.solutions[-1]) == pytest.approx(1.0, abs=2e-6)
 
 
@@ -116,10 +116,15 @@ def test_a_curve_has_no_more_solutions_than_are_kept():
     found = followed(
         Ellipse(1.0, 1.0),
         StepControl(
-            first_length=0.01, max_length=0.01, min_length=1e-6, max_angle=0.3, max_ratio=2.0, max_solutions=7
+            first_length=0.01,
+            max_length=0.01,
+            min_length=1e-6,
+            max_angle=0.3,
+            max_length_ratio=2.0,
+            max_solutions=7,
         ),
     )
-    assert (found.end, len(found.solutions)) == (CurveStop.full, 7)
+    assert (found.end_reason, len(found.solutions)) == (CurveStop.max_solutions, 7)
 
 
 def test_steps_are_as_long_as_turns_and_predictions_allow():
@@ -133,7 +138,7 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
         target_error=5e-3,
         prediction_order=2,
         max_angle=1.0,
-        max_ratio=2.0,
+        max_length_ratio=2.0,
         max_solutions=500,
     )
     by_distance = np.diff(followed(Ellipse(1.0, 1.0), control).solutions, axis=0)[10:20]
@@ -144,7 +149,7 @@ def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine
     above = np.nextafter(1.0, 2.0)
     straight, back = (StepResult(None, 0.0, cosine) for cosine in (above, -above))
     assert STEPS.require_small_errors(straight) is straight
-    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_ratio
+    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.max_length_ratio
     with pytest.raises(Unsolvable, match="too large an angle"):
         STEPS.require_small_errors(back)
 
@@ -154,7 +159,7 @@ def test_every_step_is_reported_with_the_solutions_before_it():
     found = follow_curve(
         Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
     )
-    assert found.end is CurveStop.margin
+    assert found.end_reason is CurveStop.zero_margin
     assert [len(points) for points in heard] == list(range(1, len(found.solutions)))
     assert all(point is kept for point, kept in zip(heard[-1], found.solutions, strict=False))
 
@@ -199,5 +204,5 @@ def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, 
 
 def test_steps_that_never_grow_are_refused():
     """They would end a curve by the number of its solutions, however far its end is."""
-    with pytest.raises(ValueError, match="max_ratio"):
-        StepControl(first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_ratio=1.0)
+    with pytest.raises(ValueError, match="max_length_ratio"):
+        StepControl(first_length=0.1, max_length=1.0, min_length=1e-6, max_angle=0.3, max_length_ratio=1.0)

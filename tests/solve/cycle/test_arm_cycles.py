@@ -30,7 +30,7 @@ from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.neighbour import Neighbour
-from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -66,7 +66,7 @@ def on_mesh(name, **changed):
 def moving(form, size, seed=0):
     """(state, V, G) of a random state."""
     x = size * np.random.default_rng(seed).standard_normal(form.unknowns)
-    V, G = np.empty((2, 3, form.mesh.nodes + 1))
+    V, G = np.empty((2, 3, form.mesh.node_count + 1))
     write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
     return x, V, G
 
@@ -185,7 +185,7 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
         lambda u: (rod.gamma1, 1.0, rod.gamma3 * radius(u) ** 2),
         Law(build.law, build.section),
     )
-    strains = orbit.form.mesh.evaluation_matrix(arm.u[:-1]) @ orbit.form.strains(orbit.start).T
+    strains = orbit.form.mesh.evaluation_matrix(arm.u[:-1]) @ orbit.form.strains(orbit.start_state).T
     period, y = arm.cycle(strains.T.ravel(), found.measures.period)
     assert period == pytest.approx(found.measures.period, rel=2e-8)
     assert y == pytest.approx(found.measures.tip_y_max, rel=2e-7)
@@ -215,7 +215,7 @@ def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(se
     segments = Segments(
         rod.F, (0.0, 0.4, 1.0), (stiffness, outer[0]), (drag, outer[1]), Law(build.law, section), order=14
     )
-    shape = orbit.form.mesh.evaluation_matrix(segments.u) @ orbit.form.shape(orbit.start).T
+    shape = orbit.form.mesh.evaluation_matrix(segments.u) @ orbit.form.shape(orbit.start_state).T
     period, y = segments.cycle(shape.T, found.measures.period, turns=1)
     assert period == pytest.approx(found.measures.period, rel=1e-7)
     assert y == pytest.approx(found.measures.tip_y_max, rel=3e-7)
@@ -247,11 +247,11 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + (factors,) * 2)
     rod = Rod(**values, gamma1=gamma1, build=Build(*names, profile))
     memory = NewtonWorkspace()
-    form = StressForm(rod, coarse_mesh(rod))
+    form = StressForm(rod, coarse_mesh_along_branch(rod))
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
     orbit = found.orbit
     finer = mesh_with_edges(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
-    start = orbit.on_mesh(finer, 2 * orbit.intervals, orbit.stages + 1)
+    start = orbit.on_mesh(finer, 2 * orbit.interval_count, orbit.stage_count + 1)
     exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
 

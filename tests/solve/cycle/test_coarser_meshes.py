@@ -10,14 +10,14 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
-from rodsweep.solve.cycle.accuracy.refinement import refined_at_period
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle_at_given_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
-from rodsweep.solve.orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, path_differences
+from rodsweep.solve.orbit.path_differences import PATH_INDEX, PERIOD_INDEX, Y_INDEX, path_differences
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
@@ -45,11 +45,11 @@ def off(orbit, exact):
 
 def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
     coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY, MEMORY)
-    orbit, _ = coarser.predicted(FINE)
+    orbit, _ = coarser.predicted_orbit_and_errors(FINE)
     exact = newton(orbit, 1e-13, MEMORY).orbit
     between = [
         replace(coarser.coarse_mesh, order=FINE.order),
-        replace(coarser.coarse_mesh, intervals=FINE.intervals),
+        replace(coarser.coarse_mesh, interval_count=FINE.interval_count),
     ]
     errors = [
         off(FINE.interpolated_orbit(newton(m.interpolated_orbit(exact), 1e-13, MEMORY).orbit), exact)
@@ -59,29 +59,34 @@ def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
 
 
 def test_finer_meshes_differ_by_no_more_than_is_stated(near):
-    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted(FINE)
+    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted_orbit_and_errors(FINE)
     found = newton(orbit, 1e-12, MEMORY).orbit
-    for field, parts in (("order", known.space), ("intervals", known.time)):
+    for field, parts in (("order", known.space_errors), ("interval_count", known.time_errors)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(
             CyclePath(found), CyclePath(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
         )
-        for which in (PERIOD_CHANGE, LARGEST_Y, WHOLE_PATH):
+        for which in (PERIOD_INDEX, Y_INDEX, PATH_INDEX):
             assert true[which] <= CALIBRATION_SETTINGS.safety_factor * parts[which] + 1e-12
 
 
 def test_coarser_meshes_predict_those_that_are_a_little_finer(near):
     coarser = CoarserMeshes(FINE, near, ACCURACY, MEMORY)
     assert coarser.can_predict(FINE) and coarser.can_predict(
-        replace(FINE, order=FINE.order + 2, intervals=20)
+        replace(FINE, order=FINE.order + 2, interval_count=20)
     )
-    for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"edges": (0.0, 0.5, 1.0)}, {"stages": 5}):
+    for other in (
+        {"order": FINE.order + 3},
+        {"interval_count": 30},
+        {"edges": (0.0, 0.5, 1.0)},
+        {"stage_count": 5},
+    ):
         assert not coarser.can_predict(replace(FINE, **other))
 
 
 @pytest.mark.parametrize("why", ["no coarse cycle", "far off"])
 def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why, monkeypatch):
-    predicted = CoarserMeshes.predicted
+    predicted = CoarserMeshes.predicted_orbit_and_errors
 
     def spoilt(self, mesh):
         orbit, known = predicted(self, mesh)
@@ -89,28 +94,36 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
             return replace(orbit, values=orbit.values * (1 + 1e-4)), known
         raise Unsolvable(why)
 
-    monkeypatch.setattr(CoarserMeshes, "predicted", spoilt)
-    alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
+    monkeypatch.setattr(CoarserMeshes, "predicted_orbit_and_errors", spoilt)
+    alone, first = (
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY),
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
+    )
     assert np.array_equal(alone.orbit.values, first.orbit.values)
     assert alone.errors == first.errors
 
 
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
-    alone, first = refined_at_period(near, ACCURACY, MEMORY), refined_at_period(near, ACCURACY, MEMORY, "F")
+    alone, first = (
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY),
+        refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
+    )
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
-    assert alone.converged.matrix.tangent is None and first.converged.matrix.tangent is not None
+    assert alone.converged_orbit.matrix.tangent is None and first.converged_orbit.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error
     assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
-    assert alone.errors.largest_error <= ACCURACY and alone.converged.matrix_distance <= ACCURACY
+    assert (
+        alone.errors.largest_weighted_error <= ACCURACY and alone.converged_orbit.matrix_distance <= ACCURACY
+    )
 
 
 def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     """Orders 19 and 21 have nearly the same period of this cone, which is off by 1.9 times the accuracy."""
     accuracy = 1e-4
     rod = Rod(F=40.20452, k1=float("inf"), k2=149.6991, gamma3=0.0, gamma1=0.2582922, taper=0.5194033)
-    start = orbit_from_hopf(StressForm(rod, coarse_mesh(rod)), hopf_point_below(rod), MEMORY)
-    found = refined_at_period(start, accuracy, MEMORY)
+    start = orbit_from_hopf(StressForm(rod, coarse_mesh_along_branch(rod)), hopf_point_below(rod), MEMORY)
+    found = refined_cycle_at_given_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
-    finer = replace(own, order=own.order + 8, intervals=2 * own.intervals)
+    finer = replace(own, order=own.order + 8, interval_count=2 * own.interval_count)
     exact = newton(finer.interpolated_orbit(found.orbit), 1e-10, MEMORY).orbit
     assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= accuracy

@@ -18,9 +18,9 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.solve.cycle.accuracy import refinement
 from rodsweep.solve.cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS
 from rodsweep.solve.cycle.accuracy.minimal_period import (
-    common_divisor,
-    over_minimal_period,
-    undecided_divisor,
+    common_harmonic_divisor,
+    possible_period_divisor,
+    restricted_to_minimal_period,
 )
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.reference_rod import warm_up
@@ -29,10 +29,10 @@ from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
-from rodsweep.solve.orbit.newton import newton, with_orbit_matrix
+from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
-from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
+from rodsweep.solve.orbit.tails import legendre_analysis_matrix, tails_of
 from rodsweep.solve.point import Unsolvable
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -189,9 +189,9 @@ def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
     handed = c.neighbour
     assert handed.predictor.orbit.period == c.measures.period
-    assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start)[1] == pytest.approx(
-        c.measures.tip_y_max
-    )
+    assert handed.predictor.orbit.form.tip_coordinates(handed.predictor.orbit.start_state)[
+        1
+    ] == pytest.approx(c.measures.tip_y_max)
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
     assert again.measures.period == pytest.approx(c.measures.period, rel=1e-9)
     assert again.periods == 0
@@ -329,23 +329,25 @@ def orbit_at_fifty():
 
 def repeated(half, times):
     """A symmetric orbit over so many of its halves, as one that is not known to be symmetric."""
-    K = times * (half.intervals - 1) + 1
-    at = times * node_times(K, half.stages)
+    K = times * (half.interval_count - 1) + 1
+    at = times * node_times(K, half.stage_count)
     number = np.floor(at + 1e-9)
     states = half.states_at(np.maximum(at - number, 0.0))
     later = number % 2 == 1
     states[later] = REFLECTION.apply(states[later], half.form.layout)
-    return Orbit.from_states(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stages)
+    return Orbit.from_states(half.form, NO_SYMMETRY, times * half.period / 2, states, half.stage_count)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
     half = newton(orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
-    assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
-    assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
-    assert over_minimal_period(half) is half
-    once = with_orbit_matrix(newton(over_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0)
+    assert [common_harmonic_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
+    assert [possible_period_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
+    assert restricted_to_minimal_period(half) is half
+    once = with_matrix_within_distance(
+        newton(restricted_to_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0
+    )
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 
@@ -361,7 +363,7 @@ def orbit_on(elements, order):
 def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
     path, form = CyclePath(half), half.form
-    states = np.concatenate((half.regular_states, REFLECTION.apply(half.regular_states, form.layout)))
+    states = np.concatenate((half.equidistant_states, REFLECTION.apply(half.equidistant_states, form.layout)))
     tip = form.tip_coordinates(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
     strains = form.element_strains(states)
@@ -385,12 +387,12 @@ def test_extrema_are_those_of_a_dense_path():
 
 def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
-    m, stages = measures_of(CyclePath(half)), half.states.reshape(-1, half.form.unknowns)
+    m, stages = measures_of(CyclePath(half)), half.stage_states.reshape(-1, half.form.unknowns)
     power, weights = (
         np.empty((2, len(stages))),
         np.outer(interval_lengths(12), half.collocation.weights).ravel(),
     )
-    write_powers(stages, power, half.semidiscrete)
+    write_powers(stages, power, half.semidiscrete_equations)
     mean = power @ weights
     rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)
     assert (m.injection_mean, m.dissipation_mean) == pytest.approx(tuple(mean), rel=1e-13)
@@ -401,14 +403,14 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
-    stresses = half.form.stresses(half.states[:, -1])
-    analysis = legendre_analysis(2 * uniform_mesh(1, order).positions - 1)
+    stresses = half.form.stresses(half.stage_states[:, -1])
+    analysis = legendre_analysis_matrix(2 * uniform_mesh(1, order).positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]
     upper = np.arange(order + 1)[(order + 1) // 2 :]
     slope = np.polyfit(upper, np.log(envelope[upper]), 1)[0]
-    assert tails_of(half).decay == pytest.approx(-slope, rel=1e-9)
+    assert tails_of(half).space_decay == pytest.approx(-slope, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -428,11 +430,13 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
     harmonics = np.zeros(32)
     for k, size in sizes.items():
         harmonics[k - 1] = size
-    assert undecided_divisor(SimpleNamespace(bending_harmonics=harmonics), error) == divisor
+    assert possible_period_divisor(SimpleNamespace(bending_harmonics=harmonics), error) == divisor
 
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
-    monkeypatch.setattr("rodsweep.solve.cycle.accuracy.cycle_verdict.undecided_divisor", lambda *given: 2)
+    monkeypatch.setattr(
+        "rodsweep.solve.cycle.accuracy.cycle_verdict.possible_period_divisor", lambda *given: 2
+    )
     c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled
     assert "the period found may be 2 minimal periods" in c.message
@@ -459,7 +463,7 @@ def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
 def test_a_motion_that_takes_too_many_steps_is_not_settled_and_says_so(monkeypatch):
     """Motions that return seldom went on for a minute, because only returns were counted."""
     monkeypatch.setattr(
-        schemes, "TIME_SCHEME_SETTINGS", replace(schemes.TIME_SCHEME_SETTINGS, default_max_steps=1)
+        schemes, "TIME_SCHEME_SETTINGS", replace(schemes.TIME_SCHEME_SETTINGS, default_max_steps_per_return=1)
     )
     c = solve_cycle(rod_of(240.0, *SOFT), REQUEST)
     assert c.status == CycleStatus.not_settled
@@ -474,15 +478,15 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     tried = []
 
     def fails(orbit, *_):
-        tried.append(orbit.intervals)
+        tried.append(orbit.interval_count)
         raise Unsolvable("no orbit")
 
     half = orbit_at_fifty()
     monkeypatch.setattr(refinement, "newton", fails)
-    points = np.concatenate([half.points[:1], np.tile(half.points[1:], (repeats, 1))])
-    orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stages)
+    points = np.concatenate([half.all_states[:1], np.tile(half.all_states[1:], (repeats, 1))])
+    orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stage_count)
     with pytest.raises(Unsolvable):
-        refinement.refined_at_period(orbit, 1e-6, NewtonWorkspace())
+        refinement.refined_cycle_at_given_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes
 
 

@@ -53,8 +53,8 @@ def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
 
 def test_a_chain_goes_on_by_the_cycles_behind(chain):
     last = chain[-1].predictor
-    assert np.count_nonzero(last.orders == 0) == CYCLE_PREDICTION_SETTINGS.max_earlier_orbits
-    assert last.offsets[0] == 0 and np.all(last.offsets[1:] > 0)  # it went downwards
+    assert np.count_nonzero(last.derivative_orders == 0) == CYCLE_PREDICTION_SETTINGS.max_earlier_orbits
+    assert last.parameter_offsets[0] == 0 and np.all(last.parameter_offsets[1:] > 0)  # it went downwards
 
 
 def test_a_chain_goes_on_from_a_checkpoint_with_the_same_bits(chain, tmp_path):
@@ -79,5 +79,5 @@ def test_next_to_a_hopf_point_cycles_are_predicted_though_they_go_as_a_root(chai
     for F, most in ((STEP * form.rod.F, 3e-7), (1.05 * HOPF, 1e-4), (1.01 * HOPF, 1e-2)):
         predicted = last.predicted_orbit(replace(form, rod=replace(form.rod, F=F)), "F")
         found = newton(predicted, 1e-10, NewtonWorkspace()).orbit
-        assert found.size < last.orbit.size
+        assert found.max_energy_norm < last.orbit.max_energy_norm
         assert relative_change(predicted, found.values - predicted.values) < most

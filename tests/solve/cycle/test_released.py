@@ -30,7 +30,7 @@ def test_a_rod_that_flutters_comes_to_its_cycle_from_every_place():
         found = released(FLUTTER, *place)
         assert found.status == CycleStatus.cycle
         assert found.measures.period == pytest.approx(cycle.measures.period, rel=1e-6)
-        assert found.motion_shapes.is_whole
+        assert found.motion_shapes.is_complete
         assert found.motion_shapes.shapes[:, 0, -1] == pytest.approx(place, abs=1e-6)
 
 
@@ -52,7 +52,7 @@ def test_the_motion_is_that_of_another_time_scheme():
     motion = released(FLUTTER, 0.7, 0.5).motion_shapes
     z = equilibrium_at_tip(beam, 0.7, 0.5)
     for frame in (8, 20, 40):
-        run = integrator(beam.mesh, TimeScheme("bdf", "4", 1e-7)).run(beam, z, frame * motion.step, 1e-8)
+        run = integrator(beam.mesh, TimeScheme("bdf", "4", 1e-7)).run(beam, z, frame * motion.time_step, 1e-8)
         # 1e-4 is the tolerance of the first run of a motion; errors add up over some 40 steps.
         assert motion.shapes[:, frame, -1] == pytest.approx(
             beam.tip_coordinates(run.states[-1])[:2], abs=3e-3
@@ -62,4 +62,4 @@ def test_the_motion_is_that_of_another_time_scheme():
 def test_a_motion_that_settles_slowly_is_stored_up_to_its_limit():
     onset = 37.0
     found = released(replace(FLUTTER, F=onset), 0.7, 0.5)
-    assert found.motion_shapes.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_frames
+    assert found.motion_shapes.shapes.shape[1] <= SHAPE_TRACE_SETTINGS.max_stored_shapes

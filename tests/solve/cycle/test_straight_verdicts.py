@@ -13,7 +13,11 @@ from rodsweep.solve.cycle import limit_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.second_state import SecondState
-from rodsweep.solve.cycle.straight_rod import StraightRod, eigenvalues_to_follow, straight_rod
+from rodsweep.solve.cycle.straight_rod import (
+    StraightRodStability,
+    eigenvalues_to_follow,
+    straight_rod_stability,
+)
 from rodsweep.solve.hopf.normal_form import accurate_normal_form
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -47,18 +51,23 @@ def ended(point, amplitude=0.1, most_periods=400, **more):
     ],
 )
 def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, growth, doubt):
-    rod = StraightRod(w, error, "no mesh")
+    rod = StraightRodStability(w, error, "no mesh")
     assert (rod.stable, rod.growth_rate(7.0)) == (stable, growth)
-    assert doubt in rod.unproved_stability and bool(rod.unproved_stability) != bool(rod.stable)
+    assert doubt in rod.unproved_stability_text and bool(rod.unproved_stability_text) != bool(rod.stable)
 
 
 def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
     rod, near = Rod(F=28.0, k1=1e4, k2=1e2, gamma3=1e-2), Rod(F=27.5, k1=1e4, k2=1e2, gamma3=1e-2)
-    leading = straight_rod(rod)
+    leading = straight_rod_stability(rod)
     w = solve_spectrum(rod, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
     assert leading.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
-    assert straight_rod(rod, np.array([straight_rod(near).w])).w == pytest.approx(leading.w, rel=1e-12)
-    assert leading.stable is False and straight_rod(Rod(F=27.0, k1=1e4, k2=1e2, gamma3=1e-2)).stable is True
+    assert straight_rod_stability(rod, np.array([straight_rod_stability(near).w])).w == pytest.approx(
+        leading.w, rel=1e-12
+    )
+    assert (
+        leading.stable is False
+        and straight_rod_stability(Rod(F=27.0, k1=1e4, k2=1e2, gamma3=1e-2)).stable is True
+    )
 
 
 @pytest.mark.parametrize(
@@ -71,15 +80,15 @@ def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
     ],
 )
 def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
-    near = eigenvalues_to_follow(rod, straight_rod(rod))
+    near = eigenvalues_to_follow(rod, straight_rod_stability(rod))
     steps = 12
     count = 0
     for F in np.linspace(rod.F, end, steps + 1)[1:].tolist():
         here = rod.changed(F=F)
-        found = straight_rod(here, near)
+        found = straight_rod_stability(here, near)
         w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
         assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
-        count += len(found.followed) > 0
+        count += len(found.followed_eigenvalues) > 0
         near = eigenvalues_to_follow(here, found)
     assert count >= followed * steps
 
@@ -125,7 +134,9 @@ def test_on_either_side_of_a_hopf_point_the_verdict_agrees_with_the_spectrum(rod
 @pytest.mark.parametrize("start", ["mode", "hopf"])
 def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypatch):
     """Far below the Hopf point the motion decays; the spectrum is made to say that it does not know."""
-    monkeypatch.setattr(limit_cycle, "straight_rod", lambda rod, near: StraightRod(-1e-13 + 60j, 1e-13))
+    monkeypatch.setattr(
+        limit_cycle, "straight_rod_stability", lambda rod, near: StraightRodStability(-1e-13 + 60j, 1e-13)
+    )
     c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
     assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_known)
     assert start == "hopf" or "so the stability of the straight rod is undecided" in c.message

@@ -80,7 +80,7 @@ def cycle_near(at, hopf, known, gamma1, part):
     """(largest tip y squared, frequency less that of the Hopf point), both over F - F_H, of a cycle."""
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
     normal = accurate_normal_form(at.changed(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
-    form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.nodes))
+    form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.node_count))
     measures = refined_cycle(orbit_by_normal_form(normal, form), 1e-11, NewtonWorkspace()).measures
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 

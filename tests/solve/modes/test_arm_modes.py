@@ -215,7 +215,7 @@ def test_the_abscissa_of_a_slaved_arm_is_the_largest_quotient(rod):
     form = dense_form(rod, pencil_on(mesh))
     A = form.A
     B = form.B
-    n = mesh.nodes
+    n = mesh.node_count
     y, slaved = slice(n), slice(n, None)
     L = A[y, y] - A[y, slaved] @ np.linalg.solve(A[slaved, slaved], A[slaved, y])
     assert (B[y] == 1).all()

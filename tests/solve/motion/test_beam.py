@@ -51,7 +51,7 @@ def rough(beam):
 def injected_and_dissipated(beam, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
     material, matrices = beam.rod.material, beam.mesh.matrices
-    stress = np.zeros((3, beam.mesh.nodes + 1))
+    stress = np.zeros((3, beam.mesh.node_count + 1))
     stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)
@@ -79,7 +79,7 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
 def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
     beam = Beam(ROD.changed(gamma1=0.7), uniform_mesh(elements, order))
     z = rough(beam)
-    rate, n = beam.state_derivative(z), beam.mesh.nodes
+    rate, n = beam.state_derivative(z), beam.mesh.node_count
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
     change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)

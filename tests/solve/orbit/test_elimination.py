@@ -11,7 +11,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.bordered.scale import Scale
+from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.elimination import eliminate_newton_matrix
 from rodsweep.solve.orbit.matrix.inversion import INVERSION_SETTINGS, invert_matrix
 from rodsweep.solve.orbit.matrix.linearisation import closing_residual, parameter_derivatives
@@ -43,22 +43,24 @@ def orbit_with(rod, stages):
 
 def velocities(orbit):
     """V of all stages, (K, s, 3, 9)."""
-    V, (n, G) = np.empty((*orbit.states.shape[:2], 3, 9)), (orbit.form.unknowns, np.empty((3, 9)))
+    V, (n, G) = np.empty((*orbit.stage_states.shape[:2], 3, 9)), (orbit.form.unknowns, np.empty((3, 9)))
     for place in np.ndindex(V.shape[:2]):
-        write_rates_of_state(orbit.states[place], np.empty(n), V[place], G, orbit.semidiscrete)
+        write_rates_of_state(
+            orbit.stage_states[place], np.empty(n), V[place], G, orbit.semidiscrete_equations
+        )
     return V
 
 
 def dense_matrix(orbit, k):
     """Of all stages of an interval, (s n, s n)."""
-    p, (s, n) = orbit.semidiscrete, orbit.states.shape[1:]
+    p, (s, n) = orbit.semidiscrete_equations, orbit.stage_states.shape[1:]
     V, G, tip = np.empty((3, 9)), np.empty((3, 9)), np.empty((3, n))
     A = np.kron(p.stage_differentiation[:, 1:], np.diag(p.mass))
     for i in range(s):
         F, J = np.empty(n), np.zeros((n, n))
-        write_rates_of_state(orbit.states[k, i], F, V, G, p)
-        write_jacobian(orbit.states[k, i], V, J, tip, p.rod, p.node_matrices)
-        A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.duration * p.interval_lengths[k] * J
+        write_rates_of_state(orbit.stage_states[k, i], F, V, G, p)
+        write_jacobian(orbit.stage_states[k, i], V, J, tip, p.rod, p.node_matrices)
+        A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.solved_duration * p.interval_lengths[k] * J
     return A
 
 
@@ -67,13 +69,15 @@ def dense_matrix(orbit, k):
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     orbit = orbit_with(rod, stages)
-    p, n = orbit.semidiscrete, orbit.form.unknowns
+    p, n = orbit.semidiscrete_equations, orbit.form.unknowns
     factors = MatrixMemory(NewtonWorkspace(), INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
     start = random.normal(size=(COLUMNS, n))
     reduced, out = columns.copy(), np.empty_like(columns)
-    ends = eliminate_newton_matrix(orbit.points, velocities(orbit), orbit.duration, p, factors, reduced)
+    ends = eliminate_newton_matrix(
+        orbit.all_states, velocities(orbit), orbit.solved_duration, p, factors, reduced
+    )
     substitute_stages(start, reduced, p, factors, out)
 
     flow, first, still = np.eye(n), start, np.zeros_like(start)
@@ -106,9 +110,9 @@ def balances(orbit, name, change):
     """Residuals of all stages, and the right side of the phase, with a parameter's coordinate changed."""
     form = orbit.form
     moved = replace(orbit, form=form.with_coordinate(name, form.rod.coordinate(name) + change))
-    p, out = moved.semidiscrete, np.empty_like(orbit.states)
-    write_stage_residuals(orbit.points, orbit.duration, p, out)
-    return np.append(out, -phase_residual(orbit.start, p.rod, p.node_matrices))
+    p, out = moved.semidiscrete_equations, np.empty_like(orbit.stage_states)
+    write_stage_residuals(orbit.all_states, orbit.solved_duration, p, out)
+    return np.append(out, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
 
 @pytest.mark.long
@@ -117,10 +121,10 @@ def balances(orbit, name, change):
 def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     orbit = orbit_with(rod, 4)
     along, columns = parameter_derivatives(orbit.form, name), np.empty((INTERVALS, 4, 3, orbit.form.unknowns))
-    p, V = orbit.semidiscrete, np.empty((INTERVALS, 4, 3, 9))
-    write_right_sides(orbit.points, orbit.duration, p, along, V, columns)
+    p, V = orbit.semidiscrete_equations, np.empty((INTERVALS, 4, 3, 9))
+    write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, columns)
     right = columns[:, :, 2]
-    shift = phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
+    shift = phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
     step = 1e-4 * orbit.form.rod.coordinate(name) or 1e-6  # to one side: a limit has no other
     there = np.array([balances(orbit, name, k * step) for k in range(3)])
     limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step
@@ -132,9 +136,9 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
 def whole_matrix(matrix):
     """Newton's matrix without its last row, of all states, period and parameter, (N, N + 1)."""
     orbit = matrix.orbit
-    p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
-    along, columns = parameter_derivatives(orbit.form, matrix.scale.parameter), np.empty((K, s, 3, n))
-    write_right_sides(orbit.points, orbit.duration, p, along, np.empty((K, s, 3, 9)), columns)
+    p, (K, s, n) = orbit.semidiscrete_equations, orbit.stage_states.shape
+    along, columns = parameter_derivatives(orbit.form, matrix.scale.parameter_name), np.empty((K, s, 3, n))
+    write_right_sides(orbit.all_states, orbit.solved_duration, p, along, np.empty((K, s, 3, 9)), columns)
     A = np.zeros((len(orbit.values), len(orbit.values) + 1))
     A[:n, :n] -= p.symmetry
     A[:n, -2 - n : -2] += np.eye(n)
@@ -143,9 +147,12 @@ def whole_matrix(matrix):
         A[rows, rows] = dense_matrix(orbit, k)
         A[rows, start] += np.kron(p.stage_differentiation[:, :1], np.diag(p.mass))
         A[rows, -2:] = -columns[k][:, [0, 2]].transpose(0, 2, 1).reshape(s * n, 2)
-    write_phase_row(orbit.start, p.rod, p.node_matrices, A[-1, :n])
-    A[-1, -1] = -phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
-    jump, shift = closing_residual(orbit.points, p), phase_residual(orbit.start, p.rod, p.node_matrices)
+    write_phase_row(orbit.start_state, p.rod, p.node_matrices, A[-1, :n])
+    A[-1, -1] = -phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
+    jump, shift = (
+        closing_residual(orbit.all_states, p),
+        phase_residual(orbit.start_state, p.rod, p.node_matrices),
+    )
     return A, np.array([*jump, *columns[:, :, 1].ravel(), -shift])
 
 
@@ -157,10 +164,10 @@ def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth)
         {"n1": np.ones(8)}
     )  # beside the straight rod, which is unstable
     orbit, border = Orbit.from_states(form, REFLECTION, period, states, 3), np.array([0.6, 0.0, 0.8])
-    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
+    matrix = BorderedMatrix(orbit, ArcLengthScale.at_orbit(orbit, "F", 0.1), NewtonWorkspace())
     assert np.linalg.norm(matrix.propagator) > growth
     A, right = whole_matrix(matrix)
-    tangent = matrix.direction(border)
+    tangent = matrix.branch_tangent(border)
     for change, sides in (
         (matrix.step(border, 0.1), right),
         (matrix.correction(orbit, border, 0.1), right),

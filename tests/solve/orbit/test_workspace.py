@@ -10,7 +10,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
-from rodsweep.solve.branch.bordered.scale import Scale
+from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import WORKSPACE_SETTINGS, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
@@ -36,7 +36,7 @@ def matrix_of_a_cycle(orbit, workspace):
 
 def matrix_of_a_branch(orbit, workspace):
     """The same with the force as a further unknown."""
-    matrix = BorderedMatrix(orbit, Scale.at_orbit(orbit, "F", 1.0), workspace)
+    matrix = BorderedMatrix(orbit, ArcLengthScale.at_orbit(orbit, "F", 1.0), workspace)
     return matrix, lambda: matrix.correction(orbit, MOMENT, 0.0)
 
 
@@ -61,12 +61,12 @@ def test_a_matrix_whose_workspace_another_one_used_raises_and_keeps_its_multipli
     "used",
     [
         lambda matrix: matrix.step(MOMENT, 0.1),
-        lambda matrix: matrix.direction(MOMENT),
+        lambda matrix: matrix.branch_tangent(MOMENT),
         lambda matrix: matrix.approximate_null_vector(),
         lambda matrix: matrix.residual_variations(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
-        lambda matrix: matrix.back_substitute(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
+        lambda matrix: matrix.changes_at_fixed_parameter(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
     ],
-    ids=["step", "direction", "approximate_null_vector", "varied", "spread"],
+    ids=["step", "branch_tangent", "approximate_null_vector", "varied", "spread"],
 )
 def test_all_that_needs_the_factors_of_a_branch_raises_without_them(used):
     workspace, orbit = NewtonWorkspace(), orbit_with(3)
@@ -117,8 +117,8 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
 def test_a_released_workspace_keeps_what_most_rods_need():
     workspace = NewtonWorkspace()
     for numbers, kept in (
-        (WORKSPACE_SETTINGS.kept_numbers, True),
-        (WORKSPACE_SETTINGS.kept_numbers + 1, False),
+        (WORKSPACE_SETTINGS.max_kept_buffer_size, True),
+        (WORKSPACE_SETTINGS.max_kept_buffer_size + 1, False),
     ):
         memory = MatrixMemory(workspace, numbers, 1, 1)
         buffer = memory.factors.eliminated_blocks.base

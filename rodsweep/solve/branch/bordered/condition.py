@@ -16,7 +16,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...point import Unsolvable
 from .matrix import BorderedMatrix
-from .scale import Scale
+from .scale import ArcLengthScale
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +24,13 @@ class BorderCondition:
     """Equation that closes the bordered system of an orbit: `border` . `scale.components(orbit)` = `value`.
     border: row vector, (3,)."""
 
-    scale: Scale
+    scale: ArcLengthScale
     border: Array
     value: float
 
     @classmethod
     def at_arc_length(
-        cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0
+        cls, scale: ArcLengthScale, border: Array, orbit: Orbit, length: float = 0.0
     ) -> "BorderCondition":
         """The condition that a new orbit lies farther along `border`, (3,), than the given `orbit`, by the
         arc length `length`. scale: units of the components."""
@@ -58,7 +58,7 @@ class BorderCondition:
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
                 raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
-            orbit = moved_orbit(orbit, self.scale.parameter, step)
+            orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             off = off + change
             rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.
@@ -79,7 +79,7 @@ class BorderCondition:
                 last = change
         raise Unsolvable(f"Newton's method on the branch does not converge; its last step is {change:.0e}")
 
-    def on_mesh(
+    def solve_on_mesh(
         self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.

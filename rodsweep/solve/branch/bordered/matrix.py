@@ -15,7 +15,7 @@ from ...orbit.matrix.linearisation import (
     reduced_residuals,
     reduced_variations,
 )
-from ...orbit.matrix.multipliers import multipliers_over_period, partial_multipliers
+from ...orbit.matrix.multipliers import multipliers_over_period, multipliers_over_solved_part
 from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
 from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
@@ -23,7 +23,7 @@ from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from .scale import Scale, deflection_row
+from .scale import ArcLengthScale, deflection_row
 
 
 class BorderedMatrix:
@@ -34,21 +34,21 @@ class BorderedMatrix:
     another matrix was assembled in the same workspace; multipliers stay valid.
     """
 
-    def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
+    def __init__(self, orbit: Orbit, scale: ArcLengthScale, workspace: NewtonWorkspace) -> None:
         self.orbit = orbit
         self.scale = scale
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
-        p = orbit.semidiscrete
-        along = parameter_derivatives(orbit.form, scale.parameter)
-        K, s, n = orbit.states.shape
+        p = orbit.semidiscrete_equations
+        along = parameter_derivatives(orbit.form, scale.parameter_name)
+        K, s, n = orbit.stage_states.shape
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
-        self._columns = np.empty((K, s, 3, n))
+        self._stage_columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
-        write_right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, self._stage_columns)
         ends = eliminate_newton_matrix(
-            orbit.points, V, orbit.duration, p, self._memory.factors, self._columns
+            orbit.all_states, V, orbit.solved_duration, p, self._memory.factors, self._stage_columns
         )
         self._shooting_intervals = shooting_intervals_of(self._memory.factors, p.mass)
         m = len(self._shooting_intervals.flow_maps)
@@ -64,34 +64,38 @@ class BorderedMatrix:
                 self._matrix[rows, :n] -= p.symmetry
         for place, c in ((-2, 0), (-1, 2)):
             own = slice(c, c + 1)
-            self._matrix[:-2, place] = -self.closing_sides(np.zeros(n), self._columns[:, :, own], ends[own])
+            self._matrix[:-2, place] = -self.closing_right_sides(
+                np.zeros(n), self._stage_columns[:, :, own], ends[own]
+            )
         row = np.empty(n)
-        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
+        write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
         self._matrix[-2, :n] = row
         # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
         # plus.
-        self._matrix[-2, -1] = -phase_right_side(orbit.start, along.change, p.rod, p.node_matrices)
-        self._closing_sides = self._closing_and_phase_sides(orbit, self._columns[:, :, 1:2], ends[1:2])
+        self._matrix[-2, -1] = -phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
+        self._right_sides = self._closing_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, length: float) -> Array:
         """Newton's step at the orbit, (N + 1,), along which `border` . `scale.components` grows by `length`;
         border: (3,)."""
-        return self.solve(border, np.append(self._closing_sides, length), self._columns[:, :, 1], 1.0)
+        return self.solve(border, np.append(self._right_sides, length), self._stage_columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
         factors of this matrix; border, length: as in `step`."""
         factors = self._memory.factors
-        p = self.orbit.semidiscrete
-        columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
+        p = self.orbit.semidiscrete_equations
+        columns, ends = reduced_residuals(
+            orbit.all_states, orbit.solved_duration, orbit.semidiscrete_equations, p, factors
+        )
         right = np.append(self._closing_and_phase_sides(orbit, columns, ends), length)
         return self.solve(border, right, columns[:, :, 0], 1.0)
 
-    def direction(self, border: Array) -> Array:
+    def branch_tangent(self, border: Array) -> Array:
         """Tangent of the branch, (N + 1,), of unit arc length, at an acute angle to `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
-        right = np.append(np.zeros(len(self._closing_sides)), 1.0)
-        change = self.solve(border, right, self._columns[:, :, 1], 0.0)
+        right = np.append(np.zeros(len(self._right_sides)), 1.0)
+        change = self.solve(border, right, self._stage_columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
@@ -101,19 +105,19 @@ class BorderedMatrix:
 
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
-        along = parameter_derivatives(orbit.form, self.scale.parameter)
-        equations = orbit.semidiscrete
-        p = self.orbit.semidiscrete
+        along = parameter_derivatives(orbit.form, self.scale.parameter_name)
+        equations = orbit.semidiscrete_equations
+        p = self.orbit.semidiscrete_equations
         changed: tuple[Array, Array] = reduced_variations(
             orbit.values, equations, along, variations, p, self._memory.factors
         )
         return changed
 
-    def back_substitute(self, starts: Array, columns: Array) -> Array:
+    def changes_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
         state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
-        substitute_stages(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
+        substitute_stages(starts, columns, self.orbit.semidiscrete_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
@@ -124,17 +128,17 @@ class BorderedMatrix:
         return self._memory.propagator
 
     @cached_property
-    def partial_multipliers(self) -> Complex:
+    def multipliers_over_solved_part(self) -> Complex:
         """Multipliers over the solved time interval, (rank,): eigenvalues of the propagator, composed with
         the reflection for a symmetric orbit."""
         if len(self._shooting_intervals.flow_maps) == 1:
-            return partial_multipliers(self.propagator, self.orbit)
+            return multipliers_over_solved_part(self.propagator, self.orbit)
         return self._shooting_intervals.multipliers(self.orbit)
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return multipliers_over_period(self.partial_multipliers, self.orbit)
+        return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
 
     def approximate_null_vector(self) -> Array:
         """Right singular vector of the matrix with the parameter fixed, for the smallest singular value, (N +
@@ -145,9 +149,9 @@ class BorderedMatrix:
         matrix = self._matrix.copy()
         # The last row fixes the parameter.
         matrix[-1, -1] = 1.0
-        return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
+        return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._stage_columns[:, :, 1], 0.0)
 
-    def closing_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
+    def closing_right_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
         """Right-hand sides, (m n,), of the closing conditions: the end of a shooting interval is the start of
         the next shooting interval.
 
@@ -155,7 +159,7 @@ class BorderedMatrix:
         stages, (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a
         fixed start, (1, n).
         """
-        p = self.orbit.semidiscrete
+        p = self.orbit.semidiscrete_equations
         sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
@@ -165,9 +169,9 @@ class BorderedMatrix:
         and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages, (K, s, 1,
         n). ends: change of the end of the last shooting interval caused by `columns` for a fixed start, (1,
         n)."""
-        p = orbit.semidiscrete
-        right = self.closing_sides(closing_residual(orbit.points, p), columns, ends)
-        return np.append(right, -phase_residual(orbit.start, p.rod, p.node_matrices))
+        p = orbit.semidiscrete_equations
+        right = self.closing_right_sides(closing_residual(orbit.all_states, p), columns, ends)
+        return np.append(right, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
@@ -176,7 +180,7 @@ class BorderedMatrix:
         right: right-hand sides of the closing conditions, of the phase condition and of the border, (m n +
         2,). sides: right-hand sides of the stages, (K, s, n). share: factor on `sides`.
         """
-        n = len(self.orbit.start)
+        n = len(self.orbit.start_state)
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_row(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
@@ -187,12 +191,18 @@ class BorderedMatrix:
         """Change of orbit values and parameter, (N + 1,). found: changes of the starts of the shooting
         intervals, of the period and of the parameter, (m n + 2,). sides: right-hand sides of the stages, (K,
         s, n). share: factor on `sides`."""
-        n = len(self.orbit.start)
-        stages = found[-2] * self._columns[:, :, 0] + share * sides + found[-1] * self._columns[:, :, 2]
+        n = len(self.orbit.start_state)
+        stages = (
+            found[-2] * self._stage_columns[:, :, 0]
+            + share * sides
+            + found[-1] * self._stage_columns[:, :, 2]
+        )
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = found[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._shooting_intervals.stage_changes(factors, starts, columns, self.orbit.semidiscrete)
+        out = self._shooting_intervals.stage_changes(
+            factors, starts, columns, self.orbit.semidiscrete_equations
+        )
         return np.concatenate([found[:n], out.ravel(), found[-2:]])
 
 

@@ -3,9 +3,8 @@ parameter.
 
 The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
 deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus. Both
-divisors are those of one cycle, for which a `Scale` is made. At a Hopf point the deflection passes linearly
-through 0, so that arc length stays
-regular.
+divisors belong to one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes
+linearly through 0, so that arc length stays regular.
 
 The deflection is the integral of (1 - s) c m3 over the rod, which is linear in the state; s is the position
 on the rod and c the bending compliance of the arm's profile. For small cycles of a rod without taper the
@@ -30,22 +29,22 @@ from ...orbit.orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class ArcLengthScale:
     """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
     `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter
-    `parameter`."""
+    `parameter_name`."""
 
-    parameter: str
+    parameter_name: str
     deflection_unit: float
     coordinate_unit: float
     min_deflection_unit: float
 
     @classmethod
-    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "Scale":
+    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "ArcLengthScale":
         """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
         the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
         deflection, in L."""
-        largest = float(np.abs(orbit.points @ deflection_row(orbit)).max())
+        largest = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
         # `least` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
@@ -53,7 +52,7 @@ class Scale:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of
         the scale."""
         deflection = deflection_of(orbit) / self.deflection_unit
-        at = orbit.form.rod.coordinate(self.parameter) / self.coordinate_unit
+        at = orbit.form.rod.coordinate(self.parameter_name) / self.coordinate_unit
         return np.array([deflection, np.log(orbit.period), at])
 
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
@@ -65,7 +64,7 @@ class Scale:
 
 def deflection_of(orbit: Orbit) -> float:
     """Deflection of an orbit in L at t = 0, when the tip's y is largest; linear in the state."""
-    return float(deflection_row(orbit) @ orbit.start)
+    return float(deflection_row(orbit) @ orbit.start_state)
 
 
 def deflection_row(orbit: Orbit) -> Array:

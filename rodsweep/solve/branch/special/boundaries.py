@@ -1,7 +1,7 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
-`changes.diagram.boundaries` has the same task for the straight rod. A curve is followed in two halves from a
-special point of a row. Each half curve is a work item, independent of all other half curves.
+A curve is followed in two halves from a special point of a row. Each half curve is a work item, independent
+of all other half curves. `changes.diagram.boundaries` has the same task for the straight rod.
 """
 
 import math
@@ -17,10 +17,10 @@ from .on_curve import SolvedPoint
 from .point import RowSpecialPoint, SpecialKind, SpecialPoint
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
-    Arrays,
     CurveEnd,
     CurvePoint,
     HalfCurve,
+    HalfCurveArrays,
     SpecialPointCurve,
     TracedHalfCurve,
 )
@@ -32,18 +32,16 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-
-    line, rows: axes of the parameter along a row and of the row parameter. special: points of all rows. Half
-    curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1 to smaller
-    values.
-    """
+    line, rows: axes of the parameter along a row and of the row parameter. special_points: points of all
+    rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1
+    to smaller values."""
 
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecialPoint]
+    special_points: Sequence[RowSpecialPoint]
 
-    def items_to_solve(self, results: Mapping[int, Arrays]) -> list[int]:
-        """Numbers of the half curves needed now, then of half curves that may be needed later; empty if the
+    def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
+        """Numbers of the half curves needed now, then of half curves that may be needed later; empty if all
         curves are complete. results: results of half curves, by number."""
         needed: list[int] = []
         likely: list[int] = []
@@ -52,40 +50,41 @@ class SpecialBoundaries:
             likely += curves.possible_items(search)
         return needed + likely if needed else []
 
-    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[SpecialPointCurve]:
+    def curves(self, results: Mapping[int, HalfCurveArrays]) -> Boundaries[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
         found = [search.boundaries for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
-        return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
+        return Boundaries(
+            curves, max(one.largest_seed_distance for one in found), sum(one.untraced_count for one in found)
+        )
 
     def _searches(
-        self, results: Mapping[int, Arrays]
+        self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
-            seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
-            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_distance)
+            curves = _CurvesOfKind(kind, self.line, self.rows, self.special_points, results)
+            seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
+            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
-    ) -> Arrays:
+    ) -> HalfCurveArrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        # The number is twice the index of the special point, plus 1 for the half to smaller values.
         index, behind = divmod(item, 2)
-        one = self.special[index]
+        one = self.special_points[index]
         limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _trace_half_curve(limits, one, located(one.row_index), self.special).arrays()
+        return _trace_half_curve(limits, one, located(one.row_index), self.special_points).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
-        return self.special[item // 2].row_index
+        return self.special_points[item // 2].row_index
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
         index, behind = divmod(item, 2)
-        one = self.special[index]
+        one = self.special_points[index]
         way = "down" if behind else "up"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row_value:.5g} {way}"
 
@@ -100,14 +99,14 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_boundaries`; line, rows and special: as in
-    `SpecialBoundaries`. results: arrays of half curves, by number."""
+    """Curves of one kind as a problem of `trace_boundaries`; other fields as in `SpecialBoundaries`. results:
+    arrays of half curves, by number."""
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
-    special: Sequence[RowSpecialPoint]
-    results: Mapping[int, Arrays]
+    special_points: Sequence[RowSpecialPoint]
+    results: Mapping[int, HalfCurveArrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
         """Index, from `left`, of the median special point: both halves of its curve have similar lengths."""
@@ -125,11 +124,11 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Numbers of the half curves that may be needed later: from all special points on the rows on which
-        the needed half curves start."""
-        rows = {self.special[item // 2].row_value for item in search.missing_items}
+        """Numbers of half curves that may be needed later: from special points on the rows of the needed
+        curves."""
+        rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
-            (i for i in search.open_seeds if self.special[i].row_value in rows), key=self._position
+            (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._position
         )
         return [item for i in beside for item in self.missing_items(i)]
 
@@ -152,9 +151,11 @@ class _CurvesOfKind:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
         near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY_SETTINGS.max_distance
+        lies_off = near > CURVE_IDENTITY_SETTINGS.max_row_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
-        return 0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special[seed]) else near
+        return (
+            0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special_points[seed]) else near
+        )
 
     def are_identical(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
@@ -164,7 +165,7 @@ class _CurvesOfKind:
 
     def _position(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.special[i].row_value, self.special[i].at
+        return self.special_points[i].row_value, self.special_points[i].at
 
     def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
@@ -175,7 +176,7 @@ class _CurvesOfKind:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
-        for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
+        for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
             x = self.line.coordinate(end.at)
@@ -196,13 +197,13 @@ def _trace_half_curve(
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
     """One half of a curve, from special point `one` of a row; `half` is None after a failure. located: points
-    of this row, with cycles. special: all special points, for the distances."""
+    of this row, with cycles. special: all special points."""
     width = abs(limits.line.parameter_slope(one.at))
     same = [
         point
         for point in located
         if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_distance * width
+        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_row_distance * width
         and abs(point.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not same:
@@ -212,7 +213,7 @@ def _trace_half_curve(
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
     distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
-    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_distance}
+    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_row_distance}
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 
 

@@ -26,7 +26,7 @@ from .on_curve import (
     arc_lengths,
     line_across,
     orbit_with_parameters,
-    with_larger_errors,
+    with_parameter_errors,
 )
 from .point import SpecialKind, SpecialPoint
 from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
@@ -39,11 +39,10 @@ CURVE_STEP_CONTROL = StepControl(
     max_error=0.1,
     prediction_order=CURVE_IDENTITY_SETTINGS.max_interpolated_points,
     max_angle=0.55,
-    max_ratio=2.0,
+    max_length_ratio=2.0,
     max_solutions=400,
 )
-"""Step length control along a curve of special points. Steps have four components: the three components of
-`Scale` and the row coordinate, from 0 to 1."""
+"""Step length control; a step has the three components of `ArcLengthScale` and the row coordinate, 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,23 +53,22 @@ class CurveEndSettings:
     """Whether a curve closes is tested only after more than this number of points."""
     max_edge_distance: float = 1e-8
     """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
-    edge_bracket: float = 1e-10
+    margin_tolerance: float = 1e-10
     """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
     crushing_margin: float = 1e-3
     """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
-    crushing_accuracy: float = 1e-6
+    crushing_tolerance: float = 1e-6
     """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
     min_amplitude: float = 0.01
-    """A curve ends where the largest tip y, in L, falls below this number, and is extrapolated to a Hopf
-    point."""
+    """A curve ends, at an extrapolated Hopf point, where the largest tip y, in L, is below this number."""
     min_sine_at_resonance: float = 0.2
     """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
-    the angle between multiplier and real axis is below this number at the last point."""
+    the angle between multiplier and real axis is below this number."""
 
 
 END_SETTINGS = CurveEndSettings()
 
-ROW_EDGES = (2, 3)
+ROW_EDGE_MARGINS = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
 END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
 """Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""
@@ -78,30 +76,33 @@ END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_mode
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
-    """Continuation problem for curves of folds or torus points in a parameter plane. line: axis of the
-    parameter that varies along a row. rows: axis of the row parameter. direction: sign, 1 or -1, of the first
-    step in the row parameter. workspace: memory of Newton's matrices."""
+    """Curves of folds or torus points in a plane, as a problem of `follow_curve`. line, rows: axes of the
+    parameter along a row and of the row parameter. row_direction: 1 or -1, sign of the first step in the row
+    parameter."""
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
     workspace: NewtonWorkspace
-    direction: float = 1.0
+    row_direction: float = 1.0
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
-        """(points of the curve in order from the special point `special` of a row, reason for the end of the
-        curve); raises Unsolvable. row: value of the row parameter at `special`."""
+        """(points of the curve from `special` on row `row`, reason for its end); raises Unsolvable."""
         first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
-        return with_larger_errors(curve.solutions), self._end_reason(curve)
+        return with_parameter_errors(curve.solutions), self._end_reason(curve)
 
     def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEnd:
         """Reason for the end of the curve `curve`, as stored in the result file."""
-        if curve.end is CurveStop.margin:
-            return END_BY_MARGIN[curve.margin]
-        if curve.end is CurveStop.closed:
+        if curve.end_reason is CurveStop.zero_margin:
+            return END_BY_MARGIN[curve.margin_index]
+        if curve.end_reason is CurveStop.closed:
             return CurveEnd.closed
-        return self._lost_end(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
+        return (
+            self._reason_for_loss(curve.solutions[-1])
+            if curve.end_reason is CurveStop.no_further_solution
+            else CurveEnd.not_followed
+        )
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
@@ -109,24 +110,23 @@ class SpecialCurveProblem:
         report(lambda: SolvePosition(words))
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
-        """The point one step beyond the last point, with the prediction error and the cosine of the angle
-        between the last two steps; raises Unsolvable. behind: points so far, in order along the curve.
-        length: arc length of the step; on the first step, change of the row coordinate."""
+        """The next point, with prediction error and cosine of the angle between the last two steps; raises
+        Unsolvable. behind: points so far. length: arc length; on the first step, change of the row
+        coordinate."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
-            at_row = last.row_coordinate + self.direction * length
+            at_row = last.row_coordinate + self.row_direction * length
             line = ALONG_BRANCH
             rates = None
         else:
-            start, at_row = self._predicted(behind, self._step_before_crushing(behind, length))
+            start, at_row = self._predicted_orbit(behind, self._step_before_crushing(behind, length))
             change = last.scale.components(start) - last.scale.components(last.orbit)
             line = line_across(np.append(change, at_row - last.row_coordinate), *behind[-2:])
             rates = last.normal_derivatives
         point = self._family(last).corrected_point_with_error(start, at_row, line, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.interpolated_orbit(start)
-        # Prediction and point can be compared only on the same mesh.
         off = relative_change(predicted, point.orbit.values - predicted.values)
         if len(behind) == 1:  # the prediction was the cycle of another row
             return StepResult(point, min(off, CURVE_STEP_CONTROL.max_error), 1.0)
@@ -137,7 +137,7 @@ class SpecialCurveProblem:
     def _family(self, point: SolvedPoint) -> CycleFamily:
         return CycleFamily.near_point(self.kind, self.rows, point, self.workspace)
 
-    def _predicted(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
+    def _predicted_orbit(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
         known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
@@ -161,13 +161,12 @@ class SpecialCurveProblem:
 
         if distance(step) >= 0 or distance(0.0) <= 0:
             return step
-        return float(brentq(distance, 0.0, step, rtol=END_SETTINGS.crushing_accuracy))
+        return float(brentq(distance, 0.0, step, rtol=END_SETTINGS.crushing_tolerance))
 
     def _weighted_sum(
         self, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
-        """(orbit on the mesh `mesh`, row coordinate): sums of `points` with weights, (points,); raises
-        Unsolvable."""
+        """(orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
         at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
@@ -197,13 +196,13 @@ class SpecialCurveProblem:
         if ends[0] <= END_SETTINGS.max_edge_distance:
             return None
         try:
-            if margin in ROW_EDGES:
-                point = self.point_on_row(inner, outer, float(margin - ROW_EDGES[0]))
+            if margin in ROW_EDGE_MARGINS:
+                point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGINS[0]))
             else:
                 point = self._zero_of_margin(inner, outer, margin, ends)
         except Unsolvable:
             return None
-        return replace(point, errors=outer.errors and outer.errors.for_next_point)
+        return replace(point, measured_error=outer.measured_error and outer.measured_error.for_next_point)
 
     def _zero_of_margin(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
@@ -215,15 +214,16 @@ class SpecialCurveProblem:
             found[share] = self.point_near_chord(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
-        return found[zero_along_step(left, ends, 1.0, END_SETTINGS.edge_bracket, END_SETTINGS.edge_bracket)]
+        return found[
+            zero_along_step(left, ends, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
+        ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether the step from `behind[-1]` to `point` passes the first point of the curve, and the curve
-        has more than `min_loop_points` points."""
+        """Whether a curve of more than `min_loop_points` points passes its first point on the step to
+        `point`."""
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(behind[0])
-        # The first point lies within this step, measured along the step and by distance.
         passed = float(back @ step) / float(step @ step)
         near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
         return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
@@ -241,7 +241,7 @@ class SpecialCurveProblem:
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
-    def _lost_end(self, last: SolvedPoint) -> CurveEnd:
+    def _reason_for_loss(self, last: SolvedPoint) -> CurveEnd:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))

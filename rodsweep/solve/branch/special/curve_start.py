@@ -8,11 +8,11 @@ import numpy as np
 
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.orbit_mesh import mesh_of, stages_for
+from ...orbit.orbit_mesh import cheapest_stage_count, mesh_of
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..bordered.matrix import BorderedMatrix
-from ..bordered.scale import Scale, deflection_of
+from ..bordered.scale import ArcLengthScale, deflection_of
 from ..branch_start import ALONG_DEFLECTION, BRANCH_START_SETTINGS
 from .family import CycleFamily
 from .on_curve import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
@@ -50,12 +50,12 @@ def first_point_of_curve(
     rough = replace(
         mesh,
         order=ceil(CURVE_START_SETTINGS.order_ratio * mesh.order),
-        intervals=ceil(CURVE_START_SETTINGS.interval_ratio * mesh.intervals),
-        stages=stages_for(CURVE_SECANT_SETTINGS.accuracy),
+        interval_count=ceil(CURVE_START_SETTINGS.interval_ratio * mesh.interval_count),
+        stage_count=cheapest_stage_count(CURVE_SECANT_SETTINGS.accuracy),
     )
     orbit = rough.interpolated_orbit(orbit)
     least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
-    scale = Scale.at_orbit(orbit, line, least)
+    scale = ArcLengthScale.at_orbit(orbit, line, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     row_coordinate = rows.coordinate(row)

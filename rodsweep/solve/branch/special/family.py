@@ -1,9 +1,10 @@
 """Correction of a predicted point of a curve of folds or torus points over two parameters.
 
 Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
-row coordinate. There the special points form a smooth curve, also at a cusp, where both parameters turn back:
-the zeros of a test function. The secant method finds a zero across the curve (`secant`). The error is the
-difference between two meshes, measured at every third point or so, plus the error of the secant method.
+row coordinate. In this family the special points form a smooth curve, also at a cusp, where both parameters
+turn back: the zeros of a test function. The secant method finds a zero across the curve (`secant`). The error
+is the difference between two meshes, measured at every third point or so, plus the error of the secant
+method.
 """
 
 from dataclasses import dataclass, replace
@@ -17,11 +18,11 @@ from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import smooth_tails
 from ...point import Unsolvable
 from ..bordered.matrix import BorderedMatrix
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 from .augmented.functions import FoldFunction, TorusFunction
 from .on_curve import (
     CURVE_SECANT_SETTINGS,
-    CurveErrors,
+    MeasuredCurveError,
     NormalDerivatives,
     SearchLine,
     SolvedPoint,
@@ -42,7 +43,7 @@ class CycleFamily:
 
     kind: SpecialKind
     rows: PlaneAxis
-    scale: Scale
+    scale: ArcLengthScale
     border: Array
     has_small_cycles: bool
     workspace: NewtonWorkspace
@@ -51,7 +52,8 @@ class CycleFamily:
     def near_point(
         cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near `point` of a curve of special points; the rest as in the class."""
+        """The family of the cycles near `point` of a curve of special points of the kind `kind`. rows,
+        workspace: as in the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
         return cls(kind, rows, point.scale, point.branch_direction, small, workspace)
 
@@ -84,7 +86,7 @@ class CycleFamily:
         usable = derivatives and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine
         known = derivatives if usable else None
         search = SecantSearch(self, start, row_coordinate, line, known, is_other_mesh)
-        for _ in range(CURVE_SECANT_SETTINGS.max_secants):
+        for _ in range(CURVE_SECANT_SETTINGS.max_secant_steps):
             found = search.make_step()
             if found is not None:
                 return found
@@ -105,12 +107,14 @@ class CycleFamily:
         arguments as in `corrected_point`.
         """
         last = self.corrected_point(start, row_coordinate, line, derivatives)
-        if previous and previous.errors and previous.errors.apply_at(last):
-            return replace(last, errors=previous.errors.for_next_point)
+        if previous and previous.measured_error and previous.measured_error.applies_at(last):
+            return replace(last, measured_error=previous.measured_error.for_next_point)
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(last.orbit)
-            longer = ceil(CURVE_SECANT_SETTINGS.more_intervals * mesh.intervals)
-            finer = replace(mesh, order=mesh.order + CURVE_SECANT_SETTINGS.more_orders, intervals=longer)
+            longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
+            finer = replace(
+                mesh, order=mesh.order + CURVE_SECANT_SETTINGS.order_increase, interval_count=longer
+            )
             if not finer.is_allowed:
                 break
             known = last.normal_derivatives
@@ -118,13 +122,13 @@ class CycleFamily:
             fine = self.corrected_point(start, last.row_coordinate, line, known, is_other_mesh=True)
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
-            along = line.slope * (fine.row_coordinate - last.row_coordinate)
+            along = line.chord_slope * (fine.row_coordinate - last.row_coordinate)
             off = abs(fine.parameter - last.parameter - along)
-            error = CURVE_SECANT_SETTINGS.error_factor * off + CURVE_SECANT_SETTINGS.least_error * abs(
+            error = CURVE_SECANT_SETTINGS.error_factor * off + CURVE_SECANT_SETTINGS.min_error * abs(
                 fine.parameter
             )
             if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine.parameter):
-                errors = CurveErrors(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
-                return replace(last, errors=errors)
+                errors = MeasuredCurveError(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
+                return replace(last, measured_error=errors)
             last = fine
         raise Unsolvable("no mesh of allowed size reaches the requested accuracy")

@@ -10,7 +10,7 @@ from ....discretization.element_strains import index_before_jump
 from ....discretization.elements.periodic import series_maxima, series_samples
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
-from ..arc import ArcPoint
+from ..arc import BranchCycle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +35,7 @@ class LeastStretchSettings:
 LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
-def least_stretch_of_cycle(point: ArcPoint) -> float:
+def least_stretch_of_cycle(point: BranchCycle) -> float:
     """Smallest h1 of a cycle of a branch over rod and period: the smallest nodal value if it exceeds
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
@@ -51,7 +51,7 @@ def least_stretch_of_orbit(orbit: Orbit) -> float:
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
     """
-    rough = orbit.form.least_stretch(orbit.points)
+    rough = orbit.form.least_stretch(orbit.all_states)
     if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
         return rough
     return least_stretch(CyclePath(orbit), LEAST_STRETCH_SETTINGS.safe_sampled_stretch)

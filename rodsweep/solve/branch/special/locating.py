@@ -1,9 +1,9 @@
-"""Location of special points on a branch: zeros of test functions of arc length. Each value of a test
-function requires the solution of a cycle.
+"""Location of special points on a branch: zeros of test functions of arc length.
 
-The zero is bracketed on the mesh of the branch, then found by the secant method on finer meshes. The
-difference between the zeros on the last two meshes gives the error. A cycle needs only one matrix
-factorisation, because its test function is corrected with the factors of the last matrix (`augmented`).
+Each value of a test function requires the solution of a cycle. The zero is bracketed on the mesh of the
+branch, then found by the secant method on finer meshes. The difference between the zeros on the last two
+meshes gives the error. A cycle needs only one matrix factorisation, because its test function is corrected
+with the factors of the last matrix (`augmented`).
 """
 
 from dataclasses import replace
@@ -16,12 +16,12 @@ from ...continuation.follower import zero_along_step
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, mesh_of
 from ...point import Unsolvable
-from ..arc import ArcPoint
+from ..arc import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 from .augmented.functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
@@ -29,12 +29,12 @@ from .segment import BranchSegment
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
-    """Kind of the special point at which a multiplier of `orbit`, over the solved time interval, passes
+    """Kind of the special point at which a multiplier of `orbit` over the solved part of the period passes
     -1."""
     return SpecialKind.symmetry_breaking if orbit.is_symmetric else SpecialKind.period_doubling
 
 
-def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
+def test_function_value(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
     """Value of the test function that is zero at special points of a kind, at the cycle `found`, the last
     cycle that `segment` solved; raises Unsolvable."""
     if kind == SpecialKind.fold:
@@ -46,14 +46,14 @@ def test_function(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrb
         correct_until_converged(function, found.orbit)
         return function.value(found.orbit)
     matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
-    return multiplier_test_function(kind, matrix.partial_multipliers)
+    return multiplier_test_function(kind, matrix.multipliers_over_solved_part)
 
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
-    """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
-    the solved time interval, (multipliers,). Raises Unsolvable for torus points if all multipliers are real.
-    """
-    real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)
+    """Value of the test function of torus points, symmetry breakings or period doublings; raises Unsolvable
+    for torus points if all multipliers are real. h: multipliers over the solved part of the period,
+    (multipliers,)."""
+    real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.
         return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
@@ -64,42 +64,44 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     return float(beyond[np.argmin(np.abs(beyond))])
 
 
-def _test_value_at_end(kind: SpecialKind, scale: Scale, ahead: Array, point: ArcPoint) -> float:
-    """Value of the test function of a kind at `point`, a cycle at an end of a segment; raises Unsolvable.
-    scale, ahead: scale and tangent, (3,), at the start of the segment."""
+def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, ahead: Array, point: BranchCycle) -> float:
+    """Value of the test function of a kind at `point`, an end of a segment; raises Unsolvable. scale, ahead:
+    scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
         # By the arc length along the direction `ahead`, which is the variable of the search.
         rate = float(scale.directional_derivative(point.orbit, point.tangent) @ ahead)
         return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
-    return multiplier_test_function(kind, point.partial_multipliers)
+    return multiplier_test_function(kind, point.multipliers_over_solved_part)
 
 
-def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, accuracy: float) -> SpecialPoint:
+def special_point_between(
+    kind: SpecialKind, start: BranchCycle, end: BranchCycle, accuracy: float
+) -> SpecialPoint:
     """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
-    and `SPECIAL_POINT_SETTINGS.accuracy`. Its error exceeds this accuracy if no allowed mesh suffices. A
-    point that cannot be located has a message, and the parameter difference of the two cycles as error."""
+    and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh suffices. A point that is
+    not located has a message, and the parameter difference of the two cycles as error."""
     aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.set_mesh(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
-        mesh = end.calibration.cheapest_mesh_for_parameter(SPECIAL_POINT_SETTINGS.first_mesh_share * aim)
-        # At least the number of stages with the smallest cost at this accuracy.
-        mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
+        mesh = end.calibration.cheapest_mesh_for_parameter(
+            SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * aim
+        )
+        mesh = replace(mesh, stage_count=max(mesh.stage_count, cheapest_stage_count(aim)))
         point: SpecialPoint | None = None
-        for number in range(SPECIAL_POINT_SETTINGS.max_mesh_pairs + 1):
+        for number in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
             segment.set_mesh(mesh)
             length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
             last = point
-            point = _special_point_at(kind, orbit, start.scale.parameter)
+            point = _special_point_at(kind, orbit, start.scale.parameter_name)
             if last is not None:
                 point = _with_mesh_errors(point, last, start, end)
                 if point.error <= aim * abs(point.at):
                     break
-            # Every second mesh is chosen from the measured error; the next mesh is only slightly finer, for
-            # comparison.
+            # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
             mesh = _finer_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.is_allowed:
                 break
@@ -111,39 +113,38 @@ def special_point_between(kind: SpecialKind, start: ArcPoint, end: ArcPoint, acc
 
 
 def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: ratio of the error on `mesh` to the accuracy; 1 gives the smallest
+    """The next finer mesh. excess: error on `mesh` divided by the accuracy; 1 gives the smallest
     refinement."""
-    # The error is assumed proportional to intervals^-p, p: `time_order_by_stages` times the number of stages.
-    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_by_stages * mesh.stages))
+    # The error is assumed proportional to intervals^-p, p: `time_order_per_stage` times the number of stages.
+    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )
     more = min(
-        max(ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_more_orders),
-        SPECIAL_POINT_SETTINGS.max_more_orders,
+        max(
+            ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_order_increase
+        ),
+        SPECIAL_POINT_SETTINGS.max_order_increase,
     )
-    return replace(mesh, order=mesh.order + more, intervals=ceil(growth * mesh.intervals))
+    return replace(mesh, order=mesh.order + more, interval_count=ceil(growth * mesh.interval_count))
 
 
 def _with_mesh_errors(
-    point: SpecialPoint, last: SpecialPoint, start: ArcPoint, end: ArcPoint
+    point: SpecialPoint, last: SpecialPoint, start: BranchCycle, end: BranchCycle
 ) -> SpecialPoint:
     """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor.
-
-    The errors of period and largest tip y include a fraction of their difference between `start` and `end`,
-    the cycles before and after the point: for the error of the last secant step, and, except at a fold, for
-    the error of the parameter.
-    """
+    safety factor. The errors of period and largest tip y include a fraction of their difference between
+    `start` and `end`, the cycles before and after the point: for the error of the last secant step, and,
+    except at a fold, for the error of the parameter."""
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
         point.at - last.at
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.at)
     share = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
-        name = start.scale.parameter
+        name = start.scale.parameter_name
         length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        moved = SPECIAL_POINT_SETTINGS.slope_factor * error / length if length else 1.0
+        moved = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / length if length else 1.0
         share = SPECIAL_POINT_SETTINGS.secant_error + min(moved, 1.0)
     one = start.cycle.measures
     other = end.cycle.measures
@@ -159,7 +160,7 @@ def _with_mesh_errors(
 
 
 def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
-    """The special point of a kind at the solved cycle `orbit`; all errors are NaN. name: continuation
+    """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
     parameter."""
     path = CyclePath(orbit)
     return SpecialPoint(
@@ -172,10 +173,10 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
     )
 
 
-def _unlocated_point(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message: str) -> SpecialPoint:
-    """A special point that could not be located between the cycles `start` and `end`: values at `end`, with
-    the differences between the two cycles as errors. message: cause of the failure."""
-    name = start.scale.parameter
+def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, message: str) -> SpecialPoint:
+    """A special point that is not located: values at the cycle `end`, with the differences between `start`
+    and `end` as errors. message: cause."""
+    name = start.scale.parameter_name
     measures = end.cycle.measures
     before = start.cycle.measures
     at, other = (getattr(point.orbit.form.rod, name) for point in (end, start))
@@ -193,20 +194,19 @@ def _unlocated_point(kind: SpecialKind, start: ArcPoint, end: ArcPoint, message:
 
 
 def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, float]:
-    """(arc length of an approximate zero of the test function, slope of the test function at this zero), by
-    bracketing on a segment; raises Unsolvable."""
+    """(arc length of an approximate zero, slope of the test function there), by bracketing; raises
+    Unsolvable."""
     start = segment.start
     known = ((0.0, start), (segment.length, segment.end))
     values = {at: _test_value_at_end(kind, start.scale, start.unit_tangent, point) for at, point in known}
 
     def kept(length: float) -> float:
-        values[length] = test_function(kind, segment, segment.cycle_at(length))
+        values[length] = test_function_value(kind, segment, segment.cycle_at(length))
         return values[length]
 
     ends = values[0.0], values[segment.length]
     least = SPECIAL_POINT_SETTINGS.bracket_tolerance * min(map(abs, ends))
     at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT_SETTINGS.bracket_tolerance)
-    # Slope from the values at this zero and at the nearest other arc length.
     other = min((x for x in values if x != at), key=lambda x: abs(x - at))
     slope = (values[at] - values[other]) / (at - other)
     return at - values[at] / slope, slope
@@ -227,8 +227,8 @@ def _zero_by_secants(
     at = guess
     step = np.inf
     before = None
-    for _ in range(SPECIAL_POINT_SETTINGS.max_secants):
-        f = test_function(kind, segment, segment.cycle_at(at))
+    for _ in range(SPECIAL_POINT_SETTINGS.max_secant_steps):
+        f = test_function_value(kind, segment, segment.cycle_at(at))
         if before is not None and f != before[1]:
             slope = (f - before[1]) / (at - before[0])
         last = abs(step)
@@ -244,7 +244,7 @@ def _zero_by_secants(
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
-            return at + step, moved_orbit(orbit, segment.start.scale.parameter, change), slope
+            return at + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
         before = at, f
         at += step
     raise Unsolvable("the secant method for the special point does not converge")

@@ -13,7 +13,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
 from ...point import Unsolvable
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,22 +23,23 @@ class CurveSecantSettings:
     accuracy: float = 1e-7
     """Relative accuracy of the parameter along a row at the points of a curve. Special points on rows are
     solved to 1e-9."""
-    max_unmeasured: int = 3
+    max_points_per_measurement: int = 3
     """Maximum number of successive points of a curve that share one measured error."""
     small_fold_cycle: float = 0.05
     """If the largest tip y, in L, is smaller than this number, the fold test function is divided by the
     deflection; without this division the function vanishes at a Hopf point too."""
-    first_secant: float = 1e-3
+    first_secant_step: float = 1e-3
     """First step of the secant method across a curve, in arc length, if no derivatives are known."""
-    longest_secant: float = 0.1
+    max_secant_step: float = 0.1
     """Longest step of the secant method across a curve, in arc length; a longer step is a failure."""
-    max_secants: int = 12
+    max_secant_steps: int = 12
     """Maximum number of secant steps for one point."""
     max_distance_error: float = 1e-8
     """Largest distance, in arc length, of a point from the curve after the last step of the secant method,
     which is linear."""
-    secant_share: float = 0.1
-    """Largest relative error of the parameter along a row by this distance, divided by `accuracy`."""
+    max_secant_error_ratio: float = 0.1
+    """Largest relative error of the parameter along a row that the distance of a point from the curve may
+    cause, divided by `accuracy`."""
     slope_error: float = 1e-3
     """Relative error of derivatives that were computed at the same point on another mesh or at an earlier
     step of the same search, in addition to the effect of the curvature."""
@@ -55,11 +56,11 @@ class CurveSecantSettings:
     number, because the test function has an error of 1e-8."""
     error_factor: float = 3.0
     """The error estimate is the difference between the points on two meshes, times this factor."""
-    least_error: float = 3e-9
+    min_error: float = 3e-9
     """Smallest relative error estimate of the parameter along a row."""
-    more_orders: int = 2
+    order_increase: int = 2
     """Increase of the order of the elements on the next finer mesh."""
-    more_intervals: float = 1.2
+    interval_ratio: float = 1.2
     """Ratio of the number of time intervals of the next finer mesh to the number of the present mesh."""
     max_finer_meshes: int = 5
     """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
@@ -71,12 +72,12 @@ CURVE_SECANT_SETTINGS = CurveSecantSettings()
 class SearchLine(NamedTuple):
     """Line across a curve of special points, on which a point of the curve is searched.
 
-    direction: unit vector, (2,), in components (along the branch, row coordinate). slope: `chord_slope` of
-    the curve, which gives the error of the parameter at a fixed row.
+    direction: unit vector, (2,), in components (along the branch, row coordinate). chord_slope: `chord_slope`
+    of the curve, which gives the error of the parameter at a fixed row.
     """
 
     direction: Array
-    slope: float = 0.0
+    chord_slope: float = 0.0
 
 
 ALONG_BRANCH = SearchLine(np.array([1.0, 0.0]))
@@ -97,12 +98,12 @@ class NormalDerivatives:
     """Mesh of the derivative `orbit_derivative`."""
     cycle_distance: float
     """Distance between the two cycles of the difference quotient."""
-    contraction: float = inf
+    contraction_rate: float = inf
     """Contraction rate of corrections, as in `NearbyCycleSolver`; inf if unknown."""
-    curvature: float = inf
+    relative_curvature: float = inf
     """Modulus of the second derivative of the test function, divided by the first; inf if unknown."""
 
-    def on_mesh_of(self, orbit: Orbit) -> Array:
+    def orbit_derivative_on_mesh_of(self, orbit: Orbit) -> Array:
         """The derivative `orbit_derivative`, (N + 1,), interpolated to the mesh of `orbit`."""
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
@@ -112,15 +113,15 @@ class NormalDerivatives:
 
 
 @dataclass(frozen=True, eq=False)
-class CurveErrors:
+class MeasuredCurveError:
     """Measured error of a point of a curve. At the next points the error is used again, scaled with the
     squared coefficient tails.
 
-    measured_error: relative error of the parameter along a row at the measured point. tails, mesh:
+    relative_error: relative error of the parameter along a row at the measured point. tails, mesh:
     coefficient tails in space and time, (2,), and mesh of the orbit at the measured point.
     reuse_count: number of points since the measurement."""
 
-    measured_error: float
+    relative_error: float
     tails: Array
     mesh: OrbitMesh
     reuse_count: int = 0
@@ -130,17 +131,17 @@ class CurveErrors:
         measured relative error, increased by the squared growth of the tails, times the parameter."""
         # Errors are of second order in the tails.
         growth = float((smooth_tails(point.orbit) / self.tails).max()) ** 2
-        return max(growth, 1.0) * self.measured_error * abs(point.parameter)
+        return max(growth, 1.0) * self.relative_error * abs(point.parameter)
 
-    def apply_at(self, point: "SolvedPoint") -> bool:
+    def applies_at(self, point: "SolvedPoint") -> bool:
         """Whether the measured error may be used at the later point `point` of the curve: the measurement is
         recent, the mesh is the same, and the scaled error is within the accuracy."""
-        max_reuses = CURVE_SECANT_SETTINGS.max_unmeasured - 1
+        max_reuses = CURVE_SECANT_SETTINGS.max_points_per_measurement - 1
         recent = self.reuse_count < max_reuses and mesh_of(point.orbit) == self.mesh
         return recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)
 
     @property
-    def for_next_point(self) -> "CurveErrors":
+    def for_next_point(self) -> "MeasuredCurveError":
         """The same measured error for the next point of the curve, with `reuse_count` increased by 1."""
         return replace(self, reuse_count=self.reuse_count + 1)
 
@@ -150,7 +151,7 @@ class SolvedPoint:
     """A solved point of a curve of special points: cycle, and values of the two parameters of the plane."""
 
     orbit: Orbit
-    scale: Scale
+    scale: ArcLengthScale
     branch_direction: Array
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""
@@ -161,8 +162,8 @@ class SolvedPoint:
     row_parameter: float
     """Value of the row parameter."""
     error: float = nan
-    """Absolute error of `parameter`; NaN before `with_larger_errors` sets it."""
-    errors: CurveErrors | None = None
+    """Absolute error of `parameter`; NaN before `with_parameter_errors` sets it."""
+    measured_error: MeasuredCurveError | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
     secant_error: float = 0.0
     """Absolute error of `parameter` at fixed row parameter, by the tolerance of the secant method."""
@@ -172,7 +173,7 @@ class SolvedPoint:
     @property
     def tip_y_max(self) -> float:
         """Largest tip y of the cycle, in L: the modulus of the tip's y at t = 0."""
-        return abs(float(self.orbit.form.tip_coordinates(self.orbit.start)[1]))
+        return abs(float(self.orbit.form.tip_coordinates(self.orbit.start_state)[1]))
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
@@ -180,7 +181,7 @@ class SolvedPoint:
         moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
         return np.append(moved, self.row_coordinate - other.row_coordinate)
 
-    def normal(self, step: Array) -> Array:
+    def unit_normal(self, step: Array) -> Array:
         """Unit normal of the curve, (2,), in components (along the branch, row coordinate); perpendicular to
         `step`, (4,), a step along the curve."""
         way = np.array([float(self.branch_direction @ step[:3]), step[3]])
@@ -188,7 +189,7 @@ class SolvedPoint:
         return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
-def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
+def with_parameter_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     """The points of a curve, in order, with the field `error` set: the error by the mesh plus the error of
     the secant method.
 
@@ -197,14 +198,14 @@ def with_larger_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     if a point has no error estimate.
     """
     found: list[SolvedPoint] = []
-    behind: CurveErrors | None = None
+    behind: MeasuredCurveError | None = None
     # In reverse order, so that the next measurement after each point is known.
     for point in reversed(points):
-        if point.errors is None:
+        if point.measured_error is None:
             raise ValueError("the point has no error estimate")
-        candidates = [point.errors]
-        if point.errors.reuse_count == 0:
-            behind = point.errors
+        candidates = [point.measured_error]
+        if point.measured_error.reuse_count == 0:
+            behind = point.measured_error
         elif behind and behind.mesh == mesh_of(point.orbit):
             candidates.append(behind)
         by_mesh = max(errors.error_at(point) for errors in candidates)
@@ -245,4 +246,4 @@ def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
 def line_across(step: Array, one: SolvedPoint, other: SolvedPoint) -> SearchLine:
     """Line across the curve beyond the points `one` and `other`, perpendicular to `step`, (4,), a step along
     the curve."""
-    return SearchLine(other.normal(step), chord_slope(one, other))
+    return SearchLine(other.unit_normal(step), chord_slope(one, other))

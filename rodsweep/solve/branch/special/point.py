@@ -11,20 +11,20 @@ from ...orbit.orbit import Orbit
 class SpecialPointSettings:
     """Settings for locating a special point on a branch: tolerances, meshes, and numbers of steps."""
 
-    real_multiplier: float = 1e-7
+    real_multiplier_tolerance: float = 1e-7
     """A multiplier m is treated as real if |Im m| is at most this number times |m|."""
     accuracy: float = 1e-9
     """Relative accuracy of the parameter at a special point, unless the accuracy of the branch is a smaller
     number."""
-    first_mesh_share: float = 0.2
+    first_mesh_accuracy_ratio: float = 0.2
     """Ratio of the accuracy for which the first mesh is chosen to the required accuracy."""
     cycle_tolerance: float = 1e-12
     """Relative tolerance of the cycles solved during the search, about the smallest error that corrections
     with one matrix reach."""
-    function_tolerance: float = 1e-10
+    test_function_tolerance: float = 1e-10
     """The correction of a test function stops when its value changes by at most this number. A correction
     gains two digits, and at a fold the error of the parameter is of second order in the test function."""
-    max_secants: int = 12
+    max_secant_steps: int = 12
     """Maximum number of secant steps."""
     max_stalled_step: float = 1e-6
     """The secant method stops if its step, divided by the step of the branch, is at most this number and has
@@ -42,17 +42,17 @@ class SpecialPointSettings:
     secant_error_at_fold: float = 1e-5
     """Error of the arc length of a fold caused by the last secant step, divided by the step of the branch.
     The slope may come from a coarser mesh and then has a relative error of 0.1."""
-    matrix_distance: float = 1e-3
+    max_matrix_distance: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix factors correct the test function
     of the cycle; at this distance each correction gains at least two digits."""
     bracket_tolerance: float = 1e-3
     """Relative tolerance of the bracketing: for the test function, divided by its smaller modulus at the two
     ends; for the arc length, divided by the step."""
-    max_mesh_pairs: int = 4
+    max_mesh_comparisons: int = 4
     """Maximum number of comparisons of a special point on two successive meshes."""
-    min_more_orders: int = 2
+    min_order_increase: int = 2
     """Smallest increase of the order of the elements on the next finer mesh."""
-    max_more_orders: int = 8
+    max_order_increase: int = 8
     """Largest increase of the order of the elements on the next finer mesh."""
     space_decay: float = 0.8
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by
@@ -63,12 +63,12 @@ class SpecialPointSettings:
     max_interval_ratio: float = 2.0
     """Largest ratio of the number of time intervals of the next finer mesh to the number of the present mesh.
     """
-    time_order_by_stages: float = 1.5
+    time_order_per_stage: float = 1.5
     """Order in time assumed for the error of a special point, divided by the number of stages; the orders
     measured are larger than assumed."""
     error_factor: float = 3.0
     """The error estimate is the difference between the special points on two meshes, times this factor."""
-    slope_factor: float = 2.0
+    max_slope_ratio: float = 2.0
     """Largest derivative of period and tip y by the parameter at a special point, divided by the slope of the
     chord between the cycles before and after the point."""
     rounding_error: float = 1e-13
@@ -123,7 +123,7 @@ class SpecialPoint:
     """Relative difference of the period from the period at the exact special point."""
     size_error: float = nan
     """Relative difference of the largest tip y from its value at the exact special point."""
-    after: int = -1
+    index_of_cycle_before: int = -1
     """Index of the last cycle of the branch before the special point; -1 if no cycle precedes the point."""
     reason: EndReason | None = None
     """Reason for the end of the branch at this point; None if the branch does not end here."""
@@ -141,7 +141,8 @@ class SpecialPoint:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
     """A special point as the result file stores it. row_index: index of the row. row_value: value of the row
-    parameter. at: value of the parameter along the row. period: in tau2. tip_y_max: in L."""
+    parameter. kind: kind of the point. at: value of the parameter along the row. period: in tau2. tip_y_max:
+    in L."""
 
     row_index: int
     row_value: float

@@ -12,21 +12,21 @@ from collections.abc import Callable
 import numpy as np
 
 from ...point import Unsolvable
-from ..arc import ArcPoint, arc_length_between
+from ..arc import BranchCycle, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
-CycleStep = Callable[[ArcPoint, float], ArcPoint]
+CycleStep = Callable[[BranchCycle, float], BranchCycle]
 """Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises
 Unsolvable."""
 
 
-def unstable_multiplier_count(point: ArcPoint) -> int:
+def unstable_multiplier_count(point: BranchCycle) -> int:
     """Number of nontrivial multipliers of a cycle, over the solved time interval, outside the unit circle."""
-    return int((np.abs(point.partial_multipliers) > 1).sum())
+    return int((np.abs(point.multipliers_over_solved_part) > 1).sum())
 
 
-def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialKind], bool]:
+def special_kinds_between(start: BranchCycle, end: BranchCycle) -> tuple[list[SpecialKind], bool]:
     """(kinds of the special points between the cycles `start` and `end`, whether these kinds explain the
     change of the number of multipliers outside the unit circle)."""
     found = []
@@ -43,26 +43,32 @@ def special_kinds_between(start: ArcPoint, end: ArcPoint) -> tuple[list[SpecialK
     return found, len(found) <= 1 and abs(change - len(found)) <= slack
 
 
-def _count_beyond_minus_one(point: ArcPoint) -> int:
+def _count_beyond_minus_one(point: BranchCycle) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
-    h = point.partial_multipliers
-    return int(((h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h))).sum())
-
-
-def _has_multiplier_near_one(point: ArcPoint) -> bool:
-    return bool(
-        (np.abs(point.partial_multipliers - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance).any()
+    h = point.multipliers_over_solved_part
+    return int(
+        (
+            (h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h))
+        ).sum()
     )
 
 
-def _has_complex_pair(point: ArcPoint) -> bool:
-    h = point.partial_multipliers
-    return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)).any())
+def _has_multiplier_near_one(point: BranchCycle) -> bool:
+    return bool(
+        (
+            np.abs(point.multipliers_over_solved_part - 1) < SPECIAL_POINT_SETTINGS.unit_multiplier_distance
+        ).any()
+    )
 
 
-def special_points(
-    start: ArcPoint,
-    end: ArcPoint,
+def _has_complex_pair(point: BranchCycle) -> bool:
+    h = point.multipliers_over_solved_part
+    return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)).any())
+
+
+def special_points_between(
+    start: BranchCycle,
+    end: BranchCycle,
     step: CycleStep,
     accuracy: float,
     depth: int = 0,
@@ -86,7 +92,7 @@ def special_points(
         except Unsolvable:
             pass
         else:
-            first, first_explained = special_points(start, middle, step, accuracy, depth + 1)
-            second, second_explained = special_points(middle, end, step, accuracy, depth + 1)
+            first, first_explained = special_points_between(start, middle, step, accuracy, depth + 1)
+            second, second_explained = special_points_between(middle, end, step, accuracy, depth + 1)
             return first + second, first_explained and second_explained
     return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], explained

@@ -20,7 +20,7 @@ from ...orbit.orbit_mesh import mesh_of
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
-from ..bordered.scale import Scale
+from ..bordered.scale import ArcLengthScale
 from .augmented.functions import AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
 from .on_curve import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
@@ -30,19 +30,20 @@ if TYPE_CHECKING:
 
 
 class _SecantIterate(NamedTuple):
-    """A cycle solved by the secant method. vectors: tangent, (N + 1,), or eigenvector, (2, N + 1), of the
-    test function. test: value of the test function. distance: distance from the predicted point, in the
-    direction across the curve."""
+    """A cycle solved by the secant method. null_vectors: tangent, (N + 1,), or eigenvector, (2, N + 1), of
+    the test function. test_value: value of the test function. distance: distance from the predicted point, in
+    the direction across the curve."""
 
     orbit: Orbit
-    vectors: Array
-    test: float
+    null_vectors: Array
+    test_value: float
     distance: float
 
 
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
-    cycle. Arguments as in `CycleFamily.corrected_point`."""
+    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: present cycle. distance: its distance from
+    the start of the search along `line`. start_arc_length: arc length of this start along the branch."""
 
     def __init__(
         self,
@@ -60,18 +61,18 @@ class SecantSearch:
         self.orbit = family.orbit_at_row(start, row_coordinate)
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
-        self.length = float(family.border @ family.scale.components(start))
-        self.is_carried = not is_other_mesh
+        self.start_arc_length = float(family.border @ family.scale.components(start))
+        self.has_carried_derivatives = not is_other_mesh
         """Whether the derivatives come from the previous point of the curve."""
         self.curvature = (
-            CURVE_SECANT_SETTINGS.curvature_factor * derivatives.curvature if derivatives else inf
+            CURVE_SECANT_SETTINGS.curvature_factor * derivatives.relative_curvature if derivatives else inf
         )
         """Second derivative of the test function divided by the first; inf if unknown."""
-        self.measured_curvature = derivatives.curvature if derivatives else inf
-        self.slopes: list[tuple[float, float]] = []
+        self.measured_curvature = derivatives.relative_curvature if derivatives else inf
+        self.measured_slopes: list[tuple[float, float]] = []
         """Measured derivatives of the test function: (middle of the two cycles, derivative)."""
-        contraction = derivatives.contraction if derivatives and not family.has_small_cycles else inf
-        self.nearby = NearbyCycleSolver(family, self.orbit, contraction)
+        contraction = derivatives.contraction_rate if derivatives and not family.has_small_cycles else inf
+        self.nearby_solver = NearbyCycleSolver(family, self.orbit, contraction)
 
     def make_step(self) -> SolvedPoint | None:
         """Makes one secant step. Returns the point of the curve after the last step, otherwise None. Raises
@@ -80,24 +81,30 @@ class SecantSearch:
         span = 0.0
         if own := self._derivatives_from_last(present):
             self.derivatives = own
-            self.is_carried = False
+            self.has_carried_derivatives = False
             span = own.cycle_distance
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
-        step = -present.test / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant
-        if not abs(step) <= CURVE_SECANT_SETTINGS.longest_secant:
+        step = -present.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
+        if not abs(step) <= CURVE_SECANT_SETTINGS.max_secant_step:
             raise Unsolvable("the secant method leaves the curve")
         if rates:
             error = self._error_after(step, span)
-            if self._is_enough(error):
-                known = replace(rates, contraction=self.nearby.contraction, curvature=self.measured_curvature)
+            if self._is_accurate_enough(error):
+                known = replace(
+                    rates,
+                    contraction_rate=self.nearby_solver.contraction_rate,
+                    relative_curvature=self.measured_curvature,
+                )
                 return self._curve_point(step, known, error)
-            if self.is_carried and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
+            if self.has_carried_derivatives and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
                 # Between closer cycles no derivative can be measured.
                 step = math.copysign(2 * CURVE_SECANT_SETTINGS.min_cycle_distance, step)
         if self.previous:  # the vectors are extrapolated along a line, like the cycle
-            change = (present.vectors - self.previous.vectors) / (present.distance - self.previous.distance)
-            self.nearby.set_approximate_vectors(present.vectors + step * change)
+            change = (present.null_vectors - self.previous.null_vectors) / (
+                present.distance - self.previous.distance
+            )
+            self.nearby_solver.set_approximate_vectors(present.null_vectors + step * change)
         if rates:
             self.orbit = self._predicted_orbit(step, rates)
         self.previous = present
@@ -114,87 +121,87 @@ class SecantSearch:
             return self.curvature * abs(step) * (abs(step) + span) / 2
         assert self.derivatives is not None
         slope_error = CURVE_SECANT_SETTINGS.slope_error + self.curvature * self.derivatives.cycle_distance / 2
-        if self.is_carried:
+        if self.has_carried_derivatives:
             # Along the curve a derivative changes more where the curvature is large.
             slope_error = CURVE_SECANT_SETTINGS.carried_slope_error * max(1.0, self.curvature)
         return min(slope_error, 1.0) * abs(step)
 
-    def _is_enough(self, error: float) -> bool:
+    def _is_accurate_enough(self, error: float) -> bool:
         """Whether a point at the distance `error` from the curve is accurate enough. Errors within the
         tolerance of the test function always are."""
         if error <= AUGMENTED_SETTINGS.tolerance:
             return True
-        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter))
-        allowed = CURVE_SECANT_SETTINGS.secant_share * CURVE_SECANT_SETTINGS.accuracy * parameter
+        parameter = abs(getattr(self.orbit.form.rod, self.family.scale.parameter_name))
+        allowed = CURVE_SECANT_SETTINGS.max_secant_error_ratio * CURVE_SECANT_SETTINGS.accuracy * parameter
         return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
 
     def _solve_at_distance(self) -> _SecantIterate:
         """The cycle at the present distance across the curve, with its test function; raises Unsolvable."""
         family = self.family
         rates = self.derivatives
-        length = self.length + self.distance * float(self.line.direction[0])
+        length = self.start_arc_length + self.distance * float(self.line.direction[0])
         row = self.row_coordinate + self.distance * float(self.line.direction[1])
         self.orbit = family.orbit_at_row(self.orbit, row)
         slope = abs(rates.test_slope) if rates else 1.0
         enough = (
             AUGMENTED_SETTINGS.tolerance
             if rates
-            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT_SETTINGS.first_secant
+            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT_SETTINGS.first_secant_step
         )
         condition = BorderCondition(family.scale, family.border, length)
-        self.orbit, test = self.nearby.solve(self.orbit, condition, slope, enough)
-        return _SecantIterate(self.orbit, self.nearby.function.vectors, test, self.distance)
+        self.orbit, test = self.nearby_solver.solve(self.orbit, condition, slope, enough)
+        return _SecantIterate(self.orbit, self.nearby_solver.test_function.null_vectors, test, self.distance)
 
     def _derivatives_from_last(self, present: _SecantIterate) -> NormalDerivatives | None:
         """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
         first cycle, or if the two cycles are too close or have equal test functions."""
         before = self.previous
-        if before is None or present.test == before.test:
+        if before is None or present.test_value == before.test_value:
             return None
         if abs(present.distance - before.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
             return None
-        name = self.family.scale.parameter
+        name = self.family.scale.parameter_name
         # The test function is nearly linear here, so that difference quotients are as good as derivatives.
         span = present.distance - before.distance
         one = before.orbit
         other = present.orbit
         change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
         orbit = np.append(other.values - one.values, change) / span
-        slope = (present.test - before.test) / span
+        slope = (present.test_value - before.test_value) / span
         self._measure_curvature((present.distance + before.distance) / 2, slope)
         return NormalDerivatives(self.line.direction, slope, orbit, mesh_of(one), abs(span))
 
     def _measure_curvature(self, middle: float, slope: float) -> None:
         """Updates the curvature from the last two measured derivatives. middle: distance at which the
         derivative of the test function is `slope`."""
-        self.slopes.append((middle, slope))
-        if len(self.slopes) > 1:
-            (at, before), (now, last) = self.slopes[-2:]
+        self.measured_slopes.append((middle, slope))
+        if len(self.measured_slopes) > 1:
+            (at, before), (now, last) = self.measured_slopes[-2:]
             if now != at:
                 self.measured_curvature = self.curvature = abs((last - before) / (now - at) / last)
 
     def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
         """The last cycle, moved by `step` across the curve along `derivatives`."""
-        change = step * derivatives.on_mesh_of(self.orbit)
-        self.nearby.distance += relative_change(self.orbit, change[:-1])
-        return moved_orbit(self.orbit, self.family.scale.parameter, change)
+        change = step * derivatives.orbit_derivative_on_mesh_of(self.orbit)
+        self.nearby_solver.matrix_distance += relative_change(self.orbit, change[:-1])
+        return moved_orbit(self.orbit, self.family.scale.parameter_name, change)
 
     def _curve_point(self, step: float, derivatives: NormalDerivatives, distance_error: float) -> SolvedPoint:
         """The point of the curve: the last cycle, moved by `step` across the curve along `derivatives`.
         distance_error: distance of this point from the curve."""
         family = self.family
-        matrix = self.nearby.matrix
+        matrix = self.nearby_solver.matrix
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
-        scale = Scale.at_orbit(orbit, family.scale.parameter, family.scale.min_deflection_unit)
+        scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter_name, family.scale.min_deflection_unit)
         ahead = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
             branch_direction=ahead / np.linalg.norm(ahead),
             row_coordinate=row_coordinate,
-            parameter=getattr(orbit.form.rod, scale.parameter),
+            parameter=getattr(orbit.form.rod, scale.parameter_name),
             row_parameter=getattr(orbit.form.rod, family.rows.name),
             secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
             normal_derivatives=derivatives,
@@ -204,7 +211,7 @@ class SecantSearch:
         """Displacement of the parameter at a fixed row, for a point at a distance from the curve."""
         rates = self.derivatives
         assert rates is not None
-        parameter = PARAMETERS[self.family.scale.parameter]
-        at = self.orbit.form.rod.coordinate(self.family.scale.parameter)
+        parameter = PARAMETERS[self.family.scale.parameter_name]
+        at = self.orbit.form.rod.coordinate(self.family.scale.parameter_name)
         moved = parameter.value(at + distance * float(rates.orbit_derivative[-1])) - parameter.value(at)
-        return abs(moved - distance * self.line.slope * float(self.line.direction[1]))
+        return abs(moved - distance * self.line.chord_slope * float(self.line.direction[1]))

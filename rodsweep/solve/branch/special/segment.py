@@ -4,7 +4,7 @@ from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
-from ..arc import ArcPoint, arc_length_between
+from ..arc import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import bordered_matrix_of
 from .augmented.functions import FoldFunction, correct_until_converged
@@ -15,11 +15,11 @@ class BranchSegment:
     """Segment of a branch from the cycle `start` to the next cycle `end`, on which cycles are solved at any
     arc length."""
 
-    def __init__(self, start: ArcPoint, end: ArcPoint) -> None:
+    def __init__(self, start: BranchCycle, end: BranchCycle) -> None:
         self.start = start
         self.end = end
         self.length = arc_length_between(start, end)
-        self._tangent_length = float(
+        self._length_along_end_tangent = float(
             end.unit_tangent @ (end.scale.components(end.orbit) - end.scale.components(start.orbit))
         )
         self._last_solved: tuple[float, Orbit, Array] | None = None
@@ -29,7 +29,7 @@ class BranchSegment:
         the cycles `start` and `end`."""
         # The cubic of `end` passes through both cycles; its variable is the arc length along the tangent at
         # `end`.
-        return self.end.predicted_orbit(-self._tangent_length * (1 - length / self.length))
+        return self.end.predicted_orbit(-self._length_along_end_tangent * (1 - length / self.length))
 
     def set_mesh(self, mesh: OrbitMesh) -> None:
         """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted by the
@@ -45,15 +45,18 @@ class BranchSegment:
         else:
             last, orbit, tangent = self._last_solved
             # From the last cycle along its tangent: a secant method changes the length only a little.
-            start = moved_orbit(orbit, self.start.scale.parameter, (length - last) * tangent)
+            start = moved_orbit(orbit, self.start.scale.parameter_name, (length - last) * tangent)
         condition = self.start.arc_length_condition(length)
         workspace = self.start.workspace
         found = condition.solve_cycle(
-            start, SPECIAL_POINT_SETTINGS.cycle_tolerance, workspace, SPECIAL_POINT_SETTINGS.matrix_distance
+            start,
+            SPECIAL_POINT_SETTINGS.cycle_tolerance,
+            workspace,
+            SPECIAL_POINT_SETTINGS.max_matrix_distance,
         )
         function = FoldFunction(bordered_matrix_of(found), self.start.unit_tangent, False)
         correct_until_converged(function, found.orbit)
-        self._last_solved = length, found.orbit, function.vectors
+        self._last_solved = length, found.orbit, function.null_vectors
         return found
 
     @property

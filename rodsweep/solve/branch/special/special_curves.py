@@ -20,7 +20,7 @@ class CurveIdentitySettings:
     """Settings of two tests: whether a special point lies on a curve, and whether two curves are
     identical."""
 
-    max_distance: float = 1e-6
+    max_row_distance: float = 1e-6
     """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
     max_chord_distance: float = 0.1
@@ -52,7 +52,7 @@ class CurveIdentitySettings:
 CURVE_IDENTITY_SETTINGS = CurveIdentitySettings()
 
 
-Arrays = dict[str, Array]
+HalfCurveArrays = dict[str, Array]
 """Stored result of following a half curve: arrays by name."""
 
 
@@ -133,10 +133,10 @@ class TracedHalfCurve:
     half: HalfCurve | None
     distances: dict[int, float] = field(default_factory=dict)
 
-    def arrays(self) -> Arrays:
+    def arrays(self) -> HalfCurveArrays:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
-        the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby special
-        point."""
+        the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
+        special point."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
@@ -145,7 +145,7 @@ class TracedHalfCurve:
         }
 
     @classmethod
-    def from_arrays(cls, arrays: Arrays) -> "TracedHalfCurve":
+    def from_arrays(cls, arrays: HalfCurveArrays) -> "TracedHalfCurve":
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
@@ -159,12 +159,13 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 @dataclass(frozen=True, slots=True)
 class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
-    vanishing: for each end the Hopf point at which the cycles vanish; None for an end with another reason."""
+    vanishing_points: for each end the Hopf point at which the cycles vanish; None for an end with another
+    reason, or on a curve with too few points for the extrapolation."""
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]
     ends: tuple[CurveEnd, CurveEnd]
-    vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
+    vanishing_points: tuple[VanishingPoint | None, VanishingPoint | None]
 
     @classmethod
     def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
@@ -199,8 +200,8 @@ def with_located_ends(
                 return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
-    first, last = map(located, curve.vanishing)
-    return replace(curve, vanishing=(first, last))
+    first, last = map(located, curve.vanishing_points)
+    return replace(curve, vanishing_points=(first, last))
 
 
 def lagrange_weights(places: Array, at: float) -> Array:

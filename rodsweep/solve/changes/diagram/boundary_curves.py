@@ -80,7 +80,7 @@ def trace_boundary(
     ahead = follow_curve(curve, first, BOUNDARY_STEPS, lambda _: report())
     back = ahead
     passed = ahead.solutions
-    if ahead.end is not CurveStop.closed:
+    if ahead.end_reason is not CurveStop.closed:
         back = follow_curve(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])

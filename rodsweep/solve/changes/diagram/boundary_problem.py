@@ -22,7 +22,7 @@ BOUNDARY_STEPS = StepControl(
     min_length=1e-9,
     target_angle=0.15,
     max_angle=0.3,
-    max_ratio=1.5,
+    max_length_ratio=1.5,
     max_solutions=5000,
 )
 """Control of the arc length of continuation steps; each axis of the plane has length 1. Steps are short
@@ -154,12 +154,12 @@ class ChangeCurveProblem:
         If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
         gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
         """
-        if followed.end is CurveStop.closed:
+        if followed.end_reason is CurveStop.closed:
             return BoundaryEnd.closed
-        if followed.end is CurveStop.full:
+        if followed.end_reason is CurveStop.max_solutions:
             return BoundaryEnd.list_full
-        if followed.end is CurveStop.margin:
-            return BoundaryEnd.crushed if followed.margin == CRUSHED_MARGIN else BoundaryEnd.edge
+        if followed.end_reason is CurveStop.zero_margin:
+            return BoundaryEnd.crushed if followed.margin_index == CRUSHED_MARGIN else BoundaryEnd.edge
         v, tangent = followed.solutions[-1]
         if (
             self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min()

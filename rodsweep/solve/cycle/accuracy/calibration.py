@@ -1,9 +1,9 @@
 """Calibration of a mesh: measured errors, reused for later cycles on the same mesh, and convergence rates.
 
 The convergence rate in space is estimated from the decay of the orbit's coefficients, the order in time from
-the number of stages; errors measured on two meshes give more accurate rates. The rates determine the cheapest
-sufficient mesh. Along a chain of cycles the errors are measured at the first cycle on a mesh. At later cycles
-these errors are scaled up as the coefficient tails of the orbits grow.
+the number of stages; errors measured on two meshes give more accurate rates, from which the cheapest
+sufficient mesh follows. Along a chain of cycles the errors are measured at the first cycle on a mesh, and
+scaled up at later cycles as the coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace
@@ -16,132 +16,136 @@ from ....determinant.exponents import EXPONENT_SETTINGS
 from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
-from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
+from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from ...orbit.tails import smooth_tails, tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
-from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
+from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_weighted_error
 
 MULTIPLIER_INDEX = 4
-"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
-indices are the indices of `path_differences`."""
+"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
 ERROR_COUNT = 5
-"""Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
-largest nontrivial multiplier."""
+"""Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
+
+CHECKPOINT_FIELDS = dict(
+    space="space_errors", time="time_errors", fall="space_decay", power="time_order", tails="tails_and_size"
+)
+"""Field of `Calibration` by the name of its array in a checkpoint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """Measured errors of a mesh at an orbit, with convergence rates.
-
-    space, time: errors due to the elements and to the time intervals, (5,) each. The first four are relative,
-    as in `path_differences`; the last is the absolute error of the largest nontrivial multiplier.
-    """
+    """Measured errors of a mesh at an orbit, with convergence rates. space_errors, time_errors: errors due to
+    the elements and to the time intervals, (5,): four relative errors as in `path_differences`, and the
+    absolute error of the largest nontrivial multiplier."""
 
     mesh: OrbitMesh
-    space: Array
-    time: Array
-    fall: Array
+    space_errors: Array
+    time_errors: Array
+    space_decay: Array
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,)."""
-    power: Array
+    time_order: Array
     """Order of convergence of the errors in time, (5,)."""
-    tails: Array
+    tails_and_size: Array
     """Coefficient tails in space and time (`smooth_tails`) and size of the measured orbit, (3,)."""
-    reach: float
+    parameter_change: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
     error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
-        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
-        `error_growth`."""
-        errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
-        numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.as_array}
+        """All fields except `error_growth` as named arrays, for a checkpoint."""
+        errors = {name: getattr(self, field) for name, field in CHECKPOINT_FIELDS.items()}
+        numbers = {"reach": np.array(self.parameter_change), "calibrated_mesh": self.mesh.as_array}
         return errors | numbers
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
         """The calibration from the named arrays that `Calibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
-        errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
-        return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
+        errors = {field: arrays[name] for name, field in CHECKPOINT_FIELDS.items()}
+        return cls(mesh=mesh, parameter_change=float(arrays["reach"]), **errors)
 
     def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
-        """This calibration with the errors scaled to a later orbit of a chain; `reach` is inf if the orbit
-        has shrunk too much. change: relative change of the parameter since the previous orbit."""
+        """This calibration with the errors scaled to a later orbit of a chain; `parameter_change` is inf if
+        the orbit has shrunk too much. change: relative change of the parameter since the previous orbit."""
         tails = _tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
-        dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
-        growth = _growth_factors(self.tails, tails)
-        return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
+        dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
+        growth = _error_growth_factors(self.tails_and_size, tails)
+        return replace(
+            self, error_growth=growth, parameter_change=inf if dies else self.parameter_change + change
+        )
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
-        after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0)
-        return replace(self, error_growth=_growth_factors(self.tails, after))
+        after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (0.0, 0.0, 1.0)
+        return replace(self, error_growth=_error_growth_factors(self.tails_and_size, after))
 
     @property
-    def rates_only(self) -> "Calibration":
-        """This calibration with `reach` = inf: the errors no longer apply, the convergence rates still do."""
-        return replace(self, reach=inf)
+    def with_outdated_errors(self) -> "Calibration":
+        """This calibration with an infinite `parameter_change`: its errors no longer apply, its rates still
+        do."""
+        return replace(self, parameter_change=inf)
 
     @property
     def is_valid(self) -> bool:
-        """Whether the scaled errors apply: `reach` and `error_growth` do not exceed their limits."""
-        is_near = self.reach <= CALIBRATION_SETTINGS.max_parameter_change
+        """Whether the scaled errors apply: `parameter_change` and `error_growth` are within their limits."""
+        is_near = self.parameter_change <= CALIBRATION_SETTINGS.max_parameter_change
         return is_near and float(self.error_growth.max()) <= CALIBRATION_SETTINGS.max_error_growth
 
     def is_valid_after(self, change: float) -> bool:
         """Whether the errors may still apply after a further relative change `change` of the parameter."""
-        return self.reach + change <= CALIBRATION_SETTINGS.max_parameter_change
+        return self.parameter_change + change <= CALIBRATION_SETTINGS.max_parameter_change
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
-        """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
-        `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        shrinkage = np.minimum(_tail_growth(self.tails, _tails_and_size(orbit)), 1.0)
-        in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * shrinkage
-        return in_space * self.space, in_time * self.time
+        """Returns (errors in space, errors in time), (5,): lower limits of errors measured again at `orbit`
+        on this mesh: fractions of the present errors that decrease with the coefficient tails."""
+        shrinkage = np.minimum(_squared_tail_growth(self.tails_and_size, _tails_and_size(orbit)), 1.0)
+        in_space, in_time = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
+        return in_space * self.space_errors, in_time * self.time_errors
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
-        requested relative accuracy `accuracy`.
-
-        For the multiplier and the other extrema, errors in space and in time are scaled by the larger of the
-        two growth factors, because an error was once seen to grow 2.7 times as much as its tail. For period
-        and largest y, whose errors determine the mesh, the larger factor would cost a tenth of the time of a
-        sweep.
-        """
+        requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
+        in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
+        times as much as its tail."""
         in_space, in_time = self.error_growth
-        stated = _errors_with_safety_factors(self.space * in_space, self.time * in_time, accuracy)
+        stated = _errors_with_safety_factors(
+            self.space_errors * in_space, self.time_errors * in_time, accuracy
+        )
         larger = float(self.error_growth.max())
-        # Extrema and multipliers mix the errors in space and in time, so the larger growth applies.
-        stated[2:] = _errors_with_safety_factors(self.space * larger, self.time * larger, accuracy)[2:]
+        stated[2:] = _errors_with_safety_factors(
+            self.space_errors * larger, self.time_errors * larger, accuracy
+        )[2:]
         return CycleErrors(*stated.tolist())
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which the convergence rates predict the relative accuracy `accuracy`; the next
-        finer mesh if no allowed mesh suffices."""
+        """The cheapest mesh on which the rates predict the relative accuracy; else the next finer mesh."""
         present = self.mesh
         allowed = ORBIT_MESH_SETTINGS
-        lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_fewer_orders)
-        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION_SETTINGS.max_more_orders)
+        lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_order_decrease)
+        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION_SETTINGS.max_order_increase)
         orders = np.arange(lowest, highest + 1)
-        fewest = max(allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * present.intervals))
-        most = min(CALIBRATION_SETTINGS.max_interval_ratio * present.intervals, allowed.max_intervals)
+        fewest = max(
+            allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * present.interval_count)
+        )
+        most = min(CALIBRATION_SETTINGS.max_interval_ratio * present.interval_count, allowed.max_intervals)
         intervals = np.arange(fewest, most + 1)
         # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
         # than the distance of the tip's paths, and errors in time with the smallest order.
-        least = np.minimum(self.fall, self.fall[WHOLE_PATH])
-        fall = np.where(orders < present.order, self.fall[:, None], least[:, None])
-        space = self.space[:, None] * np.exp(fall * (present.order - orders))
-        # The order was measured on coarser meshes; for finer meshes the smallest order is taken.
-        power = np.where(intervals < present.intervals, self.power[:, None], present.stages + 1)
-        time = self.time[:, None] * (present.full_intervals / (intervals - 1)) ** power
+        least = np.minimum(self.space_decay, self.space_decay[PATH_INDEX])
+        fall = np.where(orders < present.order, self.space_decay[:, None], least[:, None])
+        space = self.space_errors[:, None] * np.exp(fall * (present.order - orders))
+        power = np.where(
+            intervals < present.interval_count, self.time_order[:, None], present.stage_count + 1
+        )
+        time = self.time_errors[:, None] * (present.full_intervals / (intervals - 1)) ** power
         errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error * accuracy
+        enough = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error_ratio * accuracy
         meshes = [
-            replace(present, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
+            replace(present, order=int(orders[i]), interval_count=int(intervals[np.argmax(enough[i])]))
             for i in np.flatnonzero(enough.any(axis=1))
         ]
         return min(meshes, key=lambda mesh: mesh.cost, default=present.finer)
@@ -151,43 +155,40 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
     safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
     whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
-    apart = space[WHOLE_PATH] + time[WHOLE_PATH]
-    in_time = CALIBRATION_SETTINGS.min_error_share_in_time * time[WHOLE_PATH]
-    parts = [np.maximum(part[PERIOD_CHANGE], part[LARGEST_Y]) for part in (space, time)]
-    either = CALIBRATION_SETTINGS.mutual_bound * (parts[0] + parts[1])
-    of_period = CALIBRATION_SETTINGS.min_period_error_share * space[WHOLE_PATH] + in_time
-    of_height = CALIBRATION_SETTINGS.min_height_error_share * space[WHOLE_PATH] + in_time
+    apart = space[PATH_INDEX] + time[PATH_INDEX]
+    in_time = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
+    parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
+    either = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
+    of_period = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + in_time
+    of_height = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + in_time
     stated = [
-        np.maximum(np.maximum(whole[PERIOD_CHANGE], of_period), either),
-        np.maximum(np.maximum(whole[LARGEST_Y], of_height), either),
-        np.maximum(whole[WORST_EXTREMUM], CALIBRATION_SETTINGS.min_extrema_error_share * apart),
+        np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
+        np.maximum(np.maximum(whole[Y_INDEX], of_height), either),
+        np.maximum(whole[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * apart),
         whole[MULTIPLIER_INDEX],
     ]
-    least = max(CYCLE_ERROR_SETTINGS.min_error_share * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
+    least = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
     errors: Array = np.maximum(np.array(stated), least)
     return errors
 
 
 def _tails_and_size(orbit: Orbit) -> Array:
     """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
-    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
+    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
 
 
-def _growth_factors(before: Array, after: Array) -> Array:
-    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
-
-    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
-
-    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
-    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point. A
-    predicted decrease is ignored.
-    """
-    # Errors are of second order in the tails.
-    growth: Array = np.maximum(_tail_growth(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
+def _error_growth_factors(before: Array, after: Array) -> Array:
+    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1:
+    absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
+    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
+    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each."""
+    growth: Array = np.maximum(_squared_tail_growth(before, after), 1.0) * max(
+        (before[2] / after[2]) ** 2, 1.0
+    )
     return growth
 
 
-def _tail_growth(before: Array, after: Array) -> Array:
+def _squared_tail_growth(before: Array, after: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
     after: relative tails and size, (3,) each."""
     change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
@@ -198,28 +199,27 @@ def calibration_of(
     mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
-
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If its mesh has another
-    order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
-    in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
-    """
+    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If the mesh of `before` has
+    the same elements but another order, the errors on both meshes give the rate in space; if the number of
+    intervals differs, the order in time. Otherwise the rates of `before` are kept. None: rates from the
+    coefficients and the stages."""
     tails = _tails_and_size(orbit)
     if before is None:
-        decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).decay
+        decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
         fall = _limited_space_decay(np.full(ERROR_COUNT, decay))
-        power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_by_stages * orbit.stages)
+        power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
         return Calibration(mesh, space, time, fall, power, tails, 0.0)
     previous = before.mesh
-    fall = before.fall
-    power = before.power
+    fall = before.space_decay
+    power = before.time_order
     if previous.order != mesh.order and previous.edges == mesh.edges:
-        fall = _space_rate(before.space, space, mesh.order - previous.order)
-    if previous.intervals != mesh.intervals:
-        power = _time_order(before.time, time, previous, mesh)
+        fall = _measured_space_decay(before.space_errors, space, mesh.order - previous.order)
+    if previous.interval_count != mesh.interval_count:
+        power = _measured_time_order(before.time_errors, time, previous, mesh)
     return Calibration(mesh, space, time, fall, power, tails, 0.0)
 
 
-def _space_rate(before: Array, after: Array, orders: int) -> Array:
+def _measured_space_decay(before: Array, after: Array, orders: int) -> Array:
     """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
     on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
     return _limited_space_decay(_log_ratio(before, after) / orders)
@@ -232,11 +232,11 @@ def _limited_space_decay(decay: Array) -> Array:
     return limited
 
 
-def _time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
+def _measured_time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of convergence of the errors in time, (5,). before, after: errors in time, (5,) each, on the
     meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
-    least = mesh.stages + 1
+    least = mesh.stage_count + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
     most = CALIBRATION_SETTINGS.max_time_order_ratio * least
     power: Array = np.clip(_log_ratio(before, after) / steps, least, most)

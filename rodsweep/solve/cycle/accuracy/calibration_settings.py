@@ -10,42 +10,42 @@ class CalibrationSettings:
 
     safety_factor: float = 3.0
     """Safety factor on measured errors of period, extrema and multiplier."""
-    min_height_error_share: float = 0.16
+    min_largest_y_error_ratio: float = 0.16
     """Lower limit of the error estimate of the largest y, divided by the distance between the tip's paths on
     two meshes with different elements: one number may agree on two meshes by coincidence, a path does not."""
-    min_period_error_share: float = 0.16
+    min_period_error_ratio: float = 0.16
     """Lower limit of the error estimate of the period, divided by the distance between the tip's paths on two
     meshes with different elements."""
-    min_extrema_error_share: float = 1.6
+    min_extrema_error_ratio: float = 1.6
     """Lower limit of the error estimate of the other extrema, divided by the sum of the distances between the
     tip's paths for different elements and for different time intervals."""
-    min_error_share_in_time: float = 0.004
+    time_path_error_factor: float = 0.004
     """This factor times the distance between the tip's paths for different time intervals is added to the
     lower limits of the error estimates of period and largest y. The distance is largest in theta, whose
     errors matter least."""
-    mutual_bound: float = 2.0
+    min_ratio_to_larger_error: float = 2.0
     """Lower limit of the error estimates of period and of largest y, divided by the larger of the two
     measured errors. The two errors decrease as the squares of the tails, and rarely change sign near the same
     mesh. Without this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of up to
     4.5."""
-    planned_error: float = 0.5
+    planned_error_ratio: float = 0.5
     """A mesh is planned for a predicted error of at most this fraction of the accuracy."""
-    error_decay_ratio: float = 1.6
+    error_to_coefficient_decay_ratio: float = 1.6
     """Assumed decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per order.
     The errors are proportional to squared coefficients; ratios from 1.4 to 2 were measured."""
     min_space_decay: float = 0.5
     """Lower limit of an assumed or measured decrease of ln(error) in space per order."""
     max_space_decay: float = 2.2
     """Upper limit of an assumed or measured decrease of ln(error) in space per order."""
-    time_order_by_stages: float = 1.5
+    time_order_per_stage: float = 1.5
     """Order of convergence in time divided by the number of stages, assumed if no order was measured."""
     max_time_order_ratio: float = 2.0
     """Upper limit of a measured order of convergence in time, divided by the smallest order, stages + 1."""
-    max_fewer_orders: int = 3
+    max_order_decrease: int = 3
     """Largest decrease of the order of the elements from the present mesh to a planned mesh."""
     min_interval_ratio: float = 0.6
     """Lower limit of the ratio of the numbers of time intervals, planned mesh to present mesh."""
-    max_more_orders: int = 12
+    max_order_increase: int = 12
     """Largest increase of the order of the elements from the present mesh to a planned mesh; the convergence
     rates are not known for finer meshes."""
     max_interval_ratio: int = 4
@@ -59,7 +59,7 @@ class CalibrationSettings:
     """The errors are measured again if (size of the orbit)/(size of the measured orbit) is less than this.
     Near the Hopf point where the cycles end, the error of the largest y may change sign and then grow
     fast."""
-    min_repeated_share: float = 0.5
+    min_remeasured_ratio: float = 0.5
     """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled
     with the tails. Near a change of sign, an error is small at one cycle, and three cycles later as large as
     before."""

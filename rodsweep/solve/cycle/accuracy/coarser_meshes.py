@@ -14,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.newton import multiplier_change, newton
+from ...orbit.newton import largest_multiplier_difference, newton
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import path_differences
@@ -28,26 +28,26 @@ from .finer_meshes import FINER_MESH_SETTINGS, ComparedCycle
 class CoarserMeshSettings:
     """Settings for the coarser meshes that predict a cycle on a fine mesh."""
 
-    min_fewer_orders: int = 2
+    min_order_difference: int = 2
     """Smallest difference between the orders of a fine mesh and of its coarse mesh."""
-    max_fewer_orders: int = 4
+    max_order_difference: int = 4
     """Largest difference between the orders of a fine mesh and of its coarse mesh."""
-    min_space_decay: float = 1.5
-    """The difference of the orders is chosen, up to `max_fewer_orders`, so that ln(error) in space is
+    min_log_error_decrease: float = 1.5
+    """The difference of the orders is chosen, up to `max_order_difference`, so that ln(error) in space is
     expected to decrease by at least this number from the coarse mesh to the fine mesh. Where coefficients
     decay slowly, errors oscillate with the order, and meshes of nearly the same order may agree by
     coincidence. With a difference of 2 orders, 16 of 112 errors of slender cones exceeded their estimates, by
     factors up to 2.2. With this decrease no error exceeded 0.4 times its estimate."""
-    more_intervals: float = 0.4
+    added_interval_fraction: float = 0.4
     """Additional time intervals of the fine mesh, as a fraction of the number of intervals of the coarse
     mesh."""
-    max_more_orders: int = 2
+    max_order_excess: int = 2
     """A coarse mesh made for a fine mesh of order p predicts cycles on meshes of orders up to p +
-    max_more_orders."""
+    max_order_excess."""
     max_interval_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
     fine mesh to coarse mesh, is at most this."""
-    slowest_decay_ratio: float = 1.2
+    pessimistic_decay_ratio: float = 1.2
     """Pessimistic decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per
     order."""
 
@@ -62,49 +62,52 @@ class CoarserMeshes:
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. near: an orbit near
         the cycle, on any mesh. accuracy: requested relative accuracy."""
-        fewer = _fewer_orders(near)
+        fewer = _order_difference(near)
         order = max(
-            mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_fewer_orders
+            mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference
         )
-        self._highest_order = order + fewer + COARSER_MESH_SETTINGS.max_more_orders
-        intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.more_intervals)) + 1
-        self.coarse_mesh = replace(mesh, order=order, intervals=intervals)
-        self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
+        self._max_predicted_order = order + fewer + COARSER_MESH_SETTINGS.max_order_excess
+        intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
+        self.coarse_mesh = replace(mesh, order=order, interval_count=intervals)
+        self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
-        self._coarse = self._solve_on_mesh(self.coarse_mesh, near)
-        self._finer: dict[OrbitMesh, ComparedCycle] = {}
+        self._coarse_cycle = self._solve_on_mesh(self.coarse_mesh, near)
+        self._cycles_on_finer_meshes: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
         """Whether the cycle on `mesh` can be predicted: `mesh` has the elements and stages of the coarse
         mesh, and its order and its number of time intervals are not too large."""
         near = (
-            mesh.order <= self._highest_order
-            and self._refined_in_time(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
+            mesh.order <= self._max_predicted_order
+            and self._interval_ratio(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
         )
-        return near and (mesh.edges, mesh.stages) == (self.coarse_mesh.edges, self.coarse_mesh.stages)
+        return near and (mesh.edges, mesh.stage_count) == (
+            self.coarse_mesh.edges,
+            self.coarse_mesh.stage_count,
+        )
 
-    def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
+    def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
         space = self._cycle_on_mesh(replace(self.coarse_mesh, order=mesh.order))
-        time = self._cycle_on_mesh(replace(self.coarse_mesh, intervals=mesh.intervals))
+        time = self._cycle_on_mesh(replace(self.coarse_mesh, interval_count=mesh.interval_count))
         fine_in_space = mesh.interpolated_orbit(space.orbit)
         fine_in_time = mesh.interpolated_orbit(time.orbit)
-        coarse = mesh.interpolated_orbit(self._coarse.orbit)
+        coarse = mesh.interpolated_orbit(self._coarse_cycle.orbit)
         orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
         by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
-        by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
+        by_intervals = self._interval_ratio(mesh) ** (mesh.stage_count + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
-        of_multipliers = multiplier_change(space.multipliers, time.multipliers)
+        of_multipliers = largest_multiplier_difference(space.multipliers, time.multipliers)
         in_space = np.append(self._errors_of_finer_mesh(space, by_orders), 0.0)
         in_time = np.append(self._errors_of_finer_mesh(time, by_intervals), of_multipliers)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
     def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
-        if mesh not in self._finer:
-            self._finer[mesh] = self._solve_on_mesh(mesh, self._coarse.orbit)
-        return self._finer[mesh]
+        if mesh not in self._cycles_on_finer_meshes:
+            self._cycles_on_finer_meshes[mesh] = self._solve_on_mesh(mesh, self._coarse_cycle.orbit)
+        return self._cycles_on_finer_meshes[mesh]
 
     def _solve_on_mesh(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
         return ComparedCycle(newton(mesh.interpolated_orbit(near), self._tolerance, self._workspace))
@@ -115,22 +118,23 @@ class CoarserMeshes:
 
         factor: errors of the coarse mesh divided by the errors of the finer mesh.
         """
-        errors: Array = path_differences(self._coarse.path, finer.path) / (factor - 1)
+        errors: Array = path_differences(self._coarse_cycle.path, finer.path) / (factor - 1)
         return errors
 
-    def _refined_in_time(self, mesh: OrbitMesh) -> float:
-        """Number of full time intervals of `mesh` divided by the number of full time intervals of the coarse
-        mesh."""
+    def _interval_ratio(self, mesh: OrbitMesh) -> float:
+        """Ratio of `full_intervals` of `mesh` to `full_intervals` of the coarse mesh."""
         return mesh.full_intervals / self.coarse_mesh.full_intervals
 
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
-    slowest = COARSER_MESH_SETTINGS.slowest_decay_ratio * tails_of(orbit).decay
+    slowest = COARSER_MESH_SETTINGS.pessimistic_decay_ratio * tails_of(orbit).space_decay
     return min(max(slowest, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
 
 
-def _fewer_orders(near: Orbit) -> int:
+def _order_difference(near: Orbit) -> int:
     """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
-    needed = ceil(COARSER_MESH_SETTINGS.min_space_decay / _pessimistic_space_decay(near))
-    return min(max(needed, COARSER_MESH_SETTINGS.min_fewer_orders), COARSER_MESH_SETTINGS.max_fewer_orders)
+    needed = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(near))
+    return min(
+        max(needed, COARSER_MESH_SETTINGS.min_order_difference), COARSER_MESH_SETTINGS.max_order_difference
+    )

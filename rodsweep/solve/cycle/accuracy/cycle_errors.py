@@ -16,7 +16,7 @@ class CycleErrorSettings:
 
     rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
-    min_error_share: float = 0.1
+    min_error_ratio: float = 0.1
     """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
     extrema_tolerance_ratio: float = 100.0
     """Tolerance of the tip's other extrema divided by the tolerance of period and largest y. Period and
@@ -41,14 +41,14 @@ class CycleErrors:
     multiplier_error: float
 
     @property
-    def largest_error(self) -> float:
+    def largest_weighted_error(self) -> float:
         """The error that is compared with the requested accuracy: the largest of the error of the period, the
         error of the largest y, and the error of the other extrema divided by `extrema_tolerance_ratio`."""
-        return float(largest_error(self.period_error, self.amplitude_error, self.extrema_error))
+        return float(largest_weighted_error(self.period_error, self.amplitude_error, self.extrema_error))
 
 
-def largest_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
-    """`CycleErrors.largest_error` for errors of the period, the largest y (`amplitude`) and the
+def largest_weighted_error(period: Array | float, amplitude: Array | float, extrema: Array | float) -> Array:
+    """`CycleErrors.largest_weighted_error` for errors of the period, the largest y (`amplitude`) and the
     other extrema: numbers, or arrays of a common shape."""
     largest: Array = np.maximum(
         np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERROR_SETTINGS.extrema_tolerance_ratio

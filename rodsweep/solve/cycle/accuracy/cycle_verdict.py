@@ -11,29 +11,29 @@ from ...orbit.orbit import Orbit
 from ..status import CycleStatus
 from .calibration import Calibration
 from .cycle_errors import CycleErrors
-from .minimal_period import undecided_divisor
+from .minimal_period import possible_period_divisor
 
 
 @dataclass(frozen=True, eq=False)
 class RefinedCycle:
     """A solved cycle with its measures, Floquet multipliers and errors.
 
-    converged: orbit and matrix. calibration: source of the errors. path: motion of the orbit over its period.
-    multipliers: nontrivial multipliers, (rank - 1,), by descending modulus. trivial_error: distance of the
-    computed trivial multiplier from 1.
+    converged_orbit: orbit and matrix. calibration: source of the errors. path: motion of the orbit over its
+    period. multipliers: nontrivial multipliers, (rank - 1,), by descending modulus. trivial_multiplier_error:
+    distance of the computed trivial multiplier from 1.
     """
 
-    converged: ConvergedOrbit
+    converged_orbit: ConvergedOrbit
     calibration: Calibration
     path: CyclePath
     measures: Measures
     multipliers: Complex
-    trivial_error: float
+    trivial_multiplier_error: float
     errors: CycleErrors
 
     @property
     def orbit(self) -> Orbit:
-        return self.converged.orbit
+        return self.converged_orbit.orbit
 
     @property
     def largest_multiplier(self) -> float:
@@ -41,39 +41,40 @@ class RefinedCycle:
         return float(np.abs(self.multipliers[0])) if len(self.multipliers) else 0.0
 
     @property
-    def undecided_divisor(self) -> int:
-        """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal."""
-        return undecided_divisor(self.path, self.errors.extrema_error)
+    def possible_period_divisor(self) -> int:
+        """Number g such that the minimal period may be 1/g of the period; g = 1 proves the period minimal,
+        and g = 0 means that all harmonics are 0."""
+        return possible_period_divisor(self.path, self.errors.extrema_error)
 
     @property
-    def modulus_error(self) -> float:
+    def largest_modulus_error(self) -> float:
         """Error of `largest_multiplier`; the stability is undecided if this modulus differs from 1 by this
         error or less."""
-        return max(self.trivial_error, self.errors.multiplier_error)
+        return max(self.trivial_multiplier_error, self.errors.multiplier_error)
 
     @property
     def stable(self) -> bool | None:
         """Whether all nontrivial multipliers lie inside the unit circle; None if the largest modulus is 1
         within its error."""
         beyond = self.largest_multiplier - 1
-        return None if abs(beyond) <= self.modulus_error else beyond < 0
+        return None if abs(beyond) <= self.largest_modulus_error else beyond < 0
 
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
         stable or unstable cycle."""
         if self.measures.least_stretch <= 0:
             return CycleStatus.left_the_model, f"smallest h1 = {self.measures.least_stretch:.3g} on the cycle"
-        if self.errors.largest_error > accuracy:
+        if self.errors.largest_weighted_error > accuracy:
             return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
-        if self.undecided_divisor != 1:
+        if self.possible_period_divisor != 1:
             several = (
-                f"the period found may be {self.undecided_divisor} minimal periods, "
+                f"the period found may be {self.possible_period_divisor} minimal periods, "
                 "within the errors of its harmonics"
             )
             return CycleStatus.not_settled, several
         if self.stable is None:
             return (
                 CycleStatus.not_settled,
-                f"the cycle's largest |multiplier| is 1 within {self.modulus_error:.0e}",
+                f"the cycle's largest |multiplier| is 1 within {self.largest_modulus_error:.0e}",
             )
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

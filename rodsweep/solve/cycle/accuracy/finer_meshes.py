@@ -12,7 +12,13 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
-from ...orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of, newton, with_orbit_matrix
+from ...orbit.newton import (
+    ConvergedOrbit,
+    largest_multiplier_difference,
+    multipliers_and_trivial_error,
+    newton,
+    with_matrix_within_distance,
+)
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import path_differences
 from .calibration import Calibration, calibration_of
@@ -22,15 +28,15 @@ from .calibration import Calibration, calibration_of
 class FinerMeshSettings:
     """Settings for the two finer meshes by which the errors of a mesh are measured."""
 
-    more_orders: int = 2
+    order_increase: int = 2
     """Increase of the order from a mesh to the mesh finer in space, so that the errors fall to a tenth or
     less."""
-    more_intervals: float = 0.4
+    added_interval_fraction: float = 0.4
     """Additional time intervals of the mesh finer in time, as a fraction of the number of intervals of the
     mesh. A known fraction of the error in time remains on the finer mesh."""
-    newton_tolerance_share: float = 0.1
+    newton_tolerance_ratio: float = 0.1
     """Tolerance of Newton's method on the finer meshes, divided by the accuracy."""
-    matrix_distance: float = 1e-3
+    max_matrix_distance: float = 1e-3
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers."""
 
 
@@ -40,12 +46,12 @@ FINER_MESH_SETTINGS = FinerMeshSettings()
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     """Returns ((space, time), share): the mesh finer in space, the mesh finer in time, and the fraction of
     the error in time that the mesh finer in time removes."""
-    longer = ceil((1 + FINER_MESH_SETTINGS.more_intervals) * mesh.intervals)
+    longer = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
-    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stages + 1)
+    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stage_count + 1)
     return (
-        replace(mesh, order=mesh.order + FINER_MESH_SETTINGS.more_orders),
-        replace(mesh, intervals=longer),
+        replace(mesh, order=mesh.order + FINER_MESH_SETTINGS.order_increase),
+        replace(mesh, interval_count=longer),
     ), share
 
 
@@ -60,9 +66,9 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     mesh = mesh_of(found.orbit)
     measured = ComparedCycle(found)
     finer, share = finer_meshes(mesh)
-    tolerance = FINER_MESH_SETTINGS.newton_tolerance_share * accuracy
+    tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
     others = (newton(target.interpolated_orbit(found.orbit), tolerance, found.workspace) for target in finer)
-    space, time = (measured.difference(ComparedCycle(other)) for other in others)
+    space, time = (measured.differences_from(ComparedCycle(other)) for other in others)
     time = time / share
     if before is not None and before.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
@@ -74,17 +80,20 @@ class ComparedCycle:
     """A cycle solved on one of several meshes, with the quantities that are compared between the meshes."""
 
     def __init__(self, found: ConvergedOrbit) -> None:
-        self._found = found
+        self._converged_orbit = found
         self.orbit = found.orbit
         self.path = CyclePath(found.orbit)
 
     @cached_property
     def multipliers(self) -> Complex:
         """Nontrivial multipliers of the cycle, (rank - 1,), by descending modulus."""
-        return multipliers_of(with_orbit_matrix(self._found, FINER_MESH_SETTINGS.matrix_distance))[0]
+        return multipliers_and_trivial_error(
+            with_matrix_within_distance(self._converged_orbit, FINER_MESH_SETTINGS.max_matrix_distance)
+        )[0]
 
-    def difference(self, fine: "ComparedCycle") -> Array:
+    def differences_from(self, fine: "ComparedCycle") -> Array:
         """Differences between this cycle and the same cycle `fine` on a finer mesh, (5,): the four
-        differences of `path_differences`, and `multiplier_change` of the nontrivial multipliers."""
-        change = multiplier_change(self.multipliers, fine.multipliers)
+        differences of `path_differences`, and `largest_multiplier_difference` of the nontrivial
+        multipliers."""
+        change = largest_multiplier_difference(self.multipliers, fine.multipliers)
         return np.append(path_differences(self.path, fine.path), change)

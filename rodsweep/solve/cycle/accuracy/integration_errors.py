@@ -7,7 +7,7 @@ from ..marching_settings import MARCHING_SETTINGS
 from .cycle_errors import CycleErrors
 
 
-def errors_of_pair(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
+def errors_of_two_integrations(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
     """Error estimates from the cycles `one` and `other` of two time integrations; NaN for the multiplier.
     share: relative distance of a settled motion from the cycle, which is added to the error estimates."""
     a = one.extrema
@@ -19,8 +19,8 @@ def errors_of_pair(one: CyclePath, other: CyclePath, share: float) -> CycleError
     # Errors of extrema are divided by the largest y; theta may be several times as large as y.
     left = share * max(1.0, abs(b["tip_theta_max"]) / size)
     return CycleErrors(
-        float(MARCHING_SETTINGS.pair_factor * period + share),
-        float(MARCHING_SETTINGS.pair_factor * height + share),
-        float(MARCHING_SETTINGS.pair_factor * worst + left),
+        float(MARCHING_SETTINGS.pair_error_factor * period + share),
+        float(MARCHING_SETTINGS.pair_error_factor * height + share),
+        float(MARCHING_SETTINGS.pair_error_factor * worst + left),
         nan,
     )

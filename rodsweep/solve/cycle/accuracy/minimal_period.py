@@ -21,13 +21,13 @@ from ...orbit.orbit import Orbit, node_times
 class MinimalPeriodSettings:
     """Settings for the test whether a harmonic is nonzero."""
 
-    min_harmonic: float = 1e-3
+    min_harmonic_ratio: float = 1e-3
     """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
     size of the largest harmonic exceeds this."""
-    certain_harmonic_ratio: float = 10.0
+    certain_harmonic_in_errors: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""
-    min_certain_harmonic: float = 1e-6
+    min_certain_harmonic_ratio: float = 1e-6
     """A harmonic is not certainly nonzero if its size divided by the size of the largest harmonic is at most
     this: the error estimate applies to the tip, and the bending strain may have a larger error."""
 
@@ -35,7 +35,7 @@ class MinimalPeriodSettings:
 MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
-def common_divisor(path: CyclePath, present: float) -> int:
+def common_harmonic_divisor(path: CyclePath, present: float) -> int:
     """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest
     harmonic; 0 if all harmonics are 0."""
     return int(_divisor_from_harmonic_sizes(path.bending_harmonics, present))
@@ -43,7 +43,8 @@ def common_divisor(path: CyclePath, present: float) -> int:
 
 @compiled
 def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
-    """`common_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit `present`."""
+    """`common_harmonic_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit
+    `present`."""
     divisor = 0
     least = present * sizes.max()
     for k in range(len(sizes)):
@@ -53,26 +54,27 @@ def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
     return divisor
 
 
-def undecided_divisor(path: CyclePath, error: float) -> int:
+def possible_period_divisor(path: CyclePath, error: float) -> int:
     """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
-    minimal.
+    minimal, and g = 0 means that all harmonics are 0.
 
     error: relative error of the extrema.
     """
-    return common_divisor(
+    return common_harmonic_divisor(
         path,
         max(
-            MINIMAL_PERIOD_SETTINGS.certain_harmonic_ratio * error,
-            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic,
+            MINIMAL_PERIOD_SETTINGS.certain_harmonic_in_errors * error,
+            MINIMAL_PERIOD_SETTINGS.min_certain_harmonic_ratio,
         ),
     )
 
 
-def over_minimal_period(orbit: Orbit) -> Orbit:
-    """The orbit over the minimal period that its large harmonics show, as a start for Newton's method."""
-    g = common_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic)
+def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
+    """The orbit over the minimal period that its large harmonics show, as a start for Newton's method; the
+    orbit itself if its period is minimal."""
+    g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
     if g == 1:
         return orbit
-    times = node_times(orbit.intervals, orbit.stages)
+    times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
     return replace(orbit, values=np.append(orbit.states_at(times / g), orbit.period / g))

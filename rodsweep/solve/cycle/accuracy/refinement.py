@@ -16,28 +16,31 @@ from ...orbit.measures import CyclePath, measures_of
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
-    multipliers_of,
+    multipliers_and_trivial_error,
     newton,
     newton_step,
-    with_orbit_matrix,
+    with_matrix_within_distance,
 )
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
+from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails
 from ...point import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
 from .finer_meshes import measured_calibration
-from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_divisor, over_minimal_period
+from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refinement_settings import REFINEMENT_SETTINGS
 
 
-def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
+def cycle_with_calibrated_errors(
+    calibration: Calibration, found: ConvergedOrbit, accuracy: float
+) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
-    scaled to this orbit. accuracy: requested relative accuracy."""
+    scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled at
+    a nearby orbit, and of the amplitude error. accuracy: requested relative accuracy."""
     path = CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
-    multipliers, trivial_error = multipliers_of(found)
+    multipliers, trivial_error = multipliers_and_trivial_error(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
     by_matrix = (
@@ -60,7 +63,7 @@ def _multiplier_per_exponent(multipliers: Complex) -> float:
     return modulus * abs(log(modulus)) if modulus else 0.0
 
 
-def refined_at_period(
+def refined_cycle_at_given_period(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
     """The cycle near an approximate orbit, to a relative accuracy or on the finest allowed mesh; raises
@@ -72,31 +75,34 @@ def refined_at_period(
     Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
     are then tried.
     """
-    aim = max(accuracy, REFINEMENT_SETTINGS.first_accuracy)
+    aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     start = orbit
     while True:
         try:
             rough = require_similar_size(
-                newton(start, REFINEMENT_SETTINGS.nearby_tolerance, workspace), orbit.size
+                newton(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace), orbit.max_energy_norm
             )
             near = rough.orbit
-            stages = stages_for(accuracy)
+            stages = cheapest_stage_count(accuracy)
             if parameter is None:
-                first = wanted_mesh(near, REFINEMENT_SETTINGS.first_mesh_accuracy * aim, stages)
+                first = mesh_from_tails(near, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * aim, stages)
                 first = replace(
-                    first, intervals=max(first.intervals, REFINEMENT_SETTINGS.min_intervals_for_prediction)
+                    first,
+                    interval_count=max(
+                        first.interval_count, REFINEMENT_SETTINGS.min_intervals_for_prediction
+                    ),
                 )
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near, accuracy, workspace)
-            found = _solve_on_mesh(wanted_mesh(near, aim, stages), rough, aim, parameter)
-            return calibrated_cycle(found, None, accuracy, parameter)
+            found = _solve_on_mesh(mesh_from_tails(near, aim, stages), rough, aim, parameter)
+            return cycle_with_measured_errors(found, None, accuracy, parameter)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
             if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
                 raise
             aim = max(REFINEMENT_SETTINGS.retry_accuracy_factor * aim, REFINEMENT_SETTINGS.finest_accuracy)
-            mesh = wanted_mesh(orbit, aim, orbit.stages)
-            if mesh.intervals * mesh.unknowns**3 > REFINEMENT_SETTINGS.max_retry_work:
+            mesh = mesh_from_tails(orbit, aim, orbit.stage_count)
+            if mesh.interval_count * mesh.unknown_count**3 > REFINEMENT_SETTINGS.max_retry_cost:
                 raise
             start = mesh.interpolated_orbit(orbit)
 
@@ -113,10 +119,10 @@ def _predicted_cycle(
     """
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf
-    orbit, known = best = coarser.predicted(mesh)
+    orbit, known = best = coarser.predicted_orbit_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
-        error = known.errors(accuracy).largest_error
-        if error < best[1].errors(accuracy).largest_error:
+        error = known.errors(accuracy).largest_weighted_error
+        if error < best[1].errors(accuracy).largest_weighted_error:
             best = orbit, known
         if error <= accuracy:
             break
@@ -129,19 +135,22 @@ def _predicted_cycle(
             break
         if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
-        orbit, known = coarser.predicted(mesh)
+        orbit, known = coarser.predicted_orbit_and_errors(mesh)
     orbit, known = best
-    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
+    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.max_energy_norm)
     if found.matrix_distance > max(
-        REFINEMENT_SETTINGS.max_prediction_distance * accuracy, REFINEMENT_SETTINGS.min_prediction_distance
+        REFINEMENT_SETTINGS.max_prediction_distance_ratio * accuracy,
+        REFINEMENT_SETTINGS.min_prediction_distance,
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    return with_calibrated_errors(
-        known, with_orbit_matrix(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)), accuracy
+    return cycle_with_calibrated_errors(
+        known,
+        with_matrix_within_distance(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)),
+        accuracy,
     )
 
 
-def calibrated_cycle(
+def cycle_with_measured_errors(
     found: ConvergedOrbit, before: Calibration | None, accuracy: float, parameter: str | None
 ) -> RefinedCycle:
     """The solved orbit `found` as a cycle with measured errors, solved again on finer meshes if necessary;
@@ -154,12 +163,12 @@ def calibrated_cycle(
     last = inf
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         before = measured_calibration(found, accuracy, before)
-        cycle = with_calibrated_errors(before, found, accuracy)
-        if best is None or cycle.errors.largest_error < best.errors.largest_error:
+        cycle = cycle_with_calibrated_errors(before, found, accuracy)
+        if best is None or cycle.errors.largest_weighted_error < best.errors.largest_weighted_error:
             best = cycle
-        if cycle.errors.largest_error <= accuracy or cycle.errors.largest_error > last:
+        if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > last:
             break
-        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_error
+        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
         finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
         if not finer.is_allowed:
             break
@@ -176,16 +185,17 @@ def _solve_on_mesh(
     multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
-    last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error) ** 0.5
+    last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
     solution = newton(mesh.interpolated_orbit(found.orbit), last, found.workspace)
-    return newton_step(require_similar_size(solution, found.orbit.size), parameter)
+    return newton_step(require_similar_size(solution, found.orbit.max_energy_norm), parameter)
 
 
 def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
-    """The solved orbit `found`; raises Unsolvable if its size is far from `size`, the size of the start."""
+    """The solved orbit `found`; raises Unsolvable if its size divided by `size`, the size of the start, is
+    not between `min_size_ratio` and `max_size_ratio`."""
     if (
         not REFINEMENT_SETTINGS.min_size_ratio * size
-        < found.orbit.size
+        < found.orbit.max_energy_norm
         < REFINEMENT_SETTINGS.max_size_ratio * size
     ):
         raise Unsolvable("the orbit found by Newton's method is far larger or smaller than its start")
@@ -201,12 +211,14 @@ def refined_cycle(
     computed, or None. If the stability is undecided, the cycle is solved again for a hundredth of the
     accuracy.
     """
-    found = refined_at_period(over_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic) > 1:
-        found = refined_at_period(over_minimal_period(found.orbit), accuracy, workspace, parameter)
+    found = refined_cycle_at_given_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
+    if common_harmonic_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
+        found = refined_cycle_at_given_period(
+            restricted_to_minimal_period(found.orbit), accuracy, workspace, parameter
+        )
     # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
     if found.stable is None:
-        found = refined_at_period(
+        found = refined_cycle_at_given_period(
             found.orbit,
             max(
                 accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.finest_accuracy
@@ -218,16 +230,18 @@ def refined_cycle(
 
 
 def newton_tolerance(accuracy: float) -> float:
-    """Relative tolerance of Newton's method for a cycle of a given relative accuracy."""
+    """Relative tolerance of Newton's method for a cycle of a given relative accuracy, at least
+    `min_newton_tolerance`."""
     return max(
-        REFINEMENT_SETTINGS.newton_tolerance_share * accuracy, REFINEMENT_SETTINGS.min_newton_tolerance
+        REFINEMENT_SETTINGS.newton_tolerance_ratio * accuracy, REFINEMENT_SETTINGS.min_newton_tolerance
     )
 
 
-def matrix_distance(accuracy: float) -> float:
+def max_matrix_distance(accuracy: float) -> float:
     """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
-    for multipliers and tangent of the relative accuracy `accuracy`."""
+    for multipliers and tangent of the relative accuracy `accuracy`; between `min_matrix_distance` and
+    `max_matrix_distance`."""
     return min(
-        max(REFINEMENT_SETTINGS.matrix_distance_share * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
+        max(REFINEMENT_SETTINGS.matrix_distance_ratio * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
         REFINEMENT_SETTINGS.max_matrix_distance,
     )

@@ -26,7 +26,7 @@ class AmplitudeEquationSettings:
     min_significant_growth: float = 10.0
     """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise, so that the
     noise is at most a tenth of c a^2. A c measured within the noise may have the wrong sign."""
-    max_amplitude_distance: float = 0.1
+    min_factor_change: float = 0.1
     """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this,
     because Newton's method converges."""
     decaying_state_factor: float = 0.7
@@ -45,20 +45,20 @@ AMPLITUDE_EQUATION_SETTINGS = AmplitudeEquationSettings()
 class AmplitudeEquation:
     """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion.
 
-    g: growth of ln |z| per return. period: of the leading mode, in tau2. linear_rate: exact linear growth
-    rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear growth rate of
-    the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may add. Arguments
-    of the methods: times of returns, (k,), and states z at the returns, (k, unknowns)."""
+    g: growth of ln |z| per return. period: of the leading mode, in tau2. linear_growth_rate: exact linear
+    growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear growth
+    rate of the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may add.
+    Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns)."""
 
     def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
         self.period = period
-        self.linear_rate = linear_rate
+        self.linear_growth_rate = linear_rate
         self.growth_excess = excess
         self.growth_noise = noise
         self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
-    def growth(self, times: Array, states: Array) -> tuple[float, float]:
+    def growth_and_linear_growth(self, times: Array, states: Array) -> tuple[float, float]:
         """Returns (growth, linear). growth: increase of ln |z| over the last return, corrected from the
         integrated beam to the rod. linear: increase by the linear growth rate over the same time.
 
@@ -68,19 +68,19 @@ class AmplitudeEquation:
         duration = float(times[-1] - times[-2])
         growth = float(np.log(sizes[1] / sizes[0]))
         # The integrated beam grows at a slightly different rate; `growth_excess` corrects the difference.
-        return growth + self.growth_excess * duration, self.linear_rate * duration
+        return growth + self.growth_excess * duration, self.linear_growth_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
         """Whether a motion grows or decays slowly and has the period of the leading mode. times: (k,);
         states: (k, unknowns)."""
         return max(
-            map(abs, self.growth(times, states))
+            map(abs, self.growth_and_linear_growth(times, states))
         ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
 
-    def decays_as_linear(self, times: Array, states: Array) -> bool:
+    def decays_at_linear_rate(self, times: Array, states: Array) -> bool:
         """Whether a motion decays with the linear rate and the period of the leading mode. times: (k,);
         states: (k, unknowns)."""
-        growth, linear = self.growth(times, states)
+        growth, linear = self.growth_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         margin = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
         falls = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
@@ -95,20 +95,20 @@ class AmplitudeEquation:
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. times: (k,); states: (k, unknowns)."""
-        growth, linear = self.growth(times, states)
+        growth, linear = self.growth_and_linear_growth(times, states)
         known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
             self.growth_noise if known else 0
         )
 
-    def scale_to_cycle(self, times: Array, states: Array) -> float | None:
+    def factor_to_cycle(self, times: Array, states: Array) -> float | None:
         """Factor by which the state is to be scaled: to the predicted amplitude of the cycle, or by a fixed
         factor if no amplitude is predicted. Measures c if its contribution exceeds the noise.
 
         None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
         times: (k,); states: (k, unknowns).
         """
-        growth, linear = self.growth(times, states)
+        growth, linear = self.growth_and_linear_growth(times, states)
         if not self.is_slow_mode(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))
@@ -139,7 +139,7 @@ class AmplitudeEquation:
             factor = AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
         else:
             return None
-        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.max_amplitude_distance else None
+        return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.min_factor_change else None
 
     def _has_period_of_mode(self, times: Array) -> bool:
         """Whether the last return took as long as a period of the leading mode, within `linear_tolerance`.

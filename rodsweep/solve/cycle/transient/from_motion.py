@@ -19,7 +19,7 @@ class NewtonFromMotionSettings:
 
     stages: int = 3
     """Number of collocation stages per interval of the approximate orbit."""
-    intervals: int = 20
+    intervals_per_return: int = 20
     """Number of time intervals of the approximate orbit per return of the tip."""
     peak_search_times: int = 128
     """Number of equidistant times per period from which the time of the largest y is chosen."""
@@ -54,11 +54,11 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
         if relative_asymmetry(beam, whole) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
-    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals * turns // symmetry.period_parts
+    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * turns // symmetry.period_parts
     duration = period / symmetry.period_parts
     at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     at = np.where(at > run.times[-1], at - period, at)
-    states = form_states(beam, form, spline(at))
+    states = collocation_states(beam, form, spline(at))
     return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 
@@ -70,7 +70,7 @@ def relative_asymmetry(beam: Beam, states: Array) -> float:
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
-def form_states(beam: Beam, form: StressForm, z: Array) -> Array:
+def collocation_states(beam: Beam, form: StressForm, z: Array) -> Array:
     """States of the collocation problem `form`, (m, unknowns), from states z of the integrated beam, (m,
     unknowns of the beam), on the same mesh."""
     S = beam.stresses(z)

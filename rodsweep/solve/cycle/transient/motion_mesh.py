@@ -27,21 +27,21 @@ class MotionMeshSettings:
     """Relative accuracy of the mesh of a motion whose path is stored: an error of the growth rate shifts the
     phase of the whole later motion. The integration takes a quarter longer than with `accuracy`, and its
     errors were 30 to 500 times smaller on four arms."""
-    refinement: float = 1.5
-    """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near it:
-    compressed rubber may bend more sharply than linear waves."""
+    order_refinement_factor: float = 1.5
+    """Factor on the order of the elements, if a motion repeats on its mesh but no cycle is found near this
+    motion: compressed rubber may bend more sharply than linear waves."""
     max_refinements: int = 3
     """Maximum number of times that the mesh of a motion is refined."""
     max_refined_nodes: int = 64
     """Maximum number of nodes of a refined mesh; with more nodes a motion takes minutes."""
     expected_modes: int = 3
     """Number of modes that the first mesh resolves; the mesh is refined for the cycle later."""
-    waves_per_root_force: float = 2.5
+    wave_number_per_root_force: float = 2.5
     """Largest expected wave number of a cycle, in 1/L, divided by sqrt(F), F in k3/L^2; 1/sqrt(F) is the
     length over which the force bends a rod."""
-    order_per_wave: float = 0.55
+    coarse_order_per_wave_number: float = 0.55
     """Order of the coarse mesh divided by the largest expected wave number of a cycle, in 1/L."""
-    min_order: int = 12
+    min_coarse_order: int = 12
     """Smallest order of the coarse mesh."""
     coarse_accuracy: float = 1e-4
     """Relative accuracy to which the coarse mesh of an arm resolves waves of the largest expected wave
@@ -59,17 +59,17 @@ MOTION_MESH_SETTINGS = MotionMeshSettings()
 
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
-    by_force = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
+    by_force = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if not rod.standard:
         modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         bent = arm_elements(rod, by_force, accuracy)
-        finest = max(modal, bent, key=lambda each: each.nodes)
+        finest = max(modal, bent, key=lambda each: each.node_count)
         return mesh_with_edges(finest.edges, finest.order)
     wave = max(
         expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), by_force
     )
     resolution = resolution_for(wave, accuracy)
-    return uniform_mesh(resolution.elements, resolution.order)
+    return uniform_mesh(resolution.element_count, resolution.order)
 
 
 def accuracy_of_motion_mesh(is_stored: bool) -> float:
@@ -84,23 +84,27 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
     grid = motion_mesh(rod, accuracy_of_motion_mesh(is_stored))
     yield grid
     for _ in range(MOTION_MESH_SETTINGS.max_refinements):
-        order = ceil(MOTION_MESH_SETTINGS.refinement * grid.order)
+        order = ceil(MOTION_MESH_SETTINGS.order_refinement_factor * grid.order)
         edges = grid.edges
         if order > RESOLUTION_SETTINGS.max_order:
             edges = halve_elements(edges)
             order = ceil(order / 2)
         grid = mesh_with_edges(edges, order)
-        if grid.nodes > MOTION_MESH_SETTINGS.max_refined_nodes:
+        if grid.node_count > MOTION_MESH_SETTINGS.max_refined_nodes:
             return
         yield grid
 
 
-def coarse_mesh(rod: Rod) -> Mesh:
+def coarse_mesh_along_branch(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
-    wave_number = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
+    wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if rod.standard:
         return uniform_mesh(
-            1, max(MOTION_MESH_SETTINGS.min_order, int(MOTION_MESH_SETTINGS.order_per_wave * wave_number))
+            1,
+            max(
+                MOTION_MESH_SETTINGS.min_coarse_order,
+                int(MOTION_MESH_SETTINGS.coarse_order_per_wave_number * wave_number),
+            ),
         )
     elements = arm_elements(rod, wave_number, MOTION_MESH_SETTINGS.coarse_accuracy)
     return mesh_with_edges(elements.edges, elements.order)

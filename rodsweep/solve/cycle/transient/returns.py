@@ -22,21 +22,21 @@ from ...motion.integrator import RunEnding, RunLimit, Trajectory
 class ReturnSettings:
     """Settings for the returns of the tip to the section theta = 0, by which a motion is classified."""
 
-    straight_size: float = 1e-6
-    """A motion with |z| < straight_size has decayed to the straight state, if this state is stable; z: state.
+    straight_norm: float = 1e-6
+    """A motion with |z| < straight_norm has decayed to the straight state, if this state is stable; z: state.
     If the norm of the bending and shear components of z is smaller than this, the rod no longer oscillates.
     Numerical damping governs smaller motions."""
-    max_return_distance: float = 0.03
+    max_equal_return_distance: float = 0.03
     """Two returns are equal if their relative distance is at most this, or twice the smallest distance."""
     max_returns_per_period: int = 8
     """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
     """Maximum number of time steps in one run."""
-    last_states: int = 200
+    searched_last_states: int = 200
     """If a run fails, this number of its last states is searched for a section whose strain energy is not
     convex. The equations are ill-posed for such a section, and the integrator may fail only some steps
     later."""
-    bisections: int = 50
+    bisection_count: int = 50
     """Number of bisections of a time step that locate a return in time; enough for all digits."""
 
 
@@ -79,7 +79,7 @@ def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
         return EarlyEnd(True, f"h1 = {h1:.3g} at a point of the rod after {returns} returns of the tip")
-    if not run.message and _loses_convexity(beam, run.states[-RETURN_SETTINGS.last_states :]):
+    if not run.message and _loses_convexity(beam, run.states[-RETURN_SETTINGS.searched_last_states :]):
         why = f"after {returns} returns of the tip the strain energy of a section is not convex"
         return EarlyEnd(True, why)
     why = "the integrator finds no time step with an acceptable error"
@@ -110,7 +110,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
         low = 0.0
         high = 1.0
         # Bisection of a scalar cubic: no step can leave the interval, and the full state is evaluated once.
-        for _ in range(RETURN_SETTINGS.bisections):
+        for _ in range(RETURN_SETTINGS.bisection_count):
             middle = (low + high) / 2
             if sum(map(mul, _hermite_weights(middle), angles)) < 0:
                 low = middle
@@ -139,15 +139,15 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     1e7.
     """
     size = np.linalg.norm(moments[-1])
-    if size < RETURN_SETTINGS.straight_size:  # moments of this size are rounding errors, which do not repeat
+    if size < RETURN_SETTINGS.straight_norm:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
     found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
     # The smallest m with a distance near the minimum: multiples of a period repeat as well.
-    enough = max(2 * min(found)[0], RETURN_SETTINGS.max_return_distance)
+    enough = max(2 * min(found)[0], RETURN_SETTINGS.max_equal_return_distance)
     return next((m, distance) for distance, m in found if distance <= enough)
 
 
-def why_not_settled(waited: int, returns: int, last: float) -> str:
+def not_settled_text(waited: int, returns: int, last: float) -> str:
     """Message that explains why a motion has not settled after the time of `waited` returns.
 
     returns: number of returns with a known state. last: relative distance of the last return from an earlier

@@ -12,23 +12,23 @@ class TimeSchemeSettings:
     """Settings for the time schemes `default_scheme`, `fast_growth_scheme` and `accurate_scheme`, and for the
     choice of a scheme by the linear growth."""
 
-    max_growth_of_accurate: float = 0.01
+    max_growth_for_accurate_scheme: float = 0.01
     """Linear growth per period, in modulus, below which the scheme is `accurate_scheme`."""
 
-    default_noise: float = 1e-3
+    default_growth_noise: float = 1e-3
     """Largest growth per period that integration errors of the schemes `default_scheme` and
     `fast_growth_scheme` may add; 3e-4 was measured."""
 
-    accurate_noise: float = 1e-5
+    accurate_growth_noise: float = 1e-5
     """Largest growth per period that integration errors of the scheme `accurate_scheme` may add; 8e-6 was
     measured."""
 
-    default_max_steps: int = 200
+    default_max_steps_per_return: int = 200
     """Maximum number of time steps of the scheme `default_scheme`, divided by the allowed number of returns.
     22 to 101 steps per return were measured on motions of 400 returns. A motion with rare returns takes far
     more, and ends at this maximum."""
 
-    accurate_max_steps: int = 2000
+    accurate_max_steps_per_return: int = 2000
     """Maximum number of time steps of the scheme `accurate_scheme`, divided by the allowed number of returns;
     its steps are a tenth as long as those of `default_scheme`."""
 
@@ -53,8 +53,8 @@ class TimeSchemeSettings:
 
     @property
     def accurate_scheme(self) -> TimeScheme:
-        """Time scheme of motions with a small growth per period, of which the sign must be correct, and of
-        motions with a stored path."""
+        """Time scheme of motions with a growth per period so small that only an accurate scheme gives its
+        sign, and of motions with a stored path."""
         return TimeScheme("arkimex", "5", tolerance=self.accurate_tolerance)
 
 
@@ -75,10 +75,13 @@ class TransientSchemes(NamedTuple):
 def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
-    if abs(growth) < TIME_SCHEME_SETTINGS.max_growth_of_accurate or is_stored:
+    if abs(growth) < TIME_SCHEME_SETTINGS.max_growth_for_accurate_scheme or is_stored:
         careful = TIME_SCHEME_SETTINGS.accurate_scheme
         return TransientSchemes(
-            careful, careful, TIME_SCHEME_SETTINGS.accurate_noise, TIME_SCHEME_SETTINGS.accurate_max_steps
+            careful,
+            careful,
+            TIME_SCHEME_SETTINGS.accurate_growth_noise,
+            TIME_SCHEME_SETTINGS.accurate_max_steps_per_return,
         )
     first = (
         TIME_SCHEME_SETTINGS.fast_growth_scheme
@@ -88,6 +91,6 @@ def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     return TransientSchemes(
         first,
         TIME_SCHEME_SETTINGS.default_scheme,
-        TIME_SCHEME_SETTINGS.default_noise,
-        TIME_SCHEME_SETTINGS.default_max_steps,
+        TIME_SCHEME_SETTINGS.default_growth_noise,
+        TIME_SCHEME_SETTINGS.default_max_steps_per_return,
     )

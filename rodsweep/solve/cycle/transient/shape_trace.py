@@ -16,9 +16,9 @@ from ..cycle import MotionShapes
 class ShapeTraceSettings:
     """Settings for the shapes of a motion that are stored for an animation."""
 
-    max_steps: int = 4000
+    max_recorded_steps: int = 4000
     """Maximum number of recorded time steps: some 50 to 100 returns of the tip, or 4 MB."""
-    max_frames: int = 1600
+    max_stored_shapes: int = 1600
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
     max_rest_deflection: float = 2e-3
     """An arm is at rest if the tip's |y|, in L, is at most this."""
@@ -30,19 +30,20 @@ SHAPE_TRACE_SETTINGS = ShapeTraceSettings()
 
 
 class ShapeTrace:
-    """Record of the first time steps of one motion, and the interpolation of shapes between these time
-    steps."""
+    """Record of the first time steps of one motion, and the interpolation of shapes between these time steps.
+    run_times, run_states: times, (steps,), and states, (steps, unknowns), of each recorded run. step_count:
+    number of recorded time steps."""
 
     def __init__(self, beam: Beam) -> None:
         self.beam = beam
-        self.times: list[Array] = []
-        self.states: list[Array] = []
-        self.steps = 0
+        self.run_times: list[Array] = []
+        self.run_states: list[Array] = []
+        self.step_count = 0
 
     @property
     def is_full(self) -> bool:
         """Whether the maximum number of time steps is recorded; later steps are ignored."""
-        return self.steps >= SHAPE_TRACE_SETTINGS.max_steps
+        return self.step_count >= SHAPE_TRACE_SETTINGS.max_recorded_steps
 
     def needs_more_motion(self, z: Array) -> bool:
         """Whether the motion is integrated further even if its outcome is known: the arm is not at rest, and
@@ -65,12 +66,13 @@ class ShapeTrace:
 
     def _append_steps(self, times: Array, states: Array) -> None:
         if not self.is_full:
-            self.times.append(times)
-            self.states.append(states)
-            self.steps += len(times)
+            self.run_times.append(times)
+            self.run_states.append(states)
+            self.step_count += len(times)
 
-    def motion(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
-        """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest.
+    def motion_shapes(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
+        """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest,
+        at most SHAPE_TRACE_SETTINGS.max_stored_shapes.
 
         returns: times of the last returns of the tip, in tau2. period: period of the leading mode, in tau2,
         used if there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.
@@ -80,14 +82,16 @@ class ShapeTrace:
         step = (
             float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE_SETTINGS.min_returns else period
         ) / frames
-        due = step * np.arange(min(int(self.times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_frames))
-        run_of = np.searchsorted([times[0] for times in self.times], due, side="right") - 1
+        due = step * np.arange(
+            min(int(self.run_times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
+        )
+        run_of = np.searchsorted([times[0] for times in self.run_times], due, side="right") - 1
         states = np.empty((len(due), self.beam.unknowns))
-        for number, (times, steps) in enumerate(zip(self.times, self.states, strict=True)):
+        for number, (times, steps) in enumerate(zip(self.run_times, self.run_states, strict=True)):
             within = run_of == number
             if within.any():
                 states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation_matrix(lobatto_points(nodes)).T
-        is_whole = not self.is_full and len(due) < SHAPE_TRACE_SETTINGS.max_frames
+        is_whole = not self.is_full and len(due) < SHAPE_TRACE_SETTINGS.max_stored_shapes
         swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)

@@ -43,9 +43,9 @@ class TorusTestSettings:
     max_angle_difference: float = 0.3
     """Largest difference, in rad, between the angle per return on a torus and the argument of the cycle's
     complex multipliers. The difference is 0 at the torus point; 0.18 was observed far from this point."""
-    trials_per_width: int = 4
-    """The spacing of the trial angles, before the best angle is refined, is 2/(trials_per_width k) rad for k
-    returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
+    trial_angles_per_width: int = 4
+    """The spacing of the trial angles, before the best angle is refined, is 2/(trial_angles_per_width k) rad
+    for k returns; with one harmonic, the minimum of the residual is 2 pi/k wide."""
     angle_tolerance_share: float = 1e-4
     """Tolerance of the fitted angle divided by half the width of the residual's minimum."""
     max_period_difference: float = 0.1
@@ -94,7 +94,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
                 f"the motion is modulated at {turns:.3f} times the return rate; the cycle inside the torus "
                 f"has a multiplier of modulus {cycle.largest_multiplier:.3g}"
             )
-            return TransientOutcome(CycleStatus.torus, message, end.periods, unstable_cycle=cycle)
+            return TransientOutcome(CycleStatus.torus, message, end.return_count, unstable_cycle=cycle)
     return end
 
 
@@ -115,8 +115,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
     this pair is the only instability of the cycle."""
-    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.modulus_error]
-    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.modulus_error:
+    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.largest_modulus_error]
+    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.largest_modulus_error:
         return None
     return float(abs(np.angle(outside[0])))
 
@@ -160,7 +160,11 @@ def fitted_angle(returns: Array, angle: float) -> float:
     tried = np.linspace(
         angle - TORUS_TEST_SETTINGS.max_angle_difference,
         angle + TORUS_TEST_SETTINGS.max_angle_difference,
-        int(TORUS_TEST_SETTINGS.trials_per_width * TORUS_TEST_SETTINGS.max_angle_difference * len(returns))
+        int(
+            TORUS_TEST_SETTINGS.trial_angles_per_width
+            * TORUS_TEST_SETTINGS.max_angle_difference
+            * len(returns)
+        )
         + 1,
     )
     best = min(map(float, tried), key=lambda at: residual(at, 1))

@@ -26,7 +26,7 @@ from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle import CycleRequest
 from ..status import CycleStatus
-from ..straight_rod import StraightRod, straight_rod
+from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
@@ -39,18 +39,18 @@ from .transient_settings import TRANSIENT_SETTINGS
 
 
 class Transient:
-    """Integration of the motion of one rod from a start; `follow` is called only once.
-
-    form: the rod whose cycle is solved for, and the mesh. straight: stability of the straight rod.
-    tangent_parameter: parameter along which the cycle's tangent is computed, or None. unstable_cycle: a
-    nearby unstable cycle, or None. workspace: memory of Newton's matrices. beam: the integrated rod; a nearby
-    rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of shapes, or None
-    if not requested."""
+    """Integration of the motion of one rod from a start; `follow` is called only once. form: the rod whose
+    cycle is solved for, and the mesh. straight: stability of the straight rod. tangent_parameter: parameter
+    along which the cycle's tangent is computed, or None. unstable_cycle: a nearby unstable cycle, or None.
+    beam: the integrated rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...). record: record of the
+    tip's path or of shapes, or None if not requested. returns, steps, jump_count: numbers of returns, time
+    steps and jumps so far. attempts: number of Newton's attempts, up to a maximum. next_attempt: number of
+    returns before the next attempt."""
 
     def __init__(
         self,
         form: StressForm,
-        straight: StraightRod,
+        straight: StraightRodStability,
         request: CycleRequest,
         along: str | None,
         unstable: RefinedCycle | None,
@@ -62,24 +62,24 @@ class Transient:
         self.tangent_parameter = along
         self.workspace = workspace
         self.accuracy = request.accuracy
-        self.most_periods = request.most_periods
+        self.max_returns = request.most_periods
         self.unstable_cycle = unstable
-        self.mode = leading_mode(self.beam)
+        self.leading_mode = leading_mode(self.beam)
         self.record = self._new_record(request)
         self.tip_angle_row = tip_angle_row(self.beam)
-        rate = straight.growth_rate(self.mode.w.real)
-        period = self.mode.period
+        rate = straight.growth_rate(self.leading_mode.w.real)
+        period = self.leading_mode.period
         schemes = schemes_for_growth(rate * period, request.transient > 0)
         self.first_scheme, self.scheme, noise, steps = schemes
-        self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns)
+        self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
         self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._beam_growth_rate(rate), noise)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
         """Times, in tau2, and bending moments of the last returns since the last jump."""
-        self.elapsed = 0.0
-        self.returns = self.steps = self.jumps = self.failures = self.next_newton_return = 0
-        self.failed_starts = 0
+        self.elapsed_time = 0.0
+        self.returns = self.steps = self.jump_count = self.attempts = self.next_attempt = 0
+        self.successive_failures = 0
         """Number of successive failures of Newton's method."""
         self.unsolved_message = ""
         """Message that no cycle is found near a periodic motion; "" while the search continues."""
@@ -92,10 +92,10 @@ class Transient:
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from the state z, (unknowns,)."""
-        z = self._after_fast_decay(z)
+        z = self._state_after_fast_decay(z)
         first = True
-        while self.returns < self.most_periods and self.steps < self.max_steps and not self.unsolved_message:
-            report(lambda: SolvePosition(f"{self.returns} of at most {self.most_periods} returns of the tip"))
+        while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
+            report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
             run = self._run_of_returns(z, first)
             if end := early_end(self.beam, run, self.returns):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
@@ -104,35 +104,35 @@ class Transient:
             times, states = section_crossings(self.beam, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
-            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_size:
+            if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
-                if self.record or self.jumps >= TRANSIENT_SETTINGS.max_jumps:
+                if self.record or self.jump_count >= TRANSIENT_SETTINGS.max_jumps:
                     break
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
-                z = self._after_jump(TRANSIENT_SETTINGS.restart_deflection * self.mode.z.real)
+                z = self._state_after_jump(TRANSIENT_SETTINGS.restart_deflection * self.leading_mode.z.real)
                 continue
             early = first
             first = False
             if len(times) < 3 or (early and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
             shown = self.record is not None and self.record.needs_more_motion(z)
-            if not early and not shown and self.amplitude_equation.decays_as_linear(times, states):
+            if not early and not shown and self.amplitude_equation.decays_at_linear_rate(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            jumps = not early and self.jumps < TRANSIENT_SETTINGS.max_jumps
-            factor = self.amplitude_equation.scale_to_cycle(times, states) if jumps else None
+            jumps = not early and self.jump_count < TRANSIENT_SETTINGS.max_jumps
+            factor = self.amplitude_equation.factor_to_cycle(times, states) if jumps else None
             if factor is not None:
                 if self.record and not self.record.is_full:
                     continue  # a motion with a stored path has no jumps
                 scaled = factor * z
                 self.beam.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
-                z = self._after_jump(scaled)
+                z = self._state_after_jump(scaled)
                 continue
             decays = self.amplitude_equation.decays_faster(times, states)
             cycle = None if decays else self._cycle_from_returns(run)
             if cycle is not None:
                 return self._result(*cycle.verdict(self.accuracy), cycle)
-        return self._result(CycleStatus.not_settled, self._not_settled(z))
+        return self._result(CycleStatus.not_settled, self._not_settled_text(z))
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
@@ -140,17 +140,17 @@ class Transient:
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.stress_field(states, "m3")
-        self.past_returns.extend(zip(map(float, self.elapsed + times), moments, strict=True))
-        self.elapsed += run.times[-1]
+        self.past_returns.extend(zip(map(float, self.elapsed_time + times), moments, strict=True))
+        self.elapsed_time += run.times[-1]
 
-    def _after_jump(self, z: Array) -> Array:
+    def _state_after_jump(self, z: Array) -> Array:
         """The state, (unknowns,), after a jump to the state z, (unknowns,), and the decay of its fast
         components. The earlier returns are discarded."""
-        self.jumps += 1
+        self.jump_count += 1
         self.past_returns.clear()
-        return relax_fast_components(self.beam, z, self.mode.period)
+        return relax_fast_components(self.beam, z, self.leading_mode.period)
 
-    def _not_settled(self, z: Array) -> str:
+    def _not_settled_text(self, z: Array) -> str:
         """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
         if self.unsolved_message:
             return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
@@ -163,7 +163,7 @@ class Transient:
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
-        return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_size)
+        return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_norm)
 
     def _beam_growth_rate(self, rate: float) -> float:
         """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
@@ -173,35 +173,34 @@ class Transient:
         """
         if self.beam.rod == self.form.rod:
             return rate
-        return straight_rod(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
+        return straight_rod_stability(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
 
-    def _after_fast_decay(self, z: Array) -> Array:
+    def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
-        after = relax_fast_components(self.beam, z, self.mode.period)
+        after = relax_fast_components(self.beam, z, self.leading_mode.period)
         if self.record:
-            self.elapsed = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
-            self.record.begin_with_relaxation(z, after, self.elapsed)
+            self.elapsed_time = INTEGRATOR_SETTINGS.relaxation_share * self.leading_mode.period
+            self.record.begin_with_relaxation(z, after, self.elapsed_time)
         return after
 
     def _result(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, why, self.returns, found)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
-        """A run from the state z, (unknowns,), over TRANSIENT.returns_per_run returns, or
-        TRANSIENT.returns_in_first_run in the `first` run, but of at most TRANSIENT.max_run_duration times the
-        expected time per return."""
+        """A run from the state z, (unknowns,), over `returns_per_run` returns, or `returns_in_first_run` in
+        the `first` run, of at most `max_run_duration_ratio` times the expected time of these returns."""
         returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
         limit = until_returns(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
-        duration = TRANSIENT_SETTINGS.max_run_duration * returns * max(self.mode.period, last)
+        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * max(self.leading_mode.period, last)
         run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
         if self.record:
-            self.record.add_run(run, self.elapsed)
+            self.record.add_run(run, self.elapsed_time)
         return run
 
     def _cycle_from_returns(self, run: Trajectory) -> RefinedCycle | None:
@@ -210,23 +209,23 @@ class Transient:
         too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
         states = [state for _, state in self.past_returns]
         turns, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
-        often_failed = self.failed_starts >= TRANSIENT_SETTINGS.max_failed_starts
+        often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (
                 f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
             )
             return None
-        if distance >= self._newton_start_distance() or self.returns < self.next_newton_return:
+        if distance >= self._newton_start_distance() or self.returns < self.next_attempt:
             return None
-        self.next_newton_return = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.failures
-        self.failures = min(self.failures + 1, TRANSIENT_SETTINGS.max_newton_failures)
+        self.next_attempt = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.attempts
+        self.attempts = min(self.attempts + 1, TRANSIENT_SETTINGS.max_counted_attempts)
         return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns)
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
-        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.failures
-        settles = self.record and self.returns < self.most_periods // 2
-        return min(distance, TRANSIENT_SETTINGS.stored_path_distance) if settles else distance
+        distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.attempts
+        settles = self.record and self.returns < self.max_returns // 2
+        return min(distance, TRANSIENT_SETTINGS.max_newton_distance_with_path) if settles else distance
 
     def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
@@ -240,11 +239,11 @@ class Transient:
         try:
             found = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
         except Unsolvable:
-            self.failed_starts += 1
+            self.successive_failures += 1
             return None
-        self.failed_starts = 0
+        self.successive_failures = 0
         if found.stable is False:
             self.unstable_cycle = found
         # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
-        is_isolated = 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_distance
+        is_isolated = 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
         return found if found.stable and is_isolated else None

@@ -8,12 +8,12 @@ from ..status import CycleStatus
 
 @dataclass(frozen=True, eq=False)
 class TransientOutcome:
-    """Outcome of integrating a motion. periods: number of returns of the tip. cycle: the cycle that the
+    """Outcome of integrating a motion. return_count: number of returns of the tip. cycle: the cycle that the
     motion approached, or None. unstable_cycle: the unstable cycle inside the torus, or None if the motion is
     not on a torus."""
 
     status: CycleStatus
     message: str
-    periods: int
+    return_count: int
     cycle: RefinedCycle | None = None
     unstable_cycle: RefinedCycle | None = None

@@ -11,7 +11,7 @@ class TransientSettings:
     """Number of returns of the tip in one run, after which the motion is classified."""
     first_steps_per_period: int = 1000
     """Period of the leading mode divided by the first time step of a motion."""
-    max_run_duration: int = 3
+    max_run_duration_ratio: int = 3
     """Longest duration of a run divided by the number of returns and by the expected time per return: the
     period of the leading mode, or the time between the last two returns if it is longer."""
     returns_in_first_run: int = 3
@@ -20,30 +20,30 @@ class TransientSettings:
     max_newton_distance: float = 0.1
     """Newton's method starts if the relative distance between two returns is less than this."""
     newton_divisor: int = 10
-    """After each failure of Newton's method, `max_newton_distance` is divided by this number."""
-    stored_path_distance: float = 1e-3
+    """After each attempt of Newton's method, `max_newton_distance` is divided by this number."""
+    max_newton_distance_with_path: float = 1e-3
     """Upper limit of `max_newton_distance` for a motion with a stored path, in the first half of the allowed
     returns, so that the path shows how the motion settles."""
-    max_newton_failures: int = 5
-    """Each failure of Newton's method, up to this number of failures, doubles the number of returns before
-    the next start."""
+    max_counted_attempts: int = 5
+    """Each attempt of Newton's method, up to this number of attempts, decreases the distance at which
+    Newton's method starts, and doubles the number of returns before the next attempt."""
     max_jumps: int = 60
     """Maximum number of jumps of a motion, to a scaled state or to a restart."""
     restart_deflection: float = 1e-3
     """Tip's y, in L, at a restart in the leading mode; the relative nonlinear change of the growth rate is
     about the square of this number."""
-    min_unit_distance: float = 3e-8
-    """A periodic orbit with 1 - |mu| < min_unit_distance is no limit cycle, but belongs to a family of orbits
-    with any amplitude; mu: largest nontrivial multiplier."""
+    min_unit_circle_distance: float = 3e-8
+    """A periodic orbit with 1 - |mu| < min_unit_circle_distance is no limit cycle, but belongs to a family of
+    orbits with any amplitude; mu: largest nontrivial multiplier."""
     max_stored_returns: int = 400
     """Number of last returns that are stored for the recognition of a torus."""
     max_periodic_distance: float = 1e-4
     """A motion is periodic if the relative distance between two returns is less than this. Periodic motions,
     integrated with a tolerance of 1e-5, return to within 1e-6 to 1e-4."""
-    max_failed_starts: int = 4
+    max_successive_failures: int = 4
     """The integration of a periodic motion ends after this number of successive failures of Newton's method:
     further starts would fail in the same way."""
-    min_returns: int = 100
+    min_returns_for_max_steps: int = 100
     """The maximum number of time steps is computed for at least this number of returns, because few returns
     may need many time steps."""
 

@@ -58,7 +58,7 @@ def eliminate_newton_matrix(
                 B[i, i, r, r] += p.stage_differentiation[i, i + 1] * p.mass[r]
         _eliminate_interval(B, right, parts, p)
         # Row 0 of the blocks is unused after two stages are eliminated. The effect of the start on the end
-        # and on the later stages is stored there, for `substitute`.
+        # and on the later stages is stored there, for `substitute_stages`.
         square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
         for a in range(2, s - 1):
             B[0, a] = right[a]

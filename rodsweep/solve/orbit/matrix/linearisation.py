@@ -15,7 +15,7 @@ from ..orbit import Orbit
 from ..semidiscrete import SemidiscreteEquations
 from .elimination import eliminate_newton_matrix
 from .inversion import INVERSION_SETTINGS, invert_matrix
-from .multipliers import multipliers_over_period, partial_multipliers
+from .multipliers import multipliers_over_period, multipliers_over_solved_part
 from .phase import phase_residual, phase_right_side, write_phase_row
 from .right_sides import ParameterDerivatives, write_right_sides, write_stage_residuals, write_variation_sides
 from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
@@ -35,8 +35,8 @@ class Linearisation:
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
         self.orbit = orbit
         self.workspace = workspace
-        self._memory = MatrixMemory(workspace, orbit.intervals, orbit.stages, orbit.form.unknowns)
-        p = orbit.semidiscrete
+        self._memory = MatrixMemory(workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknowns)
+        p = orbit.semidiscrete_equations
         factors = self._memory.factors
         along = (
             ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
@@ -51,14 +51,16 @@ class Linearisation:
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = newton_step_with_factors(
-            orbit.values, self._period_derivative, orbit.semidiscrete, self._memory.factors
+            orbit.values, self._period_derivative, orbit.semidiscrete_equations, self._memory.factors
         )
         return step
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return multipliers_over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
+        return multipliers_over_period(
+            multipliers_over_solved_part(self._memory.propagator, self.orbit), self.orbit
+        )
 
 
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:

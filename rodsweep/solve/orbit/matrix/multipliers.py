@@ -43,7 +43,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
     return values
 
 
-def partial_multipliers(propagator: Array, orbit: Orbit) -> Complex:
+def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
     """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
     propagator: P, (n, n)."""
     return nonzero_eigenvalues(orbit.symmetry.apply_inverse(propagator, orbit.form.layout))

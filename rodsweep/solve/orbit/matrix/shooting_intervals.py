@@ -27,7 +27,7 @@ class ShootingIntervalSettings:
     max_growth: float = 1e7
     """Largest norm of the map of a shooting interval; a Newton step then has nine correct digits. Stable
     cycles have norms below 1e3 and a single shooting interval."""
-    sweeps: int = 2
+    sweep_count: int = 2
     """Number of sweeps of the orthogonal iteration over all shooting intervals. The first sweep orders the
     directions by their growth; the second starts with ordered directions."""
     negligible_multiplier: float = 1e-17
@@ -53,8 +53,8 @@ class ShootingIntervals:
         the shooting intervals, (m, k, n).
 
         columns: reduced right-hand sides, (K, s, k, n). whole: changes of the end of the last time interval
-        for a fixed start of the first time interval, (k, n). factors: eliminated matrix. p: equations of the
-        orbit.
+        for a fixed start of the first time interval, (k, n), the result for a single shooting interval.
+        factors: eliminated matrix. p: equations of the orbit.
         """
         ends = np.zeros((len(self.flow_maps), *whole.shape))
         if len(ends) == 1:
@@ -86,7 +86,7 @@ class ShootingIntervals:
         """
         *others, last = self.flow_maps
         ahead = triangle = np.eye(len(last))
-        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweeps):
+        for _ in range(SHOOTING_INTERVAL_SETTINGS.sweep_count):
             # Directions that decay to nothing over a period are dropped, to save time.
             lasting = np.flatnonzero(
                 np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier
@@ -107,8 +107,8 @@ class ShootingIntervals:
 
 
 def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
-    """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval if the norm
-    of P is at most `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
+    """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval unless the
+    norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
     present shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
     (n,)."""
     blocks = factors.eliminated_blocks

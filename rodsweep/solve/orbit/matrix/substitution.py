@@ -41,7 +41,7 @@ def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: A
     """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
     interval. B: eliminated blocks of the interval, (s, s, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
-    # The map of an interval acts on M x_0, as in `eliminate`.
+    # The map of an interval acts on M x_0, as in `eliminate_newton_matrix`.
     scaled = ends * p.mass
     ends[:] = columns[-1]
     add_products(B[0, 1], scaled, ends, 1.0)

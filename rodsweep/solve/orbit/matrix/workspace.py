@@ -18,7 +18,7 @@ from ....arrays import Array
 class WorkspaceSettings:
     """Settings for the memory of the matrices of orbits."""
 
-    kept_numbers: int = 2**23
+    max_kept_buffer_size: int = 2**23
     """Largest size of a buffer that is not freed between rods, in double-precision numbers: 64 MB, enough for
     most rods."""
 
@@ -66,9 +66,9 @@ class NewtonWorkspace:
 
     def release(self) -> None:
         """Ends the last reservation, and frees the buffer if it is larger than
-        WORKSPACE_SETTINGS.kept_numbers."""
+        WORKSPACE_SETTINGS.max_kept_buffer_size."""
         self._reservation += 1
-        if len(self._buffer) > WORKSPACE_SETTINGS.kept_numbers:
+        if len(self._buffer) > WORKSPACE_SETTINGS.max_kept_buffer_size:
             self._buffer = np.empty(0)
 
 

@@ -31,11 +31,11 @@ class AugmentedSettings:
     tolerance_share: float = 0.01
     """A cycle is corrected to the larger of `tolerance` and this fraction of its estimated distance from the
     curve of special points; the estimate is the test function divided by its slope."""
-    min_contraction: float = 10.0
+    min_contraction_rate: float = 10.0
     """Lower limit of the assumed contraction rate: the ratio of successive corrections, divided by the
     relative distance of the cycle from the orbit at which the matrix was assembled. The measured rate is 2 or
     3 for large cycles; a larger assumed rate is safe."""
-    contraction_safety: float = 3.0
+    contraction_safety_factor: float = 3.0
     """The contraction rate assumed for the next cycle is the measured rate times this factor."""
     max_correction_ratio: float = 0.3
     """A new matrix is assembled if the ratio of the sizes of successive corrections exceeds this number."""
@@ -45,12 +45,12 @@ class AugmentedSettings:
     the correction is then rounding error."""
     max_corrections: int = 30
     """Maximum number of corrections of one cycle."""
-    inverse_shift: float = 1e-9
+    inverse_iteration_shift: float = 1e-9
     """Relative distance of the shift of inverse iteration from the eigenvalue; with this distance the shifted
     matrix is regular."""
     inverse_iterations: int = 2
     """Number of inverse iterations. Each iteration multiplies the components of other eigenvectors by the
-    ratio of `inverse_shift` to the relative gap between the eigenvalues."""
+    ratio of `inverse_iteration_shift` to the relative gap between the eigenvalues."""
 
 
 AUGMENTED_SETTINGS = AugmentedSettings()
@@ -60,18 +60,18 @@ class FoldFunction:
     """Test function of folds: derivative of the scaled parameter coordinate with respect to the arc length in
     the direction `border`, (3,). matrix: matrix of a nearby cycle, whose factors are used. has_small_cycles:
     whether the derivative is divided by the deflection; without this division the derivative vanishes at a
-    Hopf point too."""
+    Hopf point too. null_vectors: tangent of the branch, (N + 1,)."""
 
     def __init__(self, matrix: BorderedMatrix, border: Array, has_small_cycles: bool) -> None:
         self.matrix = matrix
         self.border = border
         self.has_small_cycles = has_small_cycles
-        tangent = matrix.direction(border)
-        self.vectors = tangent / (matrix.scale.directional_derivative(matrix.orbit, tangent) @ border)
+        tangent = matrix.branch_tangent(border)
+        self.null_vectors = tangent / (matrix.scale.directional_derivative(matrix.orbit, tangent) @ border)
 
     def value(self, orbit: Orbit) -> float:
         """The test function at an orbit, from the last corrected tangent."""
-        rises = float(self.vectors[-1] / self.matrix.scale.coordinate_unit)
+        rises = float(self.null_vectors[-1] / self.matrix.scale.coordinate_unit)
         # Near a Hopf point the derivative is proportional to the deflection; their ratio stays regular.
         return (
             rises * self.matrix.scale.deflection_unit / deflection_of(orbit)
@@ -81,31 +81,33 @@ class FoldFunction:
 
     def set_approximate_vectors(self, tangent: Array) -> None:
         """Sets the approximate tangent, (N + 1,), that the next call of `correct_vectors` improves."""
-        self.vectors = tangent
+        self.null_vectors = tangent
 
     def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
         matrix = self.matrix
-        tangent = self.vectors
-        p = orbit.semidiscrete
+        tangent = self.null_vectors
+        p = orbit.semidiscrete_equations
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.residual_variations(orbit, tangent[None])
-        row = np.empty(len(orbit.start))
-        write_phase_row(orbit.start, p.rod, p.node_matrices, row)
-        along = orbit.form.parameter_derivative(matrix.scale.parameter)
-        shift = phase_right_side(orbit.start, along, p.rod, p.node_matrices)
-        closing = matrix.closing_sides(closing_residual(change.points, p), columns, ends)
-        of_phase = shift * tangent[-1] - row @ change.start
+        row = np.empty(len(orbit.start_state))
+        write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
+        along = orbit.form.parameter_derivative(matrix.scale.parameter_name)
+        shift = phase_right_side(orbit.start_state, along, p.rod, p.node_matrices)
+        closing = matrix.closing_right_sides(closing_residual(change.all_states, p), columns, ends)
+        of_phase = shift * tangent[-1] - row @ change.start_state
         right = np.array(
             [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
         )
-        self.vectors = tangent + matrix.solve(self.border, right, columns[:, :, 0], 1.0)
+        self.null_vectors = tangent + matrix.solve(self.border, right, columns[:, :, 0], 1.0)
 
 
 class TorusFunction:
     """Test function of torus points: |mu| - 1, mu: complex multiplier nearest to the unit circle, which is
-    corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used. Raises
-    Unsolvable if all multipliers of this cycle are real."""
+    corrected together with its eigenvector. matrix: matrix of a nearby cycle, whose factors are used.
+    null_vectors: real and imaginary part of the eigenvector, (2, N + 1). shifted_propagator: P - (1 + shift)
+    mu S, the matrix of inverse iteration. bordered_propagator: P - mu S with the border of Newton's method
+    for mu. Raises Unsolvable if all multipliers of this cycle are real."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
@@ -113,20 +115,24 @@ class TorusFunction:
         if pair is None:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
-        p = matrix.orbit.semidiscrete
-        self.shifted = matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_shift) * pair * p.symmetry
+        p = matrix.orbit.semidiscrete_equations
+        self.shifted_propagator = (
+            matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_iteration_shift) * pair * p.symmetry
+        )
         start = np.ones(len(p.mass), dtype=complex)
         for _ in range(AUGMENTED_SETTINGS.inverse_iterations):
-            start = np.linalg.solve(self.shifted, p.symmetry @ start)
+            start = np.linalg.solve(self.shifted_propagator, p.symmetry @ start)
             start /= np.linalg.norm(start)
         self.border = start.conj()
-        K, s, n = matrix.orbit.states.shape
-        self.vectors = matrix.back_substitute(_real_and_imaginary(start), np.zeros((K, s, 2, n)))
+        K, s, n = matrix.orbit.stage_states.shape
+        self.null_vectors = matrix.changes_at_fixed_parameter(
+            _real_and_imaginary(start), np.zeros((K, s, 2, n))
+        )
         n = len(start)
-        self.bordered = np.zeros((n + 1, n + 1), dtype=complex)
-        self.bordered[:n, :n] = matrix.propagator - pair * p.symmetry
-        self.bordered[:n, n] = -p.symmetry @ start
-        self.bordered[n, :n] = self.border
+        self.bordered_propagator = np.zeros((n + 1, n + 1), dtype=complex)
+        self.bordered_propagator[:n, :n] = matrix.propagator - pair * p.symmetry
+        self.bordered_propagator[:n, n] = -p.symmetry @ start
+        self.bordered_propagator[n, :n] = self.border
 
     def value(self, orbit: Orbit) -> float:
         """The test function |mu| - 1, from the last corrected multiplier mu; `orbit` is not used."""
@@ -135,18 +141,24 @@ class TorusFunction:
     def set_approximate_vectors(self, parts: Array) -> None:
         """Sets the approximate eigenvector that the next call of `correct_vectors` improves. parts: real and
         imaginary part, (2, N + 1)."""
-        self.vectors = parts
+        self.null_vectors = parts
 
     def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the multiplier and its eigenvector at an orbit by one approximate Newton step."""
-        columns, ends = self.matrix.residual_variations(orbit, self.vectors)
+        columns, ends = self.matrix.residual_variations(orbit, self.null_vectors)
         n = ends.shape[1]
-        start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
-        right = np.append(self.multiplier * (orbit.semidiscrete.symmetry @ start), 1 - self.border @ start)
+        start, end = (
+            part[0] + 1j * part[1] for part in (self.null_vectors[:, :n], self.null_vectors[:, -2 - n : -2])
+        )
+        right = np.append(
+            self.multiplier * (orbit.semidiscrete_equations.symmetry @ start), 1 - self.border @ start
+        )
         right[:-1] -= end + ends[0] + 1j * ends[1]
-        change = np.linalg.solve(self.bordered, right)
+        change = np.linalg.solve(self.bordered_propagator, right)
         self.multiplier += complex(change[-1])
-        self.vectors = self.vectors + self.matrix.back_substitute(_real_and_imaginary(change[:-1]), columns)
+        self.null_vectors = self.null_vectors + self.matrix.changes_at_fixed_parameter(
+            _real_and_imaginary(change[:-1]), columns
+        )
 
 
 def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit) -> None:
@@ -159,7 +171,7 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
         before = value
         value = function.value(orbit)
         change = abs(value - before)
-        if change <= SPECIAL_POINT_SETTINGS.function_tolerance or (
+        if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
             change > last / 2 and change <= AUGMENTED_SETTINGS.rounding_correction
         ):
             return
@@ -177,6 +189,6 @@ def _real_and_imaginary(vector: Array) -> Array:
 def pair_nearest_unit_circle(matrix: BorderedMatrix) -> complex | None:
     """Complex multiplier nearest to the unit circle, over the solved time interval of the orbit of `matrix`;
     None if all multipliers are real."""
-    h = matrix.partial_multipliers
-    pairs = h[np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier * np.abs(h)]
+    h = matrix.multipliers_over_solved_part
+    pairs = h[np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]
     return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None

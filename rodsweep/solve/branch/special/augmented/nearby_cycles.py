@@ -11,7 +11,7 @@ from ....orbit.orbit import Orbit
 from ....point import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
-from ...bordered.scale import Scale
+from ...bordered.scale import ArcLengthScale
 from .functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 
 
@@ -23,7 +23,7 @@ class CycleFamilyInterface(Protocol):
     Newton's matrices."""
 
     @property
-    def scale(self) -> Scale: ...
+    def scale(self) -> ArcLengthScale: ...
     @property
     def border(self) -> Array: ...
     @property
@@ -47,23 +47,23 @@ class NearbyCycleSolver:
         self.scale = family.scale
         self.border = family.border
         self._family = family
-        self.contraction = contraction
+        self.contraction_rate = contraction
         """Assumed contraction rate: ratio of successive corrections, divided by the relative distance of the
         cycle from the orbit of the matrix. Each solution of a cycle updates the rate unless the family is
         `has_small_cycles`."""
         self._assemble_matrix(start)
 
     def _assemble_matrix(self, orbit: Orbit) -> None:
-        """Assembles and factorises a new matrix at an orbit, with a new test function. Sets `distance`, the
-        relative distance of the present cycle from this orbit, to 0."""
+        """Assembles and factorises a new matrix at an orbit, with a new test function. Sets
+        `matrix_distance`, the relative distance of the present cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
-        self.distance = 0.0
-        self.function = self._family.test_function(self.matrix)
+        self.matrix_distance = 0.0
+        self.test_function = self._family.test_function(self.matrix)
 
     def set_approximate_vectors(self, vectors: Array) -> None:
         """Sets the approximate tangent, (N + 1,), or eigenvector, (2, N + 1), that the next correction of the
         test function improves."""
-        self.function.set_approximate_vectors(vectors)
+        self.test_function.set_approximate_vectors(vectors)
 
     def solve(
         self, orbit: Orbit, condition: BorderCondition, slope: float, enough: float
@@ -71,23 +71,24 @@ class NearbyCycleSolver:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. enough: relative
-        tolerance of cycle and test function; far from the curve `AUGMENTED.tolerance_share` allows more.
+        tolerance of cycle and test function; far from the curve `AUGMENTED_SETTINGS.tolerance_share` allows
+        more.
         """
         last = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
             report()
-            orbit, change = self._corrected(orbit, condition)
-            distance = self.distance
-            before = self.function.value(orbit)
-            self.function.correct_vectors(orbit)
-            value = self.function.value(orbit)
+            orbit, change = self._corrected_orbit(orbit, condition)
+            distance = self.matrix_distance
+            before = self.test_function.value(orbit)
+            self.test_function.correct_vectors(orbit)
+            value = self.test_function.value(orbit)
             # The change of the test function, divided by `slope`, is a distance across the curve.
             off = max(change, abs(value - before) / slope)
             # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
-            rate = off / last if last else min(1.0, self.contraction * distance)
+            rate = off / last if last else min(1.0, self.contraction_rate * distance)
             if last and not self._family.has_small_cycles:
-                measured = AUGMENTED_SETTINGS.contraction_safety * rate / distance
-                self.contraction = max(AUGMENTED_SETTINGS.min_contraction, measured)
+                measured = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
+                self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, measured)
             if off * min(rate, 1.0) <= max(enough, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope):
                 return orbit, value
             if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
@@ -98,12 +99,12 @@ class NearbyCycleSolver:
             last = off
         raise Unsolvable(f"Newton's corrections of a cycle do not converge; the last step is {change:.0e}")
 
-    def _corrected(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
+    def _corrected_orbit(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
         """(orbit after one correction under `condition` with the present matrix, relative change of the
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
             raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
-        self.distance += change
-        return moved_orbit(orbit, self.scale.parameter, step), change
+        self.matrix_distance += change
+        return moved_orbit(orbit, self.scale.parameter_name, step), change
