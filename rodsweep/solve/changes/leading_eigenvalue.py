@@ -52,6 +52,9 @@ class LeadingEigenvalueSettings:
     found, at this fraction of the interval."""
     smallest_hiding_interval: float = 1e-9
     """Like `smallest_interval`, for two anchors between which two exchanges may lie."""
+    smallest_share: float = 0.05
+    """An added anchor divides its interval into parts that are at least this fraction of the interval: a
+    minimum of the interpolant may coincide with an anchor."""
     max_distance_in_errors: float = 10.0
     """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
     start exceeds this multiple of the start's error estimate and `max_relative_distance` times |w|."""
@@ -99,9 +102,9 @@ class LeaderExchangeSearch:
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
             error = LEADING_EIGENVALUE_SETTINGS.max_distance_in_errors * found.error_estimate[i]
-            if abs(polished - guess) <= max(
-                error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess)
-            ):
+            near = max(error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess))
+            distances = np.abs(found.eigenvalues - polished)
+            if distances[i] <= min(near, distances.min()):
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
@@ -147,7 +150,8 @@ class LeaderExchangeSearch:
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
                 )
-        middle = a + share * (b - a)
+        smallest_share = LEADING_EIGENVALUE_SETTINGS.smallest_share
+        middle = a + min(max(share, smallest_share), 1 - smallest_share) * (b - a)
         intervals.add_parts((a, middle), (middle, b))
         return []
 

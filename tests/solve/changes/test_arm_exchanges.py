@@ -5,12 +5,16 @@ import pytest
 from surveyed import RODS, survey_only
 
 import rodsweep as rs
+from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import CLASSES
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
+from rodsweep.solve.spectrum.path.following import are_distinct_roots
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.verdict.relative import rod_with_drag
 
@@ -153,3 +157,35 @@ def test_newton_for_a_double_eigenvalue_ends_where_there_is_no_arm():
             word = dict(CLASSES)[classes[i, j]]
             assert (spectrum.growth_rate[0] > 0) == (word == "flutter")
             assert (spectrum.frequency[0] > 0) == (word in ("flutter", "oscillatory"))
+
+
+NEARLY_CRUSHED = Rod(
+    F=0.0,
+    k1=109.83750492645562,
+    k2=7.02,
+    gamma3=0.21681568646611862,
+    build=Build(
+        profile=Profile(
+            (0.0, 1.0),
+            (
+                (1.4726647073144412, 1.0, 1.0, 1.0, 1.0, 1.0),
+                (1.116211212073014, 1, 1, 1, 1.2836789734528988, 1),
+            ),
+        )
+    ),
+)
+"""At F = 116.985 two leading real eigenvalues, 2552.01 and 2551.52, grow beside twelve others."""
+
+
+def test_two_close_eigenvalues_are_not_followed_as_one():
+    """Both were followed to the same root, whose stated error was below its distance from itself."""
+    found = solve_thresholds(NEARLY_CRUSHED, ThresholdsRequest(121.0, 1e-6, True, 100))
+    assert found.status == ThresholdStatus.ok
+    followed = FollowedArms(Path(NEARLY_CRUSHED, "F"), np.linspace(100.0, 121.0, 24), 4)
+    for F in (116.98506875, 116.98512780, 116.98542655):
+        alone = solve_spectrum(NEARLY_CRUSHED.changed(F=F), SpectrumRequest(4, 1e-6, certify=True))
+        spectrum = followed.spectrum(F, 4)
+        if spectrum is not None:
+            assert spectrum.eigenvalues == pytest.approx(alone.eigenvalues, rel=1e-10)
+    roots = np.array([2551.516951182686, 2551.516951182301], complex)
+    assert not are_distinct_roots(roots, np.array([7.9e-12, 7.9e-12]))

@@ -156,12 +156,17 @@ def _iterate_to_convergence(
 @compiled
 def are_distinct_roots(w: Complex, error: Array) -> bool:
     """Whether all eigenvalues w and their absolute errors `error`, (m,) each, are finite, and no two
-    eigenvalues can be the same root."""
+    eigenvalues can be the same root.
+
+    A residual may be small by chance, and the error with it: eigenvalues within `double_root_correction`
+    times |w| can be the same root, too.
+    """
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
+        least = ROOT_SETTINGS.double_root_correction * abs(w[k])
         for j in range(k):
-            if not abs(w[k] - w[j]) > ROOT_SETTINGS.same_root_distance * (error[k] + error[j]):
+            if not abs(w[k] - w[j]) > max(ROOT_SETTINGS.same_root_distance * (error[k] + error[j]), least):
                 return False
     return True
 
