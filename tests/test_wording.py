@@ -11,7 +11,7 @@ from rodsweep.post.summary.ranges import (
     span_text,
     stated_error,
 )
-from rodsweep.wording import counted, duration, is_or_are, some_of
+from rodsweep.wording import count_of_total, counted, duration, is_or_are
 
 
 @pytest.mark.parametrize(
@@ -40,8 +40,8 @@ def test_a_time_needs_no_power_of_ten(seconds, text):
 
 
 def test_a_part_is_named_by_its_whole():
-    assert some_of(1, 1, "rod") == "1 of 1 rod"
-    assert some_of(1, 2, "rod") == "1 of 2 rods"
+    assert count_of_total(1, 1, "rod") == "1 of 1 rod"
+    assert count_of_total(1, 2, "rod") == "1 of 2 rods"
     assert (is_or_are(1), is_or_are(2)) == ("is", "are")
 
 

@@ -25,7 +25,7 @@ from .solving import solve_here
 
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport
-    from ..verdict.flutter import FlutterRange
+    from ..verdict.flutter import ThresholdsOverDrags
     from .answers.rod_portrait import RodPortrait
 
 ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
@@ -57,11 +57,11 @@ class Arm(SlenderArm):
     __init__ = refusing_wrong_arguments(ARM_EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
-    def flutter(self) -> "FlutterRange":
+    def flutter(self) -> "ThresholdsOverDrags":
         """Flutter threshold and frequency in the arm's plane of motion, over the uncertainty of its drag."""
-        from ..verdict.flutter import flutter_range
+        from ..verdict.flutter import thresholds_over_drags
 
-        return flutter_range(self)
+        return thresholds_over_drags(self)
 
     def report(self) -> "ArmReport":
         """Report on the arm: verdict, numbers with formulas and sources, and effects that the model

@@ -20,7 +20,7 @@ from ..model.arm.drag import DRAGS
 from ..model.arm.quantities import LOADS, RELATIVE_LOADS
 from ..model.material.build import STANDARD
 from ..solve.exclusive import defer_signals
-from ..tasks.running.job import Job, job_of, machine_memory
+from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Class of an arm."""
@@ -79,9 +79,9 @@ def with_load_in_si(arm: ArmKind) -> ArmKind:
     """
     if arm.share_of_flutter is None:
         return arm
-    from ..verdict.planes import with_known_load
+    from ..verdict.planes import arm_with_absolute_load
 
-    return with_known_load(arm)
+    return arm_with_absolute_load(arm)
 
 
 @defer_signals
@@ -91,7 +91,7 @@ def job_from(tree: ConfigTree) -> Job:
     Raises InputError also if the results do not fit into memory.
     """
     config = validated_config(with_file_contents(tree, Path()))
-    job = job_of(Path(config.task), config, tree)
+    job = job_of_config(Path(config.task), config, tree)
     size = job.points.count * job.layout.bytes_per_point
     if size > machine_memory():
         raise InputError(
@@ -109,7 +109,7 @@ def require_allowed_keys(tree: ConfigTree) -> None:
     which the ranks of the run share.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
-    if arm is None or arm.load_axis not in RELATIVE_LOADS:
+    if arm is None or arm.load_key not in RELATIVE_LOADS:
         job_from(tree)
 
 

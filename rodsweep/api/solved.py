@@ -20,7 +20,7 @@ from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
-from ..tasks.running.job import Job, attributes_of
+from ..tasks.running.job import Job, file_attributes
 from .dataset import in_layout_order, view_of_dataset, with_arm_selection, with_checksums
 
 
@@ -75,7 +75,7 @@ class SolvedPoints:
             "fingerprint": self.plan.fingerprint,
             "config_resolved": json.dumps(self.plan.config),
         }
-        attributes = attributes_of(self.job, self.statuses, blas_kernels())
+        attributes = file_attributes(self.job, self.statuses, blas_kernels())
         whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.history))
         return with_arm_selection(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
 

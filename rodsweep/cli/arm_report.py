@@ -27,7 +27,7 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
     except InputError as error:
         raise InputError(as_options(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)
-    for line, kind in report.lines():
+    for line, kind in report.styled_paragraphs():
         console.print(line, markup=False, style=LINE_STYLES.get(kind, ""))
 
 

@@ -53,7 +53,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 
     stop = StopRequest(acknowledges=not launcher_rank_values())
     stop.listen()  # first: a launcher's warning signal may come before slow imports are done
-    from ..sweep.points.ranges import shard_of
+    from ..sweep.points.ranges import parsed_shard
     from .run.options import RunOptions
     from .run.running import run_config
 
@@ -62,8 +62,8 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
             "--fresh and --extend are both given; give one of them: --fresh replaces the file, --extend adds "
             "points to it"
         )
-    part = shard_of(shard)
-    suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
+    part = parsed_shard(shard)
+    suffix = f"-{part.number}-of-{part.shard_count}.h5" if part.shard_count > 1 else ".h5"
     output = result_file_path(output or Path(config.stem + suffix))
     code = run_config(config, output, RunOptions(overrides=overrides, shard=part, **options), stop)
     stop.ignore()  # the status is decided
@@ -109,10 +109,10 @@ def snapshot(file: Path, output: Path | None) -> None:
 @overrides_option
 def check(config: Path, overrides: tuple[str, ...]) -> None:
     """Validate CONFIG and print the points, the modelled effects and the expected cost, without computing."""
-    from ..tasks.running.job import make_job
+    from ..tasks.running.job import job_of_file
     from .checking import print_job_check
 
-    print_job_check(make_job(config, overrides))
+    print_job_check(job_of_file(config, overrides))
 
 
 @commands.command()

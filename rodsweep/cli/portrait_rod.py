@@ -76,7 +76,7 @@ def solve_with_progress(shown: "ProgressReporter", solve: "SolveJob") -> "Iterat
     numbers = count(1)
 
     def show(position: SolvePosition) -> None:
-        shown.show_position(position.words, position.share or 0.0)
+        shown.show_position(position.words, position.completed_fraction or 0.0)
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")

@@ -9,7 +9,7 @@ from bokeh.core.properties import String
 from bokeh.model import DataModel
 from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer, Row, Select
 
-from ..config.document.parsing import parse
+from ..config.document.parsing import parsed_yaml
 from ..config.document.reading import validated_config
 from ..errors import InputError
 from .page_style import style_sheet, template_text
@@ -159,7 +159,7 @@ def state_of_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     invalid config, raises the same InputError as the command line.
     """
     where = "the loaded file"
-    tree = parse(text, where)
+    tree = parsed_yaml(text, where)
     if not isinstance(tree, dict):
         raise InputError(f"{where} does not consist of keys and values; give task and parameters")
     return state_of(validated_config(tree), Path(where), F_max)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..api.dataset import open_result
-from ..config.document.reading import config_of, load_config
+from ..config.document.reading import config_from_resolved, load_config
 from ..config.schema import Config
 from ..errors import InputError
 from .scales import SCALES
@@ -47,7 +47,7 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
         return state_of(load_config(path)[0], path), None
     data = open_result(path)
     try:
-        state = state_of(config_of(json.loads(data.attrs["config_resolved"])), path)
+        state = state_of(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
     return state, StoredResults(path, data, state, stored_diagram(data, state))

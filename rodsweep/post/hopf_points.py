@@ -135,10 +135,10 @@ class StoredChanges:
         stored = self._stored(line, line.x.min())
         found: list[LocatedChange | BracketedChange] = [*stored]
         changes = [point for point in stored if point.is_hopf]
-        known = np.flatnonzero(np.isfinite(self.growth_rates[line.at]))
+        known = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
         x = line.x[ordered]
-        grows = self.growth_rates[line.at[ordered]] > 0
+        grows = self.growth_rates[line.indices[ordered]] > 0
         for i in np.flatnonzero(grows[1:] != grows[:-1]):
             low = float(x[i])
             high = float(x[i + 1])

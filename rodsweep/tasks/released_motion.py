@@ -30,7 +30,7 @@ class ReleasedMotion:
 
     status: str
     """Status of the task limit_cycle."""
-    sentence: str
+    status_sentence: str
     """Sentence of the status."""
     message: str
     """Message of the task limit_cycle."""
@@ -76,13 +76,15 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
     assert isinstance(task, LimitCycleTask)
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
-        cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES_PER_RETURN))
+        cycle = solve_cycle(
+            job.points.rod(0), replace(task.cycle_request(), tip=tip, frames=FRAMES_PER_RETURN)
+        )
     if cycle.motion_shapes is None:
         return None
     x, y = cycle.motion_shapes.shapes
     return ReleasedMotion(
         status=cycle.status.name,
-        sentence=cycle.status.sentence,
+        status_sentence=cycle.status.sentence,
         message=cycle.message,
         cycle=task.record(job.points.values(0), cycle),
         step=cycle.motion_shapes.step,

@@ -62,12 +62,12 @@ class Load:
         self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
-    def of(self, forces: Span) -> str:
+    def range_of_forces_text(self, forces: Span) -> str:
         """A range of forces in k3/L^2, as text in the unit of the load."""
         low, high = (F * self.load_at_unit_force for F in (forces.low, forces.high))
         return f"{range_text(low, high)} {self.unit}"
 
-    def at_most(self, F: float) -> str:
+    def rounded_down_text(self, F: float) -> str:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
         value = F * self.load_at_unit_force
         unit = 10.0 ** (floor(log10(value)) - 2)

@@ -144,7 +144,7 @@ def test_an_answer_prints_its_numbers_with_their_units():
 
 def test_no_variable_hides_behind_an_attribute_of_answers():
     for task, config in CONFIGS.items():
-        if config.of_several_rods:
+        if config.needs_several_rods:
             continue
         tree = config_tree(task, {name: ROD[name] for name in config.rod_parameters_used({}) if name in ROD})
         layout = job_from(tree).layout

@@ -154,7 +154,7 @@ def test_text_of_the_config_gives_the_same_points(tmp_path):
     tree = config_tree("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
     again = job_from(YAML(typ="safe").load(tree_yaml(tree)))
     assert again.resolved == job_from(tree).resolved
-    assert again.text == tree_yaml(tree)
+    assert again.config_text == tree_yaml(tree)
 
 
 @pytest.mark.parametrize("name", list(small.CONFIGS))
@@ -230,10 +230,10 @@ def test_numpy_scalars_as_values_and_as_names_are_those_of_python():
     }
     own |= {"k1": np.float32(1e4), "modes": np.int64(3), "certify": np.bool_(False)}
     plain = job_from(config_tree("spectrum", asked | {"certify": False}))
-    assert job_from(config_tree(np.str_("spectrum"), own)).text == plain.text
+    assert job_from(config_tree(np.str_("spectrum"), own)).config_text == plain.config_text
     arm = {np.str_(name): np.str_(text) for name, text in SILICONE.items()}
     plain = job_from(config_tree("thresholds", {"arm": SILICONE}))
-    assert job_from(config_tree("thresholds", {"arm": arm})).text == plain.text
+    assert job_from(config_tree("thresholds", {"arm": arm})).config_text == plain.config_text
     assert rs.Arm(**arm) == rs.Arm(**SILICONE)
 
 

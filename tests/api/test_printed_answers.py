@@ -29,7 +29,7 @@ from rodsweep.post.tables.alignment import (
 from rodsweep.post.tables.columns import Column
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 ARM = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "10 Pa s", "pressure": "3 kPa"}
@@ -192,7 +192,7 @@ def test_check_stays_in_the_window(name, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(WINDOW))
     page = io.StringIO()
     with redirect_stdout(page):
-        print_job_check(make_job(ROOT / "configs" / f"{name}.yaml", ()))
+        print_job_check(job_of_file(ROOT / "configs" / f"{name}.yaml", ()))
     lines = page.getvalue().splitlines()
     assert max(map(len, lines)) <= WINDOW
     assert any(line.startswith("expected: ") for line in lines)

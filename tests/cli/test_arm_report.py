@@ -20,9 +20,9 @@ from rodsweep.solve.changes.thresholds import ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
-from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.load import Load
-from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
+from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_absolute_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -267,11 +267,11 @@ def test_other_relative_loads_are_refused(given):
 
 def test_a_load_relative_to_no_flutter_is_refused():
     arm = SlenderArm(**THICK, pressure="1.2 of flutter")
-    none = FlutterForces(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.ok, 200.0))
+    none = ThresholdsWithDrag(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.ok, 200.0))
     with pytest.raises(
         rs.InputError, match="^pressure = '1.2 of flutter' cannot be computed: .* up to 5560 Pa"
     ):
-        with_load(Planes(PlaneOfMotion(arm, FlutterRange((none,)))))
+        with_absolute_load(Planes(PlaneOfMotion(arm, ThresholdsOverDrags((none,)))))
 
 
 def test_the_report_is_a_table_in_a_notebook():
@@ -288,5 +288,5 @@ def test_a_load_of_at_most_so_much_is_rounded_down(share):
     """1.3381 kPa was told as 1.34 kPa, which is beyond the limit."""
     load = Load(SlenderArm(**THICK, pressure="1.34 kPa"))
     force = share * 1.34 / load.load_at_unit_force
-    told = float(load.at_most(force).split()[0])
+    told = float(load.rounded_down_text(force).split()[0])
     assert 0.99 * share * 1.34 < told <= share * 1.34 * (1 + 1e-9)

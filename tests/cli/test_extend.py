@@ -275,7 +275,7 @@ def test_what_changes_no_number_makes_no_other_config(text, old, new, is_same):
 def asked(text):
     """The fingerprint of the config of a grid."""
     config = validated_config(YAML(typ="safe").load(text))
-    columns = [config.parameters.axes[name].array() for name in config.names]
+    columns = [config.parameters.axes[name].array() for name in config.parameter_names]
     return fingerprint_of(resolved_config(config), columns)
 
 

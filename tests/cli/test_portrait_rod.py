@@ -33,14 +33,14 @@ def test_an_arm_is_the_arm_that_it_is_in_python(monkeypatch):
 
 def points_of(rod: DescribedRod) -> dict[str, float]:
     """Parameters that a task has of a rod at F = 40."""
-    points = PortraitRequest(rod=rod).job("limit_cycle", {}, 40.0).points
-    return {name: float(values[0]) for name, values in points.by_name.items()}
+    points = PortraitRequest(rod=rod).job_of_task("limit_cycle", {}, 40.0).points
+    return {name: float(values[0]) for name, values in points.columns_by_name.items()}
 
 
 def test_an_arm_in_segments_has_the_profile_of_its_config():
     segments = ["5 cm: radius 6 mm, young 80 kPa", "5 cm: radius 4 mm, young 100 kPa"]
     found = rod_of_options({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
-    build = PortraitRequest(rod=found).job("thresholds", {}).config.build
+    build = PortraitRequest(rod=found).job_of_task("thresholds", {}).config.build
     assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
     assert found.words == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
 

@@ -22,7 +22,7 @@ from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.sweep.points.points import lines_over
+from rodsweep.sweep.points.points import lines_along
 
 from .arm_sentences import arm_sentences, random_arm, region_as_stated
 from .branch_sentences import branch_sentences
@@ -278,7 +278,7 @@ def threshold_sentences(view, page):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
         for _, match in read(page, r", on NUMBER of NUMBER lines? over", only=line):
-            lines = [each for each in lines_over(view.point_columns, name) if len(each.x)]
+            lines = [each for each in lines_along(view.point_columns, name) if len(each.x)]
             having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
             right = int(match[1]) == having and int(match[2]) == len(lines)
             why += [] if right else [f"on {having} of {len(lines)} lines"]

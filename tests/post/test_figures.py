@@ -30,7 +30,7 @@ from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 
 def test_every_task_has_a_summary_and_a_figure():
@@ -178,7 +178,7 @@ def test_config_changes_stability_where_its_head_comment_says(name):
     """Flutter sets in (+1) and ends (-1) at the forces of docs/method.md, to ten digits, and nowhere else."""
     path = ROOT / "configs" / f"{name}.yaml"
     head = path.read_text()
-    job = make_job(path, ())
+    job = job_of_file(path, ())
     F = job.points.columns[0]
     crossings = EXPECTED[name]
     request = SpectrumRequest(4, 1e-10, True)

@@ -17,7 +17,7 @@ from rodsweep.results.file import exchange
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.exchange import Lock
 from rodsweep.results.run.journal import journal_directory
-from rodsweep.sweep.points.ranges import Shard, shard_of
+from rodsweep.sweep.points.ranges import Shard, parsed_shard
 from rodsweep.tasks.running.job import plan_without_solver
 
 SPECTRA = """
@@ -68,7 +68,7 @@ def test_shard_of_what_is_left_is_what_is_left_of_the_shard():
 @pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/0", "-1/2", "1/2/3", "", "1/1e9", "9" * 5000])
 def test_shards_that_are_none_are_refused(text):
     with pytest.raises(InputError, match="--shard .* I/N"):
-        shard_of(text)
+        parsed_shard(text)
 
 
 def test_merged_shards_are_the_undivided_run(command):

@@ -107,8 +107,8 @@ def test_two_threads_share_the_work_without_losing_any():
 def test_points_that_all_ranks_have_kept_are_counted():
     handout = ChunkQueue([(0, 9)], ranks=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
-        handout.add_report(rank, RankReport(points=points))
-    assert handout.points == 6
+        handout.add_report(rank, RankReport(stored_points=points))
+    assert handout.stored_points == 6
 
 
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
@@ -199,7 +199,7 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
     """Its report may come before the message that it was asked to stop, and while others wait."""
     mail = Mail()
     first = claims(mail, [(0, 1)], monkeypatch)
-    for report in (RankReport(), RankReport(0, 9.0, (0, 1), 1, stop="SIGTERM")):
+    for report in (RankReport(), RankReport(0, 9.0, (0, 1), 1, stop_signal="SIGTERM")):
         mail.post(REQUEST_TAG, report)
         first.between_points()
     assert first.stop.name == "SIGTERM"

@@ -15,7 +15,7 @@ import rodsweep as rs
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.ranges import IndexSet, index_count
 from rodsweep.sweep.points.stretches import (
-    SHORTEST_AXIS,
+    MIN_STRETCH_AXIS_VALUES,
     STRETCH_POINTS,
     Stretches,
     StretchResult,
@@ -52,8 +52,8 @@ def test_every_point_is_in_one_stretch_of_neighbours(shape):
 
 def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
     assert stretches_along_longest_axis((5, 9, 9, 2), EVERY).axis == 1
-    assert stretches_along_longest_axis((1, 1, 1, SHORTEST_AXIS), EVERY).axis == 3
-    assert stretches_along_longest_axis((1, SHORTEST_AXIS - 1, 1, 1), EVERY) is None
+    assert stretches_along_longest_axis((1, 1, 1, MIN_STRETCH_AXIS_VALUES), EVERY).axis == 3
+    assert stretches_along_longest_axis((1, MIN_STRETCH_AXIS_VALUES - 1, 1, 1), EVERY) is None
     assert stretches_along_longest_axis((99, 9, 8), ("", "F", "k2")).axis == 1
     assert stretches_along_longest_axis((99, 99), ("", "")) is None
 

@@ -104,7 +104,9 @@ def test_a_search_that_failed_is_no_arm_at_rest():
     assert record["model_applies"] == Validity.applies
     judge = ArmValidity(made.config, made.points, solver.statuses)
     failed = next(status for status in solver.statuses if status.name == "failed")
-    assert judge.of(record | {"status": int(failed)}, 0)["model_applies"] == VALIDITY_NOT_KNOWN
+    assert (
+        judge.variables_of_points(record | {"status": int(failed)}, 0)["model_applies"] == VALIDITY_NOT_KNOWN
+    )
 
 
 def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():

@@ -24,7 +24,7 @@ from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.tasks.branch import branch_values
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 CONFIG = (
     "task: branch\nparameters: {{k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4}}\n"
@@ -285,7 +285,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
         f"task: branch\nparameters: {{{others}, k2: 1.0e4, gamma3: 1.0e-4}}\n"
         f"branch: {{along: {along}, start: 50, stop: 160}}\n"
     )
-    names = {variable.name for variable in make_job(config, ()).layout.variables}
+    names = {variable.name for variable in job_of_file(config, ()).layout.variables}
     rod = (
         Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
         if along == "F"

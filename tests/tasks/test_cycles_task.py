@@ -26,7 +26,7 @@ from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
 from rodsweep.sweep.points.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 GRID = {"F": "[1, 2]", "k1": "100", "k2": "[10, 20]", "gamma3": "0.5", "gamma1": "[0.5, 1]"}
 
@@ -40,7 +40,7 @@ def config(options="", more="", **axes):
 def job_of(directory, text, *overrides):
     path = directory / "c.yaml"
     path.write_text(text)
-    return make_job(path, overrides)
+    return job_of_file(path, overrides)
 
 
 # --- what a config may say --------------------------------------------------------------------------------

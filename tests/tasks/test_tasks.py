@@ -28,7 +28,7 @@ from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
 from rodsweep.tasks.diagram.records import cycle_curve_record
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 
 CONFIGS = {
@@ -58,7 +58,7 @@ TASKS = list(CONFIGS)
 def job_of(tmp_path, task, *overrides):
     path = tmp_path / "c.yaml"
     path.write_text(f"task: {task}\n{CONFIGS[task]}\n")
-    return make_job(path, overrides)
+    return job_of_file(path, overrides)
 
 
 def plan_of(job):
@@ -249,7 +249,7 @@ def test_transient_growth_is_stored_only_where_it_is_computed(tmp_path):
 def test_point_list_of_rods_without_a_force_opens_with_its_coordinates(tmp_path):
     (tmp_path / "p.csv").write_text("k2,k1,gamma3\n1,9,0\n2,inf,0.5\n")
     (tmp_path / "c.yaml").write_text("task: thresholds\nparameters: {points: p.csv}\n")
-    Store(tmp_path / "c.h5", plan_of(make_job(tmp_path / "c.yaml", ()))).close()
+    Store(tmp_path / "c.h5", plan_of(job_of_file(tmp_path / "c.yaml", ()))).close()
     with xarray.open_dataset(tmp_path / "c.h5", engine="h5netcdf") as data:
         assert data.crossing_F.dims == ("point", "crossing")
         assert set(data.coords) == {"point", "crossing", "k1", "k2", "gamma3"}

@@ -24,7 +24,7 @@ from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.points import rod_numbers
 from rodsweep.verdict.flutter import ChangeKind
-from rodsweep.verdict.relative import first_flutter, first_hopf_force
+from rodsweep.verdict.relative import first_flutter_force, first_hopf_force
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
 QUICK = {"accuracy": 1e-3, "harmonics": 2}
@@ -103,9 +103,11 @@ def test_a_relative_force_is_told_as_a_force():
 def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():
     arm = {"length": "15 cm", "width": "6 mm", "height": "8 mm", "young": "60 kPa", "viscosity": "40 Pa s"}
     flat, tall = SlenderArm(**arm), SlenderArm(**arm | {"width": "8 mm", "height": "6 mm"})
-    assert first_flutter(flat) * flat.force_scale == pytest.approx(first_flutter(tall) * tall.force_scale)
+    assert first_flutter_force(flat) * flat.force_scale == pytest.approx(
+        first_flutter_force(tall) * tall.force_scale
+    )
     own = Rod(F=0.0, k1=tall.k1, k2=tall.k2, gamma3=tall.gamma3)
-    assert first_flutter(tall) == first_hopf_force(own)
+    assert first_flutter_force(tall) == first_hopf_force(own)
     data = rs.sweep("spectrum", arm=arm | {"pressure": "1.2 of flutter"}, modes=2)
     known = rs.Arm(**arm, pressure="1.2 of flutter").loaded
     assert data.pressure.item() == pytest.approx(known.si.pressure, rel=1e-9)
@@ -172,7 +174,7 @@ def test_an_arm_without_flutter_is_a_point_with_a_status():
         section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(36.0 if arm.k1 == stiff else np.inf)
     )
     assert grid.coverage is not None and grid.coverage.tolist() == [NO_FLUTTER, 0]
-    assert np.isnan(grid.by_name["F"][0])
+    assert np.isnan(grid.columns_by_name["F"][0])
     with pytest.raises(ValueError, match="relative to flutter, but with the likeliest drag no arm flutters"):
         grid_of_arms(section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(np.inf))
 

@@ -121,7 +121,7 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
 
     def solve(job: Job) -> View:
         solved = solve_here(job, progress=progress)
-        answers[job.text] = Answer(rod, solved, solved.messages[0])
+        answers[job.config_text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.name))
 
     results = rod_results(replace(request, **own), solve)

@@ -41,7 +41,9 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
     """
     hosts = {contribution.host for contribution in contributions}
     shares = [contribution.share for contribution in contributions[: provenance.MAX_RANK_SHARES]]
-    points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
+    points, busy, idle = zip(
+        *((share.solved_points, share.busy_seconds, share.idle_seconds) for share in shares), strict=True
+    )
     numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
     return {
         "ranks": len(contributions),

@@ -101,8 +101,8 @@ class JointWork:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again. items: half curves, as in `PendingJointWork`.
         """
-        chosen = self.team.on_first(lambda: items.items_to_solve(self.results))
-        for starts in self.team.exchange(self.joint_variables.initial_data(items, chosen)):
+        chosen = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
+        for starts in self.team.gather_on_all_ranks(self.joint_variables.initial_data(items, chosen)):
             self.joint_variables.add_initial_data(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:

@@ -113,7 +113,7 @@ class PointWork:
         if solver.stretched:
             return StretchSolver(*solver.stretched, solver.solve, missing)
         if solver.chained:
-            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_of)
+            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_from_arrays)
             return ChainSolver(solver.chained, missing, kept, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 

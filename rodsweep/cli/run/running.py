@@ -16,8 +16,8 @@ from ...sweep.loop import RankWork
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
-from ...tasks.running.failures import parameters_in_words
-from ...tasks.running.job import Job, job_of, plan_of
+from ...tasks.running.failures import parameters_text
+from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_shared_constants
@@ -35,13 +35,13 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
     """Runs the config file `path`, or a shard of it, on all ranks; returns the exit status of the command."""
     require_directory()
     team = Team()
-    with team.aborting_together():
-        config, text = team.on_first(lambda: load_config(path, options.overrides))
+    with team.abort_all_ranks_on_error():
+        config, text = team.call_on_first_rank(lambda: load_config(path, options.overrides))
         flutter = shared_flutter_forces(config, team, stop)
         if flutter is None:
             report_stop(team, stop)
             return STOPPED_STATUS
-        job = team.on_first(lambda: job_of(path, config, text, flutter))
+        job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
         return _RankRun(team, job, output, options, stop).run()
 
@@ -88,32 +88,34 @@ class _RankRun:
     def run(self) -> int:
         """Solves the missing points, writes the results into the file, and returns the exit status."""
         replaces = self.options.fresh or self.options.extend
-        if self.team.on_first(lambda: replaces or not self.output.exists()):
+        if self.team.call_on_first_rank(lambda: replaces or not self.output.exists()):
             plan = with_shared_constants(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 report_stop(self.team, self.stop)
                 return STOPPED_STATUS
             self.plan = plan
-        missing = self.team.on_first(self._open_store)
+        missing = self.team.call_on_first_rank(self._open_store)
         items, count = self.work.items(missing)
         if self.team.is_first:
             points = self.job.points.count
-            shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
+            shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
             if self.joint and self._lacks_joint_variables(index_count(missing) - count):
                 kept += ", then curves through all"
             self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[RunContribution] = []
         if count:
-            self.team.on_first(self._record_blas_kernels)
+            self.team.call_on_first_rank(self._record_blas_kernels)
             contributions = self.team.gather(self.work.solve(items, missing, count, self.prepare)) or []
-        joint = self.team.on_first(lambda: self._add_journals(count, contributions))
+        joint = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
         if self.joint and joint.work_items is not None:
             title = None if self.options.quiet else self.job.name
             shares = self.team.gather(self.joint.solve(joint.work_items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
-        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
+        return self.team.call_on_first_rank(
+            lambda: self._finish(count, contributions, joint, shares, exceptions)
+        )
 
     def _lacks_joint_variables(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank.
@@ -171,7 +173,7 @@ class _RankRun:
             click.echo(f"{self.output}: {sentence}")
 
     def _file_and_folder_text(self, index: int) -> str:
-        return parameters_in_words(self.job.points.values(index))
+        return parameters_text(self.job.points.values(index))
 
     def _finish_file(self, joint: PendingJointWork) -> bool:
         """Writes the variables of all points into the file; returns whether these are still missing."""
@@ -228,7 +230,9 @@ class _RankRun:
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted=sum(contribution.share.was_interrupted for contribution in contributions),
-            followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
+            followed_halves=sum(share.solved_points for share in shares)
+            if joint.due and self.joint
+            else None,
             stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:

@@ -13,7 +13,7 @@ from matplotlib.ticker import NullFormatter
 
 from ...model.parameters import CRUSHING_PARAMETERS
 from ...results.layouts.variables import MISSING_STATUS
-from ...wording import counted, has_or_have, some_of
+from ...wording import count_of_total, counted, has_or_have
 from ..branch_curves import (
     ParameterRange,
     RodBranches,
@@ -141,7 +141,9 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())
     without = computed - beating
     return more + (
-        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} no branch" if without > 0 else ""
+        f"; {count_of_total(without, computed, 'rod')} {has_or_have(without)} no branch"
+        if without > 0
+        else ""
     )
 
 

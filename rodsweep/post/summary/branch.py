@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...results.file.view import View
-from ...wording import counted, is_or_are, some_of
+from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import ParameterRange, RodBranches, StoredBranch, branch_ends, followed_parameter
 from .errors import known_range_text
 from .ranges import number_with_error, ranges_text, rounded, span_text
@@ -47,7 +47,8 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
-    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes_text(view, done)}"
+    at = count_of_total((counts > 0).sum(), len(rods), "rod")
+    line = f"{branches} at {at}, {cycles}{_sizes_text(view, done)}"
     along = followed_parameter(view)
     answer = [line, *_special_lines(rods, along), *_coexistence_lines(rods, along)]
     return SummaryLines(answer, [_searched_range_line(view, done)])
@@ -58,7 +59,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     along = followed_parameter(rod.view)
     v = rod.view.variables
     if rod.hidden:
-        part = some_of(rod.hidden, rod.hidden + len(rod.curves), "branch")
+        part = count_of_total(rod.hidden, rod.hidden + len(rod.curves), "branch")
         yield f"{part} {is_or_are(rod.hidden)} not shown: {FULL_LIST_REASON}"
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known"
@@ -194,7 +195,7 @@ def _lines_on_rods_with(
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]
-    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
+    yield f"{words} at {count_of_total(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(having, "rod")
 
 
@@ -204,7 +205,7 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     """
     start, stop = branch_ends(view)
     along = followed_parameter(view)
-    proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
+    proved = count_of_total(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
         f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points {proof_clause(view)} at "
         f"{proved}; cycles that lie on no branch from a Hopf point are not found"

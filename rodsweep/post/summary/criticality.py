@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
 from .ranges import number_and_error, rounded, span_text
@@ -50,7 +50,8 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     where = in_brackets(region_text(view, done & with_hopf)) if (done & with_hopf).any() else ""
     unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
     lines = [
-        f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{unknown_clause(unknown)}"
+        f"Hopf points at {count_of_total(with_hopf[done].sum(), done.sum(), 'rod')}"
+        f"{where}{unknown_clause(unknown)}"
     ]
     if not known.any():
         return SummaryLines(lines, [_searched_range_line(view, done)])
@@ -157,7 +158,7 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
         f"searched up to F = {span_text(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
-        f"{some_of(certified, rods, 'rod')}{unstored_clause(hidden)}"
+        f"{count_of_total(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 
 

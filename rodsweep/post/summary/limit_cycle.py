@@ -8,7 +8,7 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from ..hopf_points import StoredChanges
 from .arm.arm import region_of_arms
 from .errors import absolute_errors, known_range_text
@@ -106,7 +106,7 @@ def _proof_lines(view: View) -> list[str]:
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
         return []
-    proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
+    proved = count_of_total(int(v["hopf_lines_proved"]), lines, "line")
     return [f"the list of Hopf points between neighbouring points {proof_clause(view)} on {proved}"]
 
 
@@ -155,7 +155,7 @@ def _at_count(some: np.ndarray, done: np.ndarray) -> str:
     """Clause on the number of points in the mask `done` that are also in the mask `some`; empty if `done` has
     a single point.
     """
-    return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
+    return "" if done.sum() == 1 else f" at {count_of_total(some.sum(), done.sum(), 'point')}"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:

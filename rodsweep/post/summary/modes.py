@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
 from .ranges import NONE_TEXT, span_text
 from .spectrum import (
@@ -35,7 +35,7 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
         unknown = int((~np.isfinite(errors)).any(axis=-1).sum())
-        where = f"; not known at {some_of(unknown, len(errors), 'point')}" if unknown else ""
+        where = f"; not known at {count_of_total(unknown, len(errors), 'point')}" if unknown else ""
         trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
     numbers = eigenvalue_table(view) if done.size == 1 else None
     return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm, numbers)

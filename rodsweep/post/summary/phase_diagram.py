@@ -9,7 +9,7 @@ from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import span_text
@@ -97,7 +97,7 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     for words, (rows, where) in found_on.items():
         if rows.any():
             lines.append(
-                f"{words}: on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
+                f"{words}: on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
                 f"{row} = {span_text(of_row[rows])}"
             )
     return lines
@@ -139,7 +139,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
             again = of_kind & ~first
             at, later = (span_text(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
             least = "at least " * bool((unknown & ~on_row).any())
-            text = f"{word}: on {least}{some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
+            text = f"{word}: on {least}{count_of_total(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
             text += f", {row} = {span_text(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
@@ -150,7 +150,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
     if undecided.any():
         rows = undecided.any(axis=-1)
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
-        on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
+        on_rows = f"on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
         lines.append(f"undecided: {on_rows}, {row} = {span_text(of_row[rows])}")
     flutters = (v["class"] == flutter).any(axis=-1)
     never = ~flutters & (v["class"] != unknown_class).all(axis=-1)
@@ -172,6 +172,6 @@ def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
         of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
         if number and of_kind.any():
             forces = v["crossing_at"][of_kind]
-            rows = some_of(of_kind.any(axis=-1).sum(), done.sum(), "row")
+            rows = count_of_total(of_kind.any(axis=-1).sum(), done.sum(), "row")
             lines.append(f"{word}: on {rows}, at {loads_at(view, forces, np.zeros(len(forces), int))}")
     return lines

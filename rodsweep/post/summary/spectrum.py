@@ -5,7 +5,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.rods import estimates_counts, has_covering
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from ..hopf_points import StoredChanges
 from .ranges import number_and_error, span_text
 from .stability import stability_lines
@@ -125,6 +125,6 @@ def stability_line(view: View, done: np.ndarray) -> str:
     certified = int(view.variables["certified"][done].sum())
     how = "counted by an estimate" if estimates_counts(view.config) else "proved"
     text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, {how} at "
-    text += some_of(certified, points, "point")
+    text += count_of_total(certified, points, "point")
     unknown = int((unstable < 0).sum())
     return text + (f", not known at {unknown}" if unknown else "")

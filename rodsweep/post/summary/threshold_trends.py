@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from ...results.file.view import View
-from ...wording import some_of
+from ...wording import count_of_total
 from .summary_lines import in_brackets
 
 TREND_ROUNDING = 1e-12
@@ -53,7 +53,7 @@ def monotony_lines(view: View) -> list[str]:
         if not known.any():
             continue
         rising = int((trends == Trend.rises).sum())
-        text = f"{force} rises with {label} on {some_of(rising, known.sum(), 'line')}"
+        text = f"{force} rises with {label} on {count_of_total(rising, known.sum(), 'line')}"
         for trend, verb in ((Trend.falls, "falls"), (Trend.constant, "is constant")):
             if number := int((trends == trend).sum()):
                 text += f", {verb} on {number}"

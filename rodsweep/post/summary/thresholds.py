@@ -7,7 +7,7 @@ from ...results.file.view import View
 from ...results.layouts.rods import has_covering
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, plural, some_of
+from ...wording import count_of_total, counted, plural
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded, span_text
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
@@ -66,7 +66,11 @@ def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
     errors = crossing_errors(view, F, "crossing_F")
     places = [f"{rounded(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
-    where = f"all {counted(rods, 'rod')}" if found.sum() == rods else some_of(int(found.sum()), rods, "rod")
+    where = (
+        f"all {counted(rods, 'rod')}"
+        if found.sum() == rods
+        else count_of_total(int(found.sum()), rods, "rod")
+    )
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span_text(v[rate][done])} {unit}"
 
 
@@ -168,7 +172,7 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     known = errors[np.isfinite(errors)]
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
-    proved = some_of(int(v["certified"][done].sum()), searches, noun)
+    proved = count_of_total(int(v["certified"][done].sum()), searches, noun)
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [

@@ -64,7 +64,7 @@ class Plan:
     @property
     def fingerprint(self) -> str:
         """Fingerprint of config and points; a run can continue a file with an equal fingerprint."""
-        return fingerprint_of(self.config, self.points.identity)
+        return fingerprint_of(self.config, self.points.identifying_arrays)
 
 
 def create_file(path: Path, plan: Plan) -> None:

@@ -124,7 +124,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
     require_variables_of_layout(file, layout)
-    fingerprint = fingerprint_of(config, points_in(file, layout).identity)
+    fingerprint = fingerprint_of(config, points_in(file, layout).identifying_arrays)
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
 

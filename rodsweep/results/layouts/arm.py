@@ -193,7 +193,7 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...
         )
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
-    own = points.units | {name: column for name, column in points.by_name.items() if name not in axes}
+    own = points.units | {name: column for name, column in points.columns_by_name.items() if name not in axes}
     return (
         *(_data_of(arm, name, values, (name,)) for name, values in axes.items()),
         *(_data_of(arm, name, value, ()) for name, value in numbers.items()),

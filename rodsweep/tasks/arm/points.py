@@ -99,7 +99,7 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     return None if rods.max() + 1 == len(rods) else rods
 
 
-def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver:
+def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) -> Solver:
     """A solver that caches outcomes, so that a rank solves a rod only once even if several points have this
     rod.
 
@@ -157,7 +157,7 @@ class SkippingSolver:
     failures: Mapping[int, str]
     layout: Layout
 
-    def solver(self) -> Solver:
+    def solver_of_all_points(self) -> Solver:
         """The solver of all points, with or without a rod."""
         statuses = (*self.rod_solver.statuses, *NoRodStatus)
         return self.rod_solver.with_wrapper(
@@ -195,5 +195,5 @@ class SkippingSolver:
             values[name][places] = column
         solved = coverage != FLUTTER_UNKNOWN
         if found:
-            solved[places] = found.solved
+            solved[places] = found.is_solved
         return StretchResult(values, solved)

@@ -9,7 +9,7 @@ from ...sweep.loop import Indices
 from ...sweep.points.stretches import StretchResult
 
 
-def parameters_in_words(values: Mapping[str, float]) -> str:
+def parameters_text(values: Mapping[str, float]) -> str:
     """Text with the parameters of a point: `F=40.0, k1=200.0`. values: parameters by name."""
     return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
@@ -18,11 +18,11 @@ def parameters_in_words(values: Mapping[str, float]) -> str:
 class FailureReasons:
     """Distinct reasons why points failed, each with the first point that failed for this reason.
 
-    where: function from the flat index of a point to a text with its parameters. examples: text with
+    point_text: function from the flat index of a point to a text with its parameters. examples: text with
     parameters, status and message, by the reason with all numbers replaced.
     """
 
-    where: Callable[[int], str]
+    point_text: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: Indices, result: Any) -> list[str]:
@@ -36,7 +36,7 @@ class FailureReasons:
             return []
         if len(self.examples) >= MAX_FAILURE_REASONS:
             return []
-        where = self.where(int(index))
+        where = self.point_text(int(index))
         line = " ".join(f"{where}: {result.status.name} {result.message}".split())
         if failure_kind(line) in self.examples:
             return []

@@ -98,7 +98,7 @@ def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
     if not points.axes:
         rows = np.arange(1, points.count + 1, dtype="<i4")
         found["point"] = (("point",), rows, dimension_attributes("point"))
-    for name, column in () if points.arm_axes else points.by_name.items():
+    for name, column in () if points.arm_axes else points.columns_by_name.items():
         found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantities:
         found[variable.name] = (variable.extra, values, variable.attributes)

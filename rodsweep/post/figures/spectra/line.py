@@ -12,7 +12,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ....sweep.points.points import lines_over
+from ....sweep.points.points import lines_along
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
 from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading_text, legend_below, scale_axis
@@ -192,7 +192,7 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
             across = axes.get_xaxis_transform()
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE_LOOK)
         return []
-    (line,) = lines_over(view.point_columns, name)
+    (line,) = lines_along(view.point_columns, name)
     found = StoredChanges(view, name).thresholds_on(line)
     thresholds = [threshold for threshold in found if isinstance(threshold, LocatedChange)]
     for threshold in thresholds:

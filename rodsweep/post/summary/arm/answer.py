@@ -11,7 +11,7 @@ from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....wording import counted, some_of
+from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
 from .validity import plane_lines, validity_sentence
@@ -98,7 +98,7 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     if len(hopf) > 1 and np.isfinite(onset).any():
         lines.append(f"a disturbance swings as it dies away from {load_spanned(view, onset)} on")
     if len(hopf) > 1 and np.isfinite(back).any():
-        points = some_of(int(np.isfinite(back).sum()), len(back), "point")
+        points = count_of_total(int(np.isfinite(back).sum()), len(back), "point")
         lines.append(f"is straight again at {points}, from {load_spanned(view, back)} on")
     return _flutter_lines(view, hopf, end, rate), lines
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....config.axes import joined_names
-from ....config.document.reading import config_of
+from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
@@ -106,8 +106,8 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
     Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file.
     """
-    theirs = config_of(header.config).settings_of_results
-    ours = config_of(plan.config).settings_of_results
+    theirs = config_from_resolved(header.config).settings_of_results
+    ours = config_from_resolved(plan.config).settings_of_results
     task = theirs["task"]
     _refuse(header, config_difference(task, ours["task"], "task"))
     line_grew = False
@@ -158,7 +158,7 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPo
     places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
-        places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
+        places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.is_upward)
     if plan.stretches:
         axis = plan.stretches.axis
         before = stretches_along_longest_axis(old.shape, old.varying_parameters)

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from ....arrays import Array
-from ....config.document.reading import config_of, config_yaml, resolved_config
+from ....config.document.reading import config_from_resolved, config_yaml, resolved_config
 from ....config.schema import Config
 from ....config.values import Axis
 from ....errors import InputError
@@ -114,10 +114,10 @@ def _point_text(points: Points, index: int) -> str:
 def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
-    meant = config_of(first.config).settings_of_results
+    meant = config_from_resolved(first.config).settings_of_results
     grids = [parameters_of(source.path, source.layout) for source in sources]
     for other, points in zip(others, grids[1:], strict=True):
-        theirs = config_of(other.config).settings_of_results
+        theirs = config_from_resolved(other.config).settings_of_results
         apart = config_difference(
             meant | {"together": None}, theirs | {"together": None}, places=(first.path.name, other.path.name)
         )
@@ -150,7 +150,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     """
     axes = []
     for name in grids[0].names:
-        axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
+        axis = np.unique(np.concatenate([grid.columns_by_name[name] for grid in grids]))
         close = np.flatnonzero(np.diff(axis) <= ROUNDING_TOLERANCE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
@@ -198,10 +198,10 @@ def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
-        own = config_of(first.config).parameters.axes
-        axes = {name: _axis_with(own[name], column) for name, column in points.by_name.items()}
+        own = config_from_resolved(first.config).parameters.axes
+        axes = {name: _axis_with(own[name], column) for name, column in points.columns_by_name.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
-    return config_of(first.config | {"parameters": parameters, task: meant[task]})
+    return config_from_resolved(first.config | {"parameters": parameters, task: meant[task]})
 
 
 def _axis_with(own: Axis, values: Array) -> Axis:
@@ -227,7 +227,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
         return
     name = plan.points.names[plan.chains.axis]
     for source, grid in zip(sources, grids, strict=True):
-        if not np.array_equal(grid.by_name[name], plan.points.by_name[name]):
+        if not np.array_equal(grid.columns_by_name[name], plan.points.columns_by_name[name]):
             raise InputError(
                 f"{source.path} differs from the other files in {name}, along which each point starts from "
                 "its neighbour; parts of chains cannot be merged; use run --extend"

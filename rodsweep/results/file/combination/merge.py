@@ -10,7 +10,7 @@ from pathlib import Path
 
 import h5py
 
-from ....config.document.reading import config_of
+from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNALS, journal_directory
@@ -62,7 +62,7 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
 def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
     """Replaces the output by a copy of the first source with the points of all other sources added."""
     first = sources[0]
-    plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
+    plan = planner(config_from_resolved(first.config), parameters_of(first.path, first.layout))
     with exchange.replacing(first.path) as copy:
         gave = [first]
         for source in sources[1:]:

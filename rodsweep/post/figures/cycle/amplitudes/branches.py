@@ -9,7 +9,7 @@ from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
-from .....sweep.points.points import lines_over
+from .....sweep.points.points import lines_along
 from ....hopf_points import LocatedChange, StoredChanges
 from ..units import PLAIN_UNITS, CycleUnits
 from .square_root import SquareRootLaw, square_root_laws
@@ -88,9 +88,9 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
     branches = []
     stored = StoredChanges(view, "F")
-    for line in lines_over(view.point_columns, name):
+    for line in lines_along(view.point_columns, name):
         changes = stored.thresholds_on(line) if name == "F" else []
-        at = line.at
+        at = line.indices
         hopf = [change for change in changes if isinstance(change, LocatedChange) and change.is_hopf]
         branches.append(
             AmplitudeBranch(
