@@ -12,7 +12,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
-from .keyword_arguments import config_tree, job_from, with_load_in_si
+from .keyword_arguments import config_tree, job_of_tree, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -21,7 +21,7 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving import solve_here
+from .solving import solve_in_process
 
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport
@@ -174,7 +174,7 @@ class Arm(SlenderArm):
                 f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
                 "arm.replace(pressure='1.2 of flutter')"
             )
-        solved = solve_here(job_from(config_tree(task, {"arm": self} | options)), progress=progress)
+        solved = solve_in_process(job_of_tree(config_tree(task, {"arm": self} | options)), progress=progress)
         return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
 
     @property

@@ -85,7 +85,7 @@ def with_load_in_si(arm: ArmKind) -> ArmKind:
 
 
 @defer_signals
-def job_from(tree: ConfigTree) -> Job:
+def job_of_tree(tree: ConfigTree) -> Job:
     """The validated job of a config tree; InputError, as on the command line, for bad input.
 
     Raises InputError also if the results do not fit into memory.
@@ -102,15 +102,15 @@ def job_from(tree: ConfigTree) -> Job:
     return job
 
 
-def require_allowed_keys(tree: ConfigTree) -> None:
-    """Raises InputError for a config tree that `job_from` refuses, before any rank of a run starts.
+def require_valid_tree(tree: ConfigTree) -> None:
+    """Raises InputError for a config tree that `job_of_tree` refuses, before any rank of a run starts.
 
     For loads relative to flutter only the config is validated, because the points need a search for flutter,
     which the ranks of the run share.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
     if arm is None or arm.load_key not in RELATIVE_LOADS:
-        job_from(tree)
+        job_of_tree(tree)
 
 
 def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:

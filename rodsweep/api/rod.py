@@ -22,7 +22,7 @@ from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
 from .answers.answer import Answer
-from .keyword_arguments import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
+from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -31,7 +31,7 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving import solve_here
+from .solving import solve_in_process
 
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait
@@ -189,7 +189,7 @@ class SoftRod:
         names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
         tree = config_tree(task, values | self._given_material | options)
-        solved = solve_here(job_from(tree), progress=progress)
+        solved = solve_in_process(job_of_tree(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
 
     def __repr__(self) -> str:

@@ -21,7 +21,7 @@ from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
 from ..tasks.running.job import Job, file_attributes
-from .dataset import in_layout_order, view_of_dataset, with_arm_selection, with_checksums
+from .dataset import in_layout_order, view_of_dataset, with_arm_indexes, with_checksums
 
 
 class Result(Protocol):
@@ -77,7 +77,7 @@ class SolvedPoints:
         }
         attributes = file_attributes(self.job, self.statuses, blas_kernels())
         whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.history))
-        return with_arm_selection(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
+        return with_arm_indexes(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
 
     @cached_property
     def view(self) -> View:

@@ -35,7 +35,7 @@ _compiled_tasks: set[str] = set()
 
 
 @exclusive_solve
-def solve_here(
+def solve_in_process(
     job: Job, note: PointExceptionNote | None = None, progress: bool | None = None
 ) -> SolvedPoints:
     """Solves all points of a job in this process, and returns the results.

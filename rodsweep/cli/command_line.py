@@ -167,6 +167,6 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 @click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
 def arm(poisson: float, segment: tuple[str, ...], **quantities: str | None) -> None:
     """Print when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
-    from .arm_report import describe_arm
+    from .arm_report import print_arm_report
 
-    describe_arm(quantities, poisson, segment)
+    print_arm_report(quantities, poisson, segment)

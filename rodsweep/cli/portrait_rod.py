@@ -36,7 +36,7 @@ def rod_of_options(
     from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
     from ..model.arm.arm import SlenderArm
     from ..post.rod_portrait.results import DescribedRod
-    from .arm_report import as_options
+    from .arm_report import with_option_names
 
     own = _options_that_are_set(parameters)
     words = _options_that_are_set(material)
@@ -46,7 +46,7 @@ def rod_of_options(
         try:
             SlenderArm(**of_arm)
         except InputError as error:
-            raise InputError(as_options(str(error))) from None
+            raise InputError(with_option_names(str(error))) from None
         return DescribedRod(parameters=own, material=_read_material(words), arm=of_arm)
     for name in REQUIRED_PARAMETERS:
         if name not in own:

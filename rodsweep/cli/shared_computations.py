@@ -41,7 +41,7 @@ class _SharedWork:
         return any(self.team.gather_on_all_ranks(self.skipped))
 
 
-def with_shared_constants(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
+def with_config_variables(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
     """The plan of a result file, with the variables that do not depend on points, computed by all ranks
     together.
 

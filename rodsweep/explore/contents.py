@@ -22,7 +22,7 @@ from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
-from .texts import SolvingSign, show_texts
+from .texts import SolvingSign, add_texts
 
 NO_CYCLE_CURVES_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""
@@ -85,7 +85,7 @@ class PageContents:
                 *(card.root for card in self.cards),
             ):  # fmt: skip
                 document.add_root(root)
-            show_texts(document, (self.sign, self.numbers.root))
+            add_texts(document, (self.sign, self.numbers.root))
         document.js_on_event(DocumentReady, colour_script([card.figure for card in self.cards]))
         document.js_on_event(DocumentReady, self.beating.animation())
         document.title = "rodsweep explore"

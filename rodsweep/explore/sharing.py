@@ -15,7 +15,7 @@ from ..errors import InputError
 from .page_style import style_sheet, template_text
 from .pictures.card import Card
 from .state import DEFAULT_F_MAX, PageState
-from .stored import state_of
+from .stored import state_from_config
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Browser script that writes the state of the page into the address bar."""
@@ -154,7 +154,7 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
     return [choice, Row(*buttons)]
 
 
-def state_of_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
+def state_from_config_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
     invalid config, raises the same InputError as the command line.
     """
@@ -162,4 +162,4 @@ def state_of_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     tree = parsed_yaml(text, where)
     if not isinstance(tree, dict):
         raise InputError(f"{where} does not consist of keys and values; give task and parameters")
-    return state_of(validated_config(tree), Path(where), F_max)
+    return state_from_config(validated_config(tree), Path(where), F_max)

@@ -44,16 +44,16 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
     if path.suffix not in RESULT_SUFFIXES:
-        return state_of(load_config(path)[0], path), None
+        return state_from_config(load_config(path)[0], path), None
     data = open_result(path)
     try:
-        state = state_of(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)
+        state = state_from_config(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
     return state, StoredResults(path, data, state, stored_diagram(data, state))
 
 
-def state_of(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
+def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for a config.
 
     Each parameter has the middle value of its axis, and the load the middle of its values that do not crush

@@ -14,7 +14,12 @@ from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page import STOPPED_SENTENCE, Page
 from rodsweep.explore.page_style import template_text
 from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
-from rodsweep.explore.pictures.diagram import BOUNDARY_COLOURS, DiagramCell, cells, unstable_count_words
+from rodsweep.explore.pictures.diagram import (
+    BOUNDARY_COLOURS,
+    DiagramCell,
+    diagram_cells,
+    unstable_count_words,
+)
 from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from rodsweep.explore.solving.needs import INSTANT_KINDS
@@ -216,7 +221,7 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     picture = page_with(ImmediateSolvers(())).contents.diagram
     counts = np.array([[0, 1, 2, UNKNOWN_COUNT, CRUSHED_COUNT]])
-    assert [unstable_count_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
+    assert [unstable_count_words(cell.unstable) for cell in diagram_cells(np.arange(5.0), np.ones(1), counts)] == [
         "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
     ]  # fmt: skip
     (hover,) = picture.card.figure.select(HoverTool)
@@ -225,7 +230,7 @@ def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
 
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
     counts = np.array([[0, 0, 2], [0, 2, 2]])
-    found = cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)
+    found = diagram_cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)
     root = 10**0.5
     assert found == [
         DiagramCell(0.0, 1.5, pytest.approx(1 / root), pytest.approx(root), 0),
@@ -242,7 +247,7 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
         def ask(self, session, question, done, progress=None):
             super().ask(session, question, done)
             if question.kind == "cycles":
-                progress(Reply("progress", {"words": "curve 1 of <2>", "share": 0.5}, 1.0))
+                progress(Reply("progress", {"words": "curve 1 of <2>", "completed_fraction": 0.5}, 1.0))
 
         def drop(self, session, kind):
             self.dropped.append(kind)
@@ -336,7 +341,7 @@ def test_a_failure_takes_the_sign_and_the_button_away():
         def ask(self, session, question, done, progress=None):
             super().ask(session, question, done)
             if question.kind == "cycles":
-                progress(Reply("progress", {"words": "point 1 of 8", "share": None}, 1.0))
+                progress(Reply("progress", {"words": "point 1 of 8", "completed_fraction": None}, 1.0))
                 done(Reply("failed", {"sentence": "the solver ended unexpectedly"}, 2.0))
 
     page = page_with(Failing())

@@ -11,7 +11,7 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
@@ -49,7 +49,7 @@ limit_cycle: {start: neighbour, harmonics: 2}
 
 
 def job(task, **keywords):
-    return job_from(config_tree(task, keywords))
+    return job_of_tree(config_tree(task, keywords))
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from pint import UnitRegistry
 from surveyed import only
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
@@ -42,7 +42,7 @@ QUICK = {
 
 
 def job(task, **keywords):
-    return job_from(config_tree(task, keywords))
+    return job_of_tree(config_tree(task, keywords))
 
 
 def test_load_becomes_an_axis_of_F():
@@ -261,7 +261,7 @@ def test_neighbours_follow_each_other_along_a_quantity_of_the_arm():
 
 
 def test_configs_without_an_arm_have_no_trace_of_it():
-    made = job_from(config_tree("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
+    made = job_of_tree(config_tree("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
     assert "arm" not in made.resolved["parameters"]
     assert made.quantities == ()
     assert not any(variable.name.endswith("_si") for variable in made.layout.variables)
@@ -337,6 +337,6 @@ def test_the_curves_of_a_diagram_of_arms_are_part_of_its_cost():
                 },
                 "phase_diagram": {"curves": curves},
             }
-            cost[taper, curves] = job_from(tree).task.cost().seconds
+            cost[taper, curves] = job_of_tree(tree).task.cost().seconds
     assert cost[1.0, True] == cost[1.0, False]
     assert cost[0.5, True] > cost[0.5, False] + 1

@@ -8,7 +8,7 @@ import pytest
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import job_from
+from rodsweep.api.keyword_arguments import job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import (
     Validity,
@@ -92,7 +92,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
 
 
 def test_a_search_that_failed_is_no_arm_at_rest():
-    made = job_from(
+    made = job_of_tree(
         {
             "task": "thresholds",
             "parameters": {"arm": SILICONE | {"length": "10 cm"}},

@@ -10,7 +10,7 @@ from contents import content, same
 from matplotlib.collections import PolyCollection
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm
@@ -256,7 +256,7 @@ def test_a_rod_of_several_points_is_solved_once(task):
 def test_points_of_different_rods_are_told_apart():
     lengths = SILICONE | {"length": ["10 cm", "14 cm"]}
     points = [
-        job_from(config_tree("thresholds", {"arm": arm})).points
+        job_of_tree(config_tree("thresholds", {"arm": arm})).points
         for arm in (lengths | {"viscosity": ["20 Pa s", "30 Pa s"]}, lengths)
     ]
     assert np.diff(rod_numbers(points[0])).astype(bool).tolist() == [False, True, False]

@@ -20,7 +20,7 @@ from ...tasks.running.failures import parameters_text
 from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
-from ..shared_computations import report_stop, shared_flutter_forces, with_shared_constants
+from ..shared_computations import report_stop, shared_flutter_forces, with_config_variables
 from .contribution import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
 from .joint import JointWork, PendingJointWork
 from .options import RunOptions
@@ -89,7 +89,7 @@ class _RankRun:
         """Solves the missing points, writes the results into the file, and returns the exit status."""
         replaces = self.options.fresh or self.options.extend
         if self.team.call_on_first_rank(lambda: replaces or not self.output.exists()):
-            plan = with_shared_constants(self.plan, self.job.task, self.team, self.stop)
+            plan = with_config_variables(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 report_stop(self.team, self.stop)
                 return STOPPED_STATUS

@@ -21,9 +21,9 @@ from .card import (
     Card,
     empty_source,
     new_figure,
-    sentence_of,
     set_axis_range,
     source_columns,
+    status_sentence,
 )
 
 PERIOD_SECONDS = 2.0
@@ -106,7 +106,7 @@ class BeatingPicture:
         if has_cycle:
             self.card.show_figure()
         else:
-            self.card.show_sentence_above(sentence_of(found))
+            self.card.show_sentence_above(status_sentence(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. found: result of

@@ -60,7 +60,7 @@ def cell_edges(values: Array) -> Array:
     return np.exp(np.concatenate(([2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]])))
 
 
-def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
+def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
     (rows,). counts: numbers of unstable modes, (rows, columns).
     """
@@ -149,7 +149,7 @@ class DiagramPicture:
         """
         x = found["x"] * load.factor
         y = found["y"] * second.factor
-        grid = cells(x, y, found["unstable_count"])
+        grid = diagram_cells(x, y, found["unstable_count"])
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [stability_colour(cell.unstable) for cell in grid]
         data["words"] = [unstable_count_words(cell.unstable) for cell in grid]

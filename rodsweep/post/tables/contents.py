@@ -10,7 +10,7 @@ from ...config.document.refusals import unknown_key_hint
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import beside_points, layout_of
+from ...results.layouts import joint_variables_of_config, layout_of
 from ...results.layouts.variables import Variable
 
 LIST_INTRO = "there are"
@@ -90,7 +90,7 @@ def contents_of(view: View) -> Contents:
         else:
             own.append(variable)
     with_points = set(lists)
-    for variable in beside_points(config, view.is_grid):
+    for variable in joint_variables_of_config(config, view.is_grid):
         if variable.name not in view.variables:
             continue
         of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))

@@ -61,7 +61,7 @@ NORMAL_FORM = along_dimension(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-INCREASES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
+OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -141,13 +141,13 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
 SOLVE_CYCLES_AGAIN = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
-INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), SOLVE_CYCLES_AGAIN) | {
+OPTION_EXTENSION_RULES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), SOLVE_CYCLES_AGAIN) | {
     "transient": NEEDS_NEW_SOLVE,
     "time": ExtensionRule(SOLVE_CYCLES_AGAIN.has, ("tau2", "tau1")),
 }
 
 
-def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
     found = hopf_points_of((*LINEAR_PARAMETERS, *optional_in(config)))

@@ -113,10 +113,12 @@ FORCE_CHANGES = (
 """Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
 which are computed after the last point."""
 OPTIONS_SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
-INCREASES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS_NO_SOLVE}
+OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {
+    "longitudinal": NEEDS_NO_SOLVE
+}
 
 
-def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file of the task spectrum that belong to all points together. config: the resolved
     config. is_grid: whether the points are a grid.
     """
