@@ -161,7 +161,7 @@ class Arm(SlenderArm):
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
-            if name in self._names:
+            if name in self._quantity_names:
                 raise InputError(
                     f"{name} is a quantity of the arm, not an option; "
                     f"arm.replace({name}=...) makes another arm"
@@ -175,10 +175,10 @@ class Arm(SlenderArm):
                 "arm.replace(pressure='1.2 of flutter')"
             )
         solved = solve_in_process(job_of_tree(config_tree(task, {"arm": self} | options)), progress=progress)
-        return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
+        return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane_warning))))
 
     @property
-    def _plane(self) -> str:
+    def _plane_warning(self) -> str:
         """Warning for a rectangular section that bends more easily out of the plane of motion; else ""."""
         if not self.si.height > self.si.width:
             return ""
@@ -188,13 +188,13 @@ class Arm(SlenderArm):
         )
 
     @property
-    def _names(self) -> list[str]:
+    def _quantity_names(self) -> list[str]:
         return [each.name for each in fields(self) if each.init]
 
     @property
     def _given_quantities(self) -> dict[str, Any]:
         """The quantities of the arm that are not None, by name."""
-        return {name: getattr(self, name) for name in self._names if getattr(self, name) is not None}
+        return {name: getattr(self, name) for name in self._quantity_names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:
         default = {each.name: each.default for each in fields(self)}

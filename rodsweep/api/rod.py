@@ -165,7 +165,7 @@ class SoftRod:
         def __getattr__(self, name: str) -> Callable[..., Answer]:
             """Method for a task that this class does not define; AttributeError if `name` is not a task."""
             if name not in CONFIGS:
-                known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
+                known = [task for task, config in CONFIGS.items() if not config.needs_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
             return lambda **options: self._answer(name, options)
 

@@ -60,7 +60,7 @@ class SolvedPoints:
     """Variables of the layout by name, shape (points, own dimensions)."""
     filled: Sequence[FilledVariable] = field(repr=False)
     """Variables of the file that do not belong to single points."""
-    history: Mapping[str, Any]
+    run_attributes: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""
     messages: Sequence[str]
     """Message of each point; "" for points solved together in a stretch."""
@@ -76,7 +76,7 @@ class SolvedPoints:
             "config_resolved": json.dumps(self.plan.config),
         }
         attributes = file_attributes(self.job, self.statuses, blas_kernels())
-        whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.history))
+        whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.run_attributes))
         return with_arm_indexes(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
 
     @cached_property

@@ -70,14 +70,14 @@ def solve_in_process(
             raise
         finally:
             shown.close()
-        filled = (*plan.constants(), *joint, *plan.afterwards(values))
+        filled = (*plan.config_variables(), *joint, *plan.variables_from_points(values))
     return SolvedPoints(
         job=job,
         plan=plan,
         statuses=solver.statuses,
         values=values,
         filled=filled,
-        history=_solve_attributes(started, reasons),
+        run_attributes=_solve_attributes(started, reasons),
         messages=messages,
     )
 

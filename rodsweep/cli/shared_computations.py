@@ -24,7 +24,7 @@ class _SharedWork:
 
     team: Team
     stop: StopRequest
-    skipped: bool = False
+    has_skipped_items: bool = False
     """Whether this rank has omitted an item after a stop signal."""
 
     def gather_in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
@@ -32,13 +32,13 @@ class _SharedWork:
         return self.team.map_in_order(items, lambda item: self._run_unless_stopped(work, item))
 
     def _run_unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
-        self.skipped = self.skipped or bool(self.stop)
-        return None if self.skipped else work(item)
+        self.has_skipped_items = self.has_skipped_items or bool(self.stop)
+        return None if self.has_skipped_items else work(item)
 
     @property
     def any_rank_stopped(self) -> bool:
         """Whether any rank has omitted an item. Collective: all ranks call together."""
-        return any(self.team.gather_on_all_ranks(self.skipped))
+        return any(self.team.gather_on_all_ranks(self.has_skipped_items))
 
 
 def with_config_variables(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
@@ -49,7 +49,7 @@ def with_config_variables(plan: Plan, task: Task, team: Team, stop: StopRequest)
     """
     shared = _SharedWork(team, stop)
     found = task.config_variables(shared.gather_in_order)
-    return None if shared.any_rank_stopped else replace(plan, constants=lambda: found)
+    return None if shared.any_rank_stopped else replace(plan, config_variables=lambda: found)
 
 
 def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:

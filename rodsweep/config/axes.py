@@ -143,7 +143,7 @@ class Axes(LinearAxes):
 
         forced: whether F is a parameter of the task.
         """
-        arm.require_allowed_keys()
+        arm.require_allowed_values()
         arm.refuse_conflicting_keys(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.grid_point_count(math.prod(axis.size for axis in beside.values()))

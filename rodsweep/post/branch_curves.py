@@ -120,7 +120,7 @@ class RodBranches:
     def __init__(self, view: View, rod: int = 0):
         self.view = view
         self.rod = rod
-        self._v = view.of_point(rod)
+        self._v = view.point_values(rod)
         count = max(int(self._v["branch_count"]), 0)
         listed = self._v["special_branch"][self._v["special_kind"] > 0]
         # If the list is full, special points of the last listed branch and of later branches may be missing.

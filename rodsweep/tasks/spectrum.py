@@ -20,8 +20,8 @@ from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import (
     EACH_FOLLOWED_POINT,
     MODE_VARIABLES,
-    longitudinal,
     longitudinal_parameters,
+    longitudinal_variables,
 )
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
@@ -78,7 +78,7 @@ class SpectrumTask(CertifiedTask):
         along, shape, columns = self._longitudinal_points()
         modes = self.config.spectrum.modes
         standard = self.config.standard
-        variables = longitudinal(gamma1, *along, in_closed_form=standard)
+        variables = longitudinal_variables(gamma1, *along, in_closed_form=standard)
         if standard:
             rates = [longitudinal_rates(float(k1), gamma1, modes) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*shape, modes))),)

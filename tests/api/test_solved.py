@@ -36,7 +36,11 @@ def test_solved_points_and_their_dataset_are_read_alike(config):
         assert np.array_equal(early.variables[name], values, equal_nan=True)
         assert early.variables[name].dtype == values.dtype
     assert (early.task, early.config, early.flags) == (late.task, late.config, late.flags)
-    assert (early.parameters, early.arm_axes, early.typed) == (late.parameters, late.arm_axes, late.typed)
+    assert (early.parameters, early.arm_axes, early.typed_units) == (
+        late.parameters,
+        late.arm_axes,
+        late.typed_units,
+    )
     assert early.is_grid == late.is_grid
 
 
@@ -52,5 +56,5 @@ def test_a_copy_of_an_answer_is_the_answer(twin):
 def test_a_dataset_has_the_time_of_the_solve_not_of_its_first_use():
     solved = solve_in_process(job_of_tree(config_tree("spectrum", ROD)))
     long_ago = {"started": "2001-01-01T00:00:00+00:00", "finished": "2001-01-01T00:00:01+00:00"}
-    used_late = replace(solved, history={**solved.history, **long_ago})
+    used_late = replace(solved, run_attributes={**solved.run_attributes, **long_ago})
     assert long_ago.items() <= used_late.dataset.attrs.items()

@@ -138,7 +138,7 @@ def test_extension_killed_at_any_point_goes_on_with_the_same_command(command):
     assert not (command.directory / "c.h5.journal").exists()
 
 
-@pytest.mark.parametrize("step", ["write_points", "seal", "delete_matching_files"])
+@pytest.mark.parametrize("step", ["write_records", "seal", "delete_matching_files"])
 def test_kill_while_the_file_is_exchanged_loses_nothing(command, step):
     """Before the new file is whole, before it takes the name, and right after it has."""
     command.write("small.yaml", SPECTRA)

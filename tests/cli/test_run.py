@@ -57,7 +57,7 @@ def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode not in (0, 1, 2, 75), err
     wait_for_end(command.directory)
-    assert read_view(path).journalled == 100
+    assert read_view(path).journalled_count == 100
     assert "100 of the computed points are in the journal" in " ".join(command("show", "c.h5").stdout.split())
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr

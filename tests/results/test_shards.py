@@ -15,7 +15,7 @@ from ranks import PATIENCE
 from rodsweep.errors import InputError
 from rodsweep.results.file import exchange
 from rodsweep.results.file.combination.merge import merge
-from rodsweep.results.file.exchange import Lock
+from rodsweep.results.file.exchange import ResultFileLock
 from rodsweep.results.run.journal import journal_directory
 from rodsweep.sweep.points.ranges import Shard, parsed_shard
 from rodsweep.tasks.running.job import plan_without_solver
@@ -159,7 +159,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
     for number in (1, 2):
         assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0
     first, second, merged = (command.directory / f"{name}.h5" for name in ("c-1-of-2", "c-2-of-2", "m"))
-    held = Lock(journal_directory(merged), merged)
+    held = ResultFileLock(journal_directory(merged), merged)
     waits = threading.Event()
     clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
     monkeypatch.setattr(exchange, "time", clock)

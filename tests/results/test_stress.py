@@ -125,7 +125,7 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
     command.write("c.yaml", config)
     path = command.directory / "c.h5"
     points = job_of_file(command.directory / "c.yaml", ()).points.count
-    record = job_of_file(command.directory / "c.yaml", ()).layout.record.itemsize + 4
+    record = job_of_file(command.directory / "c.yaml", ()).layout.record_dtype.itemsize + 4
     whole = command("run", "c.yaml", "-o", "whole.h5")
     assert whole.returncode == 0, whole.stderr
     struck, kept, told = 0, 0, []

@@ -128,7 +128,7 @@ def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     kill(*([process.pid, *ranks.values()] if whole_job else [ranks[1]]))
     process.communicate(timeout=PATIENCE)
     wait_for_end(command.directory)
-    kept = read_view(path).journalled
+    kept = read_view(path).journalled_count
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
     assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
@@ -165,7 +165,7 @@ def test_a_stretch_of_which_a_part_was_written_is_redone_and_its_rest_kept(comma
     record = (journal.stat().st_size - 100) // (2 * STRETCH_POINTS)
     with journal.open("r+b") as file:
         file.truncate(journal.stat().st_size - 20 * record - 7)
-    kept = read_view(path).journalled
+    kept = read_view(path).journalled_count
     assert 2 * STRETCH_POINTS - 28 < kept < 2 * STRETCH_POINTS - 18
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr

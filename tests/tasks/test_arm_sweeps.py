@@ -16,7 +16,7 @@ from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import at_points, si_name_of
+from rodsweep.results.layouts.arm import quantities_at_points, si_name_of
 
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 LOADED = SILICONE | {"pressure": "2 kPa"}
@@ -83,7 +83,7 @@ def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
     made = job("limit_cycle", arm=SILICONE | axes, gamma1=[0.5, 1])
     assert made.points.shape == (2, 2, 2, 2)
     assert made.layout.arm_axes == (*axes, "gamma1")
-    quantities = at_points(made.quantities, made.points)
+    quantities = quantities_at_points(made.quantities, made.points)
     for index in range(16):
         at = {name: float(quantities[name][index]) for name in axes}
         arm = SlenderArm(radius=0.005, viscosity=1.4, **at)

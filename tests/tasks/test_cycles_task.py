@@ -277,7 +277,7 @@ def filled_file(directory, text=None):
     attributes = {"title": "t", "task": job.config.task}
     plan = Plan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
     store = Store(directory / "c.h5", plan)
-    journal = Journal(store.journals, 0, job.layout, plan.fingerprint)
+    journal = Journal(store.journal_directory, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):
         outcome = nothing() if index == job.points.count - 1 else cycle(index)
         journal.append(index, job.task.record(job.points.values(index), outcome))
@@ -357,7 +357,7 @@ def test_point_list_opens_with_its_parameters_as_coordinates(tmp_path):
         assert data.shape_x.dims == ("point", "shape", "u")
         assert {"F", "k1", "k2", "gamma3", "gamma1", "point"} <= set(data.coords)
         assert data.gamma1.values.tolist() == [0.5, 1]
-    assert read_view(path).axes["gamma1"].tolist() == [0.5, 1]
+    assert read_view(path).parameter_values["gamma1"].tolist() == [0.5, 1]
 
 
 def test_nothing_is_stored_over_a_cycle_that_was_not_asked_for(tmp_path):
@@ -692,7 +692,7 @@ def test_resume_in_the_middle_of_a_chain_gives_the_same_file(command, ranks, dir
     killed = run_fake(command, *words, DIE_AT="4 20", ranks=ranks)
     assert killed.returncode not in (0, 1, 2)
     wait_for_end(command.directory)
-    journalled = read_view(command.directory / "c.h5").journalled
+    journalled = read_view(command.directory / "c.h5").journalled_count
     assert 3 <= journalled < 27
     before = solved(command)
     assert journalled in range(len(before) - max(ranks, 1), len(before) + 1)

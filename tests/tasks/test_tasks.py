@@ -150,7 +150,7 @@ def filled_file(tmp_path, task):
     """The file of a small run in which every point has a record."""
     job = job_of(tmp_path, task)
     store = Store(tmp_path / "c.h5", plan_of(job))
-    journal = Journal(store.journals, 0, job.layout, store.plan.fingerprint)
+    journal = Journal(store.journal_directory, 0, job.layout, store.plan.fingerprint)
     for index in range(job.points.count):
         journal.append(index, record_of(task, index))
     journal.close()
@@ -389,7 +389,7 @@ def test_killed_search_for_thresholds_is_continued_to_the_same_file(command):
         "c.yaml", "task: thresholds\nparameters: {k1: {start: 10, stop: 17, num: 8}, k2: [1, 2], gamma3: 0}\n"
     )
     assert run_fake(command, DIE_AT="13").returncode == 9
-    assert read_view(command.directory / "c.h5").journalled == 6
+    assert read_view(command.directory / "c.h5").journalled_count == 6
     again = run_fake(command)
     assert "10 of 16 points to do, 6 kept" in again.stdout, again.stderr
     assert "14 ok, 2 list_full" in again.stdout

@@ -129,7 +129,7 @@ class Answer:
         if name in self.data.variables:  # a coordinate, or a number of the whole file
             values = self.data[name].values
             return values if values.ndim else values.item()
-        raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")
+        raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._attribute_names())}")
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
         """Values of a variable or a coordinate of a list, with one entry per item of the list.
@@ -147,13 +147,13 @@ class Answer:
         inner = [self.data.sizes[each] for each in dimensions[1:]]
         return values[:: prod(inner)] if name == dimensions[0] else values.reshape(-1, *inner)
 
-    def _names(self) -> list[str]:
+    def _attribute_names(self) -> list[str]:
         """Names of all variables and lists, for messages and completion."""
         extra = ["eigenvalues"] if EIGENVALUE[0] in self.data else []
         return [*map(str, self.data.data_vars), *self.lists, *extra]
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *map(str, self.data.variables), *self._names()})
+        return sorted({*super().__dir__(), *map(str, self.data.variables), *self._attribute_names()})
 
     def table(self) -> "WholeTable":
         """All numbers with units and meanings, and the lists, as a text in a terminal and as a table in a
@@ -190,7 +190,7 @@ class Answer:
             heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
             numbers=tuple(c for c in own if not c.absent[0]),
-            absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
+            absent_names=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
             row_counts={

@@ -43,7 +43,7 @@ class PrintedAnswer:
     """Main numbers and main list of the task."""
     numbers: tuple[Column, ...]
     """Variables with a single value, as columns with one row."""
-    absent: tuple[str, ...]
+    absent_names: tuple[str, ...]
     """Names of the variables that have no value for this rod."""
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
@@ -60,8 +60,8 @@ class PrintedAnswer:
             yield "; ".join(
                 f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.row_counts.items()
             )
-        if self.absent:
-            yield f"none: {', '.join(self.absent)}"
+        if self.absent_names:
+            yield f"none: {', '.join(self.absent_names)}"
 
 
 def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:

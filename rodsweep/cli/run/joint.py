@@ -25,11 +25,11 @@ HALF_CURVE_NOUN = "halves of curves"
 
 @dataclass(frozen=True, slots=True)
 class PendingJointWork:
-    """Variables that depend on all points. due: whether the file lacks these variables. work_items: the half
-    curves to be followed; None if nothing is divided among the ranks.
+    """Variables that depend on all points. is_missing: whether the file lacks these variables. work_items:
+    the half curves to be followed; None if nothing is divided among the ranks.
     """
 
-    due: bool
+    is_missing: bool
     work_items: WorkItems | None = None
 
 

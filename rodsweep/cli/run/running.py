@@ -64,12 +64,12 @@ class _RankRun:
         self.clock_at_start = time.monotonic()
         self.date_at_start = provenance.utc_time()
         self.seconds = 0.0
-        self.log = TracebackLog(output, team.rank, self._file_and_folder_text, options.strict)
+        self.log = TracebackLog(output, team.rank, self._point_text, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.merged_blas_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
-        self.work = PointWork(
+        self.point_work = PointWork(
             team=team,
             job=job,
             solver=self.solver,
@@ -78,7 +78,7 @@ class _RankRun:
             output=output,
             stop=stop,
             quiet=options.quiet,
-            where=self._file_and_folder_text,
+            point_text=self._point_text,
         )
         together = self.solver.joint_variables
         self.joint = together and JointWork(
@@ -95,7 +95,7 @@ class _RankRun:
                 return STOPPED_STATUS
             self.plan = plan
         missing = self.team.call_on_first_rank(self._open_store)
-        items, count = self.work.items(missing)
+        items, count = self.point_work.items_to_solve(missing)
         if self.team.is_first:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
@@ -106,7 +106,7 @@ class _RankRun:
         contributions: list[RunContribution] = []
         if count:
             self.team.call_on_first_rank(self._record_blas_kernels)
-            contributions = self.team.gather(self.work.solve(items, missing, count, self.prepare)) or []
+            contributions = self.team.gather(self.point_work.solve(items, missing, count, self.prepare)) or []
         joint = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
         if self.joint and joint.work_items is not None:
@@ -172,12 +172,12 @@ class _RankRun:
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _file_and_folder_text(self, index: int) -> str:
+    def _point_text(self, index: int) -> str:
         return parameters_text(self.job.points.values(index))
 
     def _finish_file(self, joint: PendingJointWork) -> bool:
         """Writes the variables of all points into the file; returns whether these are still missing."""
-        if not joint.due:
+        if not joint.is_missing:
             return False
         variables = self.joint.variables(joint.work_items) if self.joint else ()
         if variables is None:
@@ -197,7 +197,7 @@ class _RankRun:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
-    def _outcome_text(self, counts: Mapping[str, int], left: int) -> str:
+    def _status_counts_text(self, counts: Mapping[str, int], left: int) -> str:
         """Text with the number of points of each status. counts: numbers by status. left: number of points of
         this run that are not solved.
         """
@@ -220,18 +220,18 @@ class _RankRun:
         self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
-        left = self.work.items(missing)[1]
+        left = self.point_work.items_to_solve(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,
-            requested=count,
-            unsolved=left,
-            stored=self.job.points.count - index_count(missing),
+            requested_points=count,
+            unsolved_points=left,
+            stored_points=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
-            interrupted=sum(contribution.share.was_interrupted for contribution in contributions),
+            interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
             followed_halves=sum(share.solved_points for share in shares)
-            if joint.due and self.joint
+            if joint.is_missing and self.joint
             else None,
             stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
@@ -239,7 +239,7 @@ class _RankRun:
             self._print_message(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._print_message(f"{self.output}: {self._outcome_text(counts, left)}", amiss)
+        self._print_message(f"{self.output}: {self._status_counts_text(counts, left)}", amiss)
         self._print_failures(contributions, exceptions)
         if left or lacks_joint_variables_in:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

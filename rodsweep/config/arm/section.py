@@ -147,7 +147,7 @@ class ArmSection(StrictSection):
         names = (*NON_LOAD_KEYS, *LOAD_KEYS)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
-    def require_allowed_keys(self) -> None:
+    def require_allowed_values(self) -> None:
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
             low = float(axis.array()[0])

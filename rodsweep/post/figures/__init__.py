@@ -123,7 +123,7 @@ def draw(
 
 def _omitted_points(views: Sequence[View]) -> str:
     """Clause on the number of points that the figure omits; empty if the figure shows all points."""
-    words = np.concatenate([view.outcomes for view in views])
+    words = np.concatenate([view.status_names for view in views])
     counts = (
         f"{np.count_nonzero(words == word)} {text}"
         for word, text in OMITTED_STATUSES.items()

@@ -61,7 +61,7 @@ def _with_needed_variables(request: FigureRequest, name: str) -> View:
         variable in view.variables for variable in NEEDED_VARIABLES.get(name, ())
     ):
         return view
-    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.outcomes == "cycle")]
+    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.status_names == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
     return request.shapes(view, numbers[:MAX_CYCLES])
 
@@ -95,7 +95,7 @@ def _default_figure_kind(request: FigureRequest) -> str:
         return "animation"
     if others:
         return "amplitude"
-    beats = first.outcomes == "cycle"
+    beats = first.status_names == "cycle"
     chosen = [number - 1 for number in request.points]
     few_cycles = len(chosen) > 0 or beats.sum() <= MAX_CYCLES
     few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES

@@ -18,7 +18,7 @@ from ...model.parameters import CRUSHING_PARAMETERS, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.variables import flag_number
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
@@ -103,12 +103,12 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
+    row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
     require_content(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
-    y = view.axes[row]
+    y = view.parameter_values[row]
     keep = np.isfinite(y)
     if keep.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
@@ -145,7 +145,7 @@ def _constant_parameters_text(view: View, line: str, row: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
     criticality. line, row: parameters on the axes.
     """
-    fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
+    fixed = {name: values[0] for name, values in view.parameter_values.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
@@ -157,7 +157,7 @@ def _crushed_at_k1(view: View, line: str, row: str) -> bool:
     """Whether the axes `line` and `row` are F and k1 and the rods are crushed at F = k1, as uniform rods of
     linear material are.
     """
-    return (line, row) == CRUSHING_PARAMETERS and has_covering(view.config)
+    return (line, row) == CRUSHING_PARAMETERS and has_standard_rods(view.config)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
@@ -178,7 +178,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     line, row: parameters along a row, and constant on a row.
     """
     x = view.variables[line]
-    y = view.axes[row]
+    y = view.parameter_values[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
     share = np.linspace(0, 1, PIXEL_COUNT + 1)
@@ -204,7 +204,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     line, row: parameters along a row, and constant on a row. table: classes at the computed points, (rows
     with a finite value, columns).
     """
-    y = view.axes[row]
+    y = view.parameter_values[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
     known = (table != flag_number("crushed", palette.words)) | (not _crushed_at_k1(view, line, row))

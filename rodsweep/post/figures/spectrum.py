@@ -69,8 +69,8 @@ def draw_spectrum(request: FigureRequest) -> str:
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
     long = varied_axes(view)
-    few = min(long, key=lambda name: len(view.axes[name]))
-    if len(long) > 1 and len(view.axes[few]) <= MAX_LINE_PANELS:
+    few = min(long, key=lambda name: len(view.parameter_values[name]))
+    if len(long) > 1 and len(view.parameter_values[few]) <= MAX_LINE_PANELS:
         return _draw_line_per_value(view, few, request)
     view = without_infinite_values(view)
     long = varied_axes(view)
@@ -84,7 +84,8 @@ def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map;
     returns a sentence."""
     lines = [
-        without_infinite_values(section_at_values(view, {few: float(value)})) for value in view.axes[few]
+        without_infinite_values(section_at_values(view, {few: float(value)}))
+        for value in view.parameter_values[few]
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     return _draw_line_panels(views, request, few)
@@ -120,7 +121,7 @@ def _line_of_spectra(view: View, request: FigureRequest) -> View:
     view = as_grid_if_possible(view)
     require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite_values(view) if view.is_grid else view
-    if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
+    if not view.is_grid or sum(len(values) > 1 for values in view.parameter_values.values()) != 1:
         raise InputError(
             f"{view.path} is not a line of spectra, along which one parameter varies; only lines of spectra "
             "can share a figure"
@@ -132,8 +133,8 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     """Map of the largest growth rate over the two parameters `names`."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
-    x = view.axes[horizontal]
-    y = view.axes[vertical]
+    x = view.parameter_values[horizontal]
+    y = view.parameter_values[vertical]
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
     reach = float(np.nanmax(np.abs(growth)))
@@ -152,7 +153,7 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _note_points(axes, view.axes[horizontal], view.axes[vertical], growth)
+    _note_points(axes, view.parameter_values[horizontal], view.parameter_values[vertical], growth)
     figure.suptitle(
         heading_text(view, fixed_text(view, *names), "black: zero growth, interpolated between the points")
     )

@@ -128,14 +128,16 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
 
 def fixed_text(view: View, *drawn: str) -> str:
     """Constant parameters with their values, as text. drawn: names of the parameters on axes."""
-    return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
+    return parameter_text(
+        {name: values[0] for name, values in view.parameter_values.items() if name not in drawn}
+    )
 
 
 def varied_axes(view: View) -> list[str]:
     """Names of the one or two parameters of a grid that have several values. Raises InputError if no
     parameter, or more than two, have several values.
     """
-    long = [name for name, values in view.axes.items() if len(values) > 1]
+    long = [name for name, values in view.parameter_values.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
         raise InputError(
             f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "

@@ -53,7 +53,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     long = style.varied_axes(view)
     found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
     style.require_content(view, found, "threshold")
-    few = min(len(view.axes[name]) for name in long) <= MAX_LINES
+    few = min(len(view.parameter_values[name]) for name in long) <= MAX_LINES
     if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
         figure, left_out = _threshold_maps(view, found, request.look.narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)

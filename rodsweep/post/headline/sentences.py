@@ -91,7 +91,7 @@ def branch_sentence(rod: OneRod) -> str:
 def cycle_sentence(rod: OneRod) -> str:
     """Sentence on the period and the amplitude of the cycle; empty if the result has no period."""
     if period := rod.text("period"):
-        status = str(rod.view.outcomes[0])
+        status = str(rod.view.status_names[0])
         beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
         return f"{beats}: period {period}, largest tip y {rod.text('tip_y_max')}"
     return ""
@@ -106,7 +106,7 @@ def _search_end_text(rod: OneRod) -> str:
 def _early_end_clause(rod: OneRod) -> str:
     """Clause that says at which load a search ended early; empty for a complete search."""
     early = "; not known beyond {}, where the search ended early"
-    return early.format(_search_end_text(rod)) if rod.view.with_status("ended_early").all() else ""
+    return early.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""
 
 
 EIGENVALUES = ("mode", "growth_rate", "frequency")

@@ -51,7 +51,7 @@ def paragraph(results: RodResults) -> str:
 
 def _rod_sentence(results: RodResults) -> Iterator[str]:
     """Yields sentences on the parameters of the rod, and on the searched range of the load."""
-    end = float(results.views["thresholds"].of_point(0)["F_end"])
+    end = float(results.views["thresholds"].point_values(0)["F_end"])
     units = results.units
     reached = units.force_at(end)
     requested_force = units.force_at(results.F_max)
@@ -60,7 +60,7 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
     if not isfinite(end):
         searched = "could not be searched"
     elif reached != requested_force:
-        early = results.views["thresholds"].with_status("ended_early").all()
+        early = results.views["thresholds"].has_status("ended_early").all()
         ends = "the search ended early: the list was full, or modes could not be counted"
         searched += (
             f", not to {requested_force}: {ends if early else f'just above {reached} the {kind} is crushed'}"
@@ -87,7 +87,7 @@ def _arm_sentence(results: RodResults) -> Iterator[str]:
 def _thresholds(results: RodResults) -> Iterator[str]:
     """Yields sentences on the thresholds of the straight rod, with the criticality of the Hopf points."""
     view = results.views["thresholds"]
-    v = view.of_point(0)
+    v = view.point_values(0)
     places = np.flatnonzero(v["crossing_kind"] > 0)
     units = results.units
     end = units.force_at(float(v["F_end"]))
@@ -104,7 +104,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     elif v["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
-        range_ = f" up to {end}" if view.with_status(ENDED_EARLY).all() else ""
+        range_ = f" up to {end}" if view.has_status(ENDED_EARLY).all() else ""
         proof = "proved complete" if v["certified"] else "not proved complete"
         yield f"This list of thresholds{range_} is {proof}."
 
@@ -114,7 +114,7 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     view = results.views.get("criticality")
     if view is None:
         return ""
-    v = view.of_point(0)
+    v = view.point_values(0)
     same = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
     sides = v["criticality"][same & np.isfinite(v["criticality"])]
     if not sides.size:
@@ -193,8 +193,8 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
     units = results.units
     clauses = []
     for F, view in results.cycles:
-        v = view.of_point(0)
-        word = str(view.outcomes[0])
+        v = view.point_values(0)
+        word = str(view.status_names[0])
         if word not in CYCLE_WORDS:
             clauses.append(
                 f"at {units.force_at(F)} a motion from a small deflection leads to no cycle that is drawn "
@@ -221,5 +221,5 @@ def _missing_result_sentences(results: RodResults) -> Iterator[str]:
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
     for task in SEARCH_TASKS:
-        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCESS_STATUS:
+        if (view := results.views.get(task)) and (word := str(view.status_names[0])) != SUCCESS_STATUS:
             yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."

@@ -88,7 +88,7 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     """Draws the stability of the straight rod along F, with the thresholds; returns legend entries."""
     view = results.views["thresholds"]
-    v = view.of_point(0)
+    v = view.point_values(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
@@ -138,7 +138,7 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
     entry.
     """
-    beating = [(F, view.of_point(0)) for F, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
+    beating = [(F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
         values = [float(v[name]) for _, v in beating]
@@ -154,7 +154,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
         _write_sentence(axes, f"no mode: {results.missing['modes']}", PANEL_TEXT_WIDTH)
         return
     F, view = results.modes[kind]
-    v = view.of_point(0)
+    v = view.point_values(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
         _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
@@ -175,14 +175,14 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_axis_off()
         _write_sentence(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
-    drawn = [view.of_point(0) for _, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
+    drawn = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
     units = results.units
     length = units.length.factor
     reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
-        v = view.of_point(0)
+        v = view.point_values(0)
         force = units.force_title(F)
-        if not view.with_status(*CYCLE_WORDS).all():
+        if not view.has_status(*CYCLE_WORDS).all():
             axes.set_title(force)
             _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue
@@ -201,7 +201,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
 
 def _status_meaning(view: View) -> str:
     """Meaning of the status of the only point in `view`."""
-    word = str(view.outcomes[0])
+    word = str(view.status_names[0])
     return view.sentences.get(word, word)
 
 

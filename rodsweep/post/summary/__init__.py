@@ -14,7 +14,7 @@ from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
-from ...results.file.provenance import FAILURE_REASONS
+from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
@@ -157,7 +157,7 @@ def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )
-    if waiting := view.journalled:
+    if waiting := view.journalled_count:
         verb = "is" if waiting == 1 else "are"
         lines.append(
             f"{waiting} of the computed {plural(noun)} {verb} in the journal until the run writes the file"
@@ -170,10 +170,10 @@ def _failure_sentences(view: View) -> Iterable[str]:
     example.
     """
     columns = view.point_columns
-    for line in str(view.attributes.get(FAILURE_REASONS, "")).splitlines():
+    for line in str(view.attributes.get(FAILURE_REASONS_ATTRIBUTE, "")).splitlines():
         where, _, outcome = line.partition(": ")
         name, _, reason = outcome.partition(" ")
-        here = view.with_status(name).ravel()
+        here = view.has_status(name).ravel()
         for parameter, _, text in (pair.partition("=") for pair in where.split(", ")):
             here &= columns.get(parameter, float(text)) == float(text)
         if here.any() and reason:  # a later run may have computed the point anew
@@ -196,7 +196,7 @@ def _axes_table(view: View) -> TextTable:
     rows = []
     for name, values in view.quantities.items():
         si = ALL_QUANTITIES[name].unit
-        unit = view.typed.get(name, si)
+        unit = view.typed_units.get(name, si)
         rows.append(
             (
                 name,
@@ -204,7 +204,10 @@ def _axes_table(view: View) -> TextTable:
                 unit,
             )
         )
-    rows += [(name, *_count_and_range(values), DIMENSIONS[name][0]) for name, values in view.axes.items()]
+    rows += [
+        (name, *_count_and_range(values), DIMENSIONS[name][0])
+        for name, values in view.parameter_values.items()
+    ]
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))

@@ -38,7 +38,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         none = "the Hopf points of this rod are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span_text(v['F_end'])}"
-        of_rod = view.of_point(0)
+        of_rod = view.point_values(0)
         lines = list(_hopf_lines(of_rod)) or [none]
         lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
         trust = [_searched_range_line(view, done)]
@@ -48,7 +48,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region_text(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
+    unknown = int(((v["crossing_count"] < 0) | (view.has_status(ENDED_EARLY) & ~with_hopf))[done].sum())
     lines = [
         f"Hopf points at {count_of_total(with_hopf[done].sum(), done.sum(), 'rod')}"
         f"{where}{unknown_clause(unknown)}"

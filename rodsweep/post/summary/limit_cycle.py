@@ -37,8 +37,8 @@ CYCLE_NUMBERS = (
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of limit cycles. done: mask of the computed points, of the shape of the points."""
     v = view.variables
-    beats = done & view.with_status("cycle")
-    orbit = done & view.with_status(*CYCLE_WORDS)
+    beats = done & view.has_status("cycle")
+    orbit = done & view.has_status(*CYCLE_WORDS)
     stability, of_arm = _threshold_lines(view)
     answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(v, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
@@ -47,7 +47,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     rate, frequency = (known_range_text(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
-    on_torus = done & view.with_status("torus")
+    on_torus = done & view.has_status("torus")
     if on_torus.any():
         details.append(
             f"tori: the cycles inside have multipliers {known_range_text(v, 'multiplier', on_torus)}"

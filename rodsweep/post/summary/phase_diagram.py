@@ -6,7 +6,7 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
@@ -33,7 +33,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of a phase diagram. done: mask of the computed rows, of the shape of the rows."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next(name for name in view.parameters if len(view.axes[name]) > 1)
+    row = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
     answer = [*class_share_lines(v["class"][done]), *lines_about_rows(view, done, line, row)]
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
@@ -60,7 +60,7 @@ def cost_saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
     done: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
     """
-    if not has_covering(view.config):
+    if not has_standard_rods(view.config):
         return []
     v = view.variables
     rows = int(done.sum())

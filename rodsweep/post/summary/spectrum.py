@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.rods import estimates_counts, has_covering
+from ...results.layouts.rods import estimates_counts, has_standard_rods
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..hopf_points import StoredChanges
@@ -65,7 +65,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     empty lists if F does not vary.
     """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
-    how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED_NOTE
+    how = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
     return lines, [f"thresholds: {how}"] if lines else [], of_arm
 
 

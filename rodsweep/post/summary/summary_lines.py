@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...wording import counted
 from .ranges import span_text
 
@@ -101,4 +101,6 @@ def proof_clause(view: View) -> str:
     """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
     material, else "is confirmed by counts of unstable modes".
     """
-    return "is proved complete" if has_covering(view.config) else "is confirmed by counts of unstable modes"
+    return (
+        "is proved complete" if has_standard_rods(view.config) else "is confirmed by counts of unstable modes"
+    )

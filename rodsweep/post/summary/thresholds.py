@@ -4,7 +4,7 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted, plural
@@ -57,7 +57,7 @@ def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
     found = np.isfinite(F)
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.with_status(ENDED_EARLY).ravel()
+    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.has_status(ENDED_EARLY).ravel()
     unknown = unknown_clause(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
@@ -79,7 +79,7 @@ def unknown_beyond_clause(view: View, F: float) -> str:
     search.
     """
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
-    return clause if view.with_status(ENDED_EARLY).all() else ""
+    return clause if view.has_status(ENDED_EARLY).all() else ""
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
@@ -93,7 +93,7 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 def crossing_lines(view: View) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
     of the kinds of crossings."""
-    v = view.of_point(0)
+    v = view.point_values(0)
     end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
@@ -109,7 +109,7 @@ def crossing_lines(view: View) -> list[str]:
 
 def crossing_table(view: View) -> TextTable | None:
     """Table of the crossings of the only rod in a file; None if there is no crossing."""
-    v = view.of_point(0)
+    v = view.point_values(0)
     rows = []
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = number_and_error(float(v["crossing_F"][i]), float(v["crossing_error"][i]))
@@ -133,9 +133,9 @@ def completeness_lines(view: View) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
     the only rod in a file.
     """
-    v = view.of_point(0)
+    v = view.point_values(0)
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
-    proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
+    proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"] else f"not {proof}"
     lines = [
         f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{unstored_clause(hidden)}"
@@ -188,7 +188,7 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
 
     The list is empty for searches that count unstable modes, which store no cost.
     """
-    if not has_covering(view.config):
+    if not has_standard_rods(view.config):
         return []
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))

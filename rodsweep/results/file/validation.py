@@ -17,8 +17,8 @@ from ..layouts import layout_of
 from ..layouts.variables import Layout
 from .combination.identity import fingerprint_of
 from .content import refuse_changed
-from .points import points_in
-from .seal import HDF5_SIGNATURE, check_frame
+from .points import points_of_open_file
+from .seal import HDF5_SIGNATURE, has_valid_structure_checksum
 
 PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
@@ -86,7 +86,7 @@ def open_checked(path: Path, values: bool = True) -> tuple[h5py.File, ResultHead
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
     with damage_refusals(path):
-        is_framed = check_frame(path)
+        is_framed = has_valid_structure_checksum(path)
         file = h5py.File(path, "r")
         try:
             return file, header_of(path, file, check_content=values or not is_framed)
@@ -124,7 +124,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
     require_variables_of_layout(file, layout)
-    fingerprint = fingerprint_of(config, points_in(file, layout).identifying_arrays)
+    fingerprint = fingerprint_of(config, points_of_open_file(file, layout).identifying_arrays)
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
 
@@ -177,7 +177,7 @@ def is_rodsweep_file(path: Path) -> bool:
         if stream.read(8) != HDF5_SIGNATURE:
             return False
     try:
-        check_frame(path)
+        has_valid_structure_checksum(path)
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("program") == PROGRAM)
     except DAMAGE_EXCEPTIONS:

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
-from .arm import with_si
-from .rods import optional_in
+from .arm import with_si_variables
+from .rods import optional_parameters_in
 from .variables import ExtensionRule, Layout, Variable
 
 LAYOUT_MODULES = {
@@ -44,7 +44,9 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUT_MAKERS:
         raise KeyError(f"unknown task {task}")
     layout = LAYOUT_MAKERS[task](config)
-    return with_si(replace(layout, parameters=(*layout.parameters, *optional_in(config))), config)
+    return with_si_variables(
+        replace(layout, parameters=(*layout.parameters, *optional_parameters_in(config))), config
+    )
 
 
 def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:

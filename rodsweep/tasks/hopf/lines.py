@@ -14,7 +14,7 @@ import numpy as np
 
 from ...model.material.build import STANDARD, Build
 from ...model.rod import Rod
-from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_points_of
+from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_point_variables
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
@@ -125,7 +125,7 @@ def hopf_variables(
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
         (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))
-        for v in hopf_points_of(names)
+        for v in hopf_point_variables(names)
     )
 
 

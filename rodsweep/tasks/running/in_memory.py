@@ -65,9 +65,11 @@ def view_in_memory(
         {name: array for name, (_, array, _) in (coordinates | variables).items()},
         plan.layout.parameters,
         {MISSING_STATUS: "missing", **dict(plan.flags)},
-        journalled=0,
+        journalled_count=0,
         arm_axes=plan.layout.arm_axes,
-        typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
+        typed_units={
+            variable.name: variable.typed_unit for variable, _ in plan.quantities if variable.typed_unit
+        },
     )
 
 

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...results.layouts import LAYOUT_MAKERS, layout_of
-from ...results.layouts.arm import arm_variables, at_points, si_record
+from ...results.layouts.arm import arm_variables, quantities_at_points, si_values
 from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
@@ -85,13 +85,13 @@ class Job:
         point.
         """
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
-        quantities = at_points(self.quantities, self.points)
+        quantities = quantities_at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             return (
                 values
-                | si_record(values, index, layout, quantities)
+                | si_values(values, index, layout, quantities)
                 | validity.variables_of_points(values, index)
             )
 
@@ -169,8 +169,8 @@ def _plan(task: Task, resolved: dict[str, Any], layout: Layout) -> Plan:
         points=task.points,
         layout=layout,
         coordinates=task.coordinates(),
-        constants=task.config_variables,
-        afterwards=task.variables_from_points,
+        config_variables=task.config_variables,
+        variables_from_points=task.variables_from_points,
         config=resolved,
         attributes={},
         flags=(),

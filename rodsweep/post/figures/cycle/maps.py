@@ -71,7 +71,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     stacked. Raises InputError if no point has a cycle.
     """
     points = point_map(view)
-    words = view.outcomes[points.point_indices]
+    words = view.status_names[points.point_indices]
     cycles = np.isin(words, CYCLE_WORDS)
     require_content(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)

@@ -115,7 +115,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Cy
     variables that the figure needs. Raises InputError if a cycle or a variable is missing.
     """
     _refuse_missing(view, needs)
-    words = view.outcomes
+    words = view.status_names
     _refuse_bad_points(view, points)
     for number in points:
         if words[number - 1] != "cycle":
@@ -156,7 +156,7 @@ def _selected_cycles(
     empty. drawable: mask, (points,). what: noun for messages. Raises InputError if no point is drawable.
     """
     available = np.flatnonzero(drawable)
-    words = view.outcomes
+    words = view.status_names
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
         raise InputError(
@@ -169,7 +169,7 @@ def _selected_cycles(
     shared, own = shared_and_own_of_points(view, numbers)
     cycles = []
     for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
-        of_point = view.of_point(number - 1).items()
+        of_point = view.point_values(number - 1).items()
         values = drawn_in.drawn({n: v for n, v in of_point if n not in (*view.parameters, "point")})
         period = float(values["period"])
         word = str(words[number - 1])

@@ -137,7 +137,7 @@ def units_of_points(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> l
     cycles = list(zip(views, at, times, powers, strict=True))
     period = max(_largest_in_units(view, "period", places, time) for view, places, time, _ in cycles)
     mean = max(_largest_in_units(view, "injection_mean", places, power) for view, places, _, power in cycles)
-    length = views[0].typed.get("length", "m")
+    length = views[0].typed_units.get("length", "m")
     second = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
     joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
     watt = with_si_prefix(mean, "W")[1]

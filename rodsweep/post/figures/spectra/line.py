@@ -117,7 +117,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _draw_direction_arrow(bottom, w[:, i], colour)
     else:
-        _scatter_all(bottom, view.axes[name], w, LABELS[name])
+        _scatter_all(bottom, view.parameter_values[name], w, LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, top.get_legend_handles_labels()[0], 2)
@@ -129,7 +129,7 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
     2), or all roots, (n, modes). roots: choice of the roots.
     """
-    x = view.axes[name]
+    x = view.parameter_values[name]
     w = _followed_roots(view, roots)
     if roots != "all":
         x_broken, w = with_gaps_between_roots(x, w)
@@ -185,7 +185,7 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
 
     Thresholds are onsets of oscillation, and forces at which the stability of the straight rod changes.
     """
-    x = view.axes[name]
+    x = view.parameter_values[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0
     if name != "F":
         if unstable.any():

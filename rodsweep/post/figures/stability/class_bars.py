@@ -15,7 +15,7 @@ from ....arrays import Array
 from ....model.parameters import CRUSHING_PARAMETERS
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ....results.layouts.rods import has_covering
+from ....results.layouts.rods import has_standard_rods
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import flag_number
 from ....wording import plural
@@ -214,7 +214,7 @@ def class_along_row(
     changes = _class_changes(view, variable, line, index)
     if variable == "class":
         between, rows, found = classes_between_crossings(view, row)
-        own = rows == view.axes[row][index]
+        own = rows == view.parameter_values[row][index]
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
@@ -243,7 +243,7 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
         found = [at[kinds > 0]]
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    if line in CRUSHING_PARAMETERS and has_covering(view.config):  # other rods are not crushed at F = k1
+    if line in CRUSHING_PARAMETERS and has_standard_rods(view.config):  # other rods are not crushed at F = k1
         (other,) = set(CRUSHING_PARAMETERS) - {line}
         found.append(view.point_columns[other][[index]])
     changes = np.concatenate(found)

@@ -83,7 +83,7 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
 
 def force_of_plane(view: View, line: str, row: str) -> str:
     """Text " = F" with the constant F of a plane; empty if F is on an axis. line, row: see the module."""
-    return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
+    return "" if "F" in (line, row) else f" = {float(view.parameter_values['F'][0]):g}"
 
 
 def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
@@ -101,7 +101,10 @@ def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2
         F = float(v["partial_beam_F"])
         k = float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
-        if not (v[line][0] <= x <= v[line][-1] and view.axes[row][0] <= y <= view.axes[row][-1]):
+        if not (
+            v[line][0] <= x <= v[line][-1]
+            and view.parameter_values[row][0] <= y <= view.parameter_values[row][-1]
+        ):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)

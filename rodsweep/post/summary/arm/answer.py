@@ -76,7 +76,7 @@ def _add_failed(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Ca
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
-        failed = rods & view.with_status(FAILED_STATUS)
+        failed = rods & view.has_status(FAILED_STATUS)
         unsolved = [f"not known{_share_clause(failed, rods)}: the search failed"] if failed.any() else []
         if (failed == rods).all():
             return unsolved
@@ -156,9 +156,9 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
-    cycles = rods & view.with_status("cycle")
+    cycles = rods & view.has_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
-        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE_WORDS.items()}
+        masks = {words: rods & view.has_status(status) for status, words in NO_CYCLE_WORDS.items()}
         return [f"{words}{_share_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
@@ -178,9 +178,9 @@ def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     arms = arms_of_drags(view)
     if arms is None:
         return []
-    if (rods & ~view.with_status("cycle", "straight")).any():
+    if (rods & ~view.has_status("cycle", "straight")).any():
         return []
-    beats = view.with_status("cycle").ravel()
+    beats = view.has_status("cycle").ravel()
     of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)

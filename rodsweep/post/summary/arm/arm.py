@@ -55,7 +55,9 @@ def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     converts the numbers to this unit. The unit is typed by the user, or has a prefix suitable for numbers up
     to `largest`.
     """
-    typed = next((view.typed[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed), si)
+    typed = next(
+        (view.typed_units[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed_units), si
+    )
     if typed != si:
         return value_in_unit(1.0, typed, si), typed
     if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
@@ -125,7 +127,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
 def _quantity_unit(view: View, name: str) -> str:
     """Unit in which the quantity `name` is printed; empty for a dimensionless quantity."""
     si = ALL_QUANTITIES[name].unit
-    return "" if si == "1" else view.typed.get(name, printing_unit(view, si, 1.0)[1])
+    return "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:

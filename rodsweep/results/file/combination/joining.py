@@ -22,8 +22,8 @@ from ....sweep.points.points import Points
 from ...layouts.variables import MISSING_STATUS, SECONDS
 from ..content import SEAL_ATTRIBUTE
 from ..creation import Plan
-from ..points import parameters_of, points_at, stored_points, write_points
-from ..provenance import LONGEST_ATTRIBUTE, blas_kernels_in
+from ..points import points_of_file, records_at, stored_records, write_records
+from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
 from .extension import ROUNDING_TOLERANCE, StoredPointMap
 from .identity import config_difference
@@ -46,7 +46,7 @@ class JoinedFile:
 
     plan: Plan
     sources: Sequence[ResultHeader]
-    places: Sequence[StoredPointMap]
+    point_maps: Sequence[StoredPointMap]
 
     def write(self, path: Path) -> list[ResultHeader]:
         """Writes the points of all sources into the file at `path`; returns the sources from which points
@@ -55,12 +55,12 @@ class JoinedFile:
         Raises InputError if the values of a point in two sources differ by more than rounding errors.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
-        for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):
-            for records in stored_points(source.path, source.layout):
+        for number, (source, places) in enumerate(zip(self.sources, self.point_maps, strict=True)):
+            for records in stored_records(source.path, source.layout):
                 records["index"] = places(records["index"])
                 is_new = owner[records["index"]] < 0
                 self._compare(path, records[~is_new], owner, number)
-                write_points(path, [records[is_new]], self.plan.layout)
+                write_records(path, [records[is_new]], self.plan.layout)
                 owner[records["index"][is_new]] = number
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
@@ -72,7 +72,7 @@ class JoinedFile:
         """
         if not len(records):
             return
-        stored = points_at(path, records["index"], self.plan.layout)
+        stored = records_at(path, records["index"], self.plan.layout)
         for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
             first = stored[name]
             second = records[name]
@@ -81,12 +81,12 @@ class JoinedFile:
             for i in np.flatnonzero(differs):
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
-                if not self._is_rounding(name, stored[i][name], records[i][name], pair):
+                if not self._is_rounding_error(name, stored[i][name], records[i][name], pair):
                     where = _point_text(self.plan.points, index)
                     both = " and ".join(str(source.path) for source in pair)
                     raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
 
-    def _is_rounding(
+    def _is_rounding_error(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
         """Whether the difference of two values of the variable `name` is taken for rounding error.
@@ -115,7 +115,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> Joine
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
     meant = config_from_resolved(first.config).settings_of_results
-    grids = [parameters_of(source.path, source.layout) for source in sources]
+    grids = [points_of_file(source.path, source.layout) for source in sources]
     for other, points in zip(others, grids[1:], strict=True):
         theirs = config_from_resolved(other.config).settings_of_results
         apart = config_difference(
@@ -199,12 +199,12 @@ def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -
     parameters = dict(first.config["parameters"])
     if points.is_grid:
         own = config_from_resolved(first.config).parameters.axes
-        axes = {name: _axis_with(own[name], column) for name, column in points.columns_by_name.items()}
+        axes = {name: _axis_from_values(own[name], column) for name, column in points.columns_by_name.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
     return config_from_resolved(first.config | {"parameters": parameters, task: meant[task]})
 
 
-def _axis_with(own: Axis, values: Array) -> Axis:
+def _axis_from_values(own: Axis, values: Array) -> Axis:
     """An axis with the given values, (n,): `own` or a range if its values are equal bit by bit, otherwise a
     list.
     """
@@ -238,7 +238,7 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
     text = config_yaml(config)
     resolved = resolved_config(config)
-    if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:
+    if max(len(text), len(str(resolved))) > MAX_ATTRIBUTE_LENGTH:
         raise InputError(
             "the joined axes are too long to be listed in the file; compute the grid with `run` from ranges"
         )

@@ -75,7 +75,7 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities.
     """
-    words = view.outcomes
+    words = view.status_names
     v = view.variables
     straight = words == "straight"
     cycle = np.isin(words, CYCLE_WORDS)
