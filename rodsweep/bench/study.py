@@ -27,14 +27,14 @@ class Contender:
     """A method at one setting that takes part in a race.
 
     group: name of a group of methods, which have the same colour in the figure. run: function (case) ->
-    result. slow: whether the function is run only once, instead of in every round.
+    result. is_slow: whether the function is run only once, instead of in every round.
     """
 
     method: str
     setting: str
     group: str
     run: Callable[[Any], Any]
-    slow: bool = False
+    is_slow: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,21 +74,21 @@ class Study:
     undrawn: Sequence[Measurement] = ()
 
     @property
-    def drawable(self) -> bool:
+    def is_drawable(self) -> bool:
         """Whether a measurement in `measurements` has a finite error, so that the figure is not empty."""
         return any(isfinite(m.error) for m in self.measurements)
 
     def draw(self, output: Path) -> None:
         """Writes the figure into the file `output`: errors against time, with one panel per case and one
         curve per method."""
-        draw_work_precision(columns_of(self.measurements), f"ms a {self.unit}", self.target, output)
+        draw_work_precision(measurement_columns(self.measurements), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
         """All measurements as the columns of a table, for the file."""
-        return columns_of([*self.measurements, *self.undrawn])
+        return measurement_columns([*self.measurements, *self.undrawn])
 
 
-def columns_of(measurements: Sequence[Measurement]) -> Table:
+def measurement_columns(measurements: Sequence[Measurement]) -> Table:
     """The measurements as columns, by name; a number that a measurement does not have is nan."""
     columns: Table = {
         name: [getattr(m, name) for m in measurements]
@@ -180,7 +180,7 @@ def measure_cases(
     rounds."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
-    raced = time_runs(runs, [0 if contender.slow else rounds for _, contender in pairs])
+    raced = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, raced, strict=True):
         least = min(timed.seconds)

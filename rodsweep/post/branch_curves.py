@@ -66,7 +66,7 @@ class StoredBranch:
     def stable_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the branch has a stable cycle."""
         pieces = np.flatnonzero(self.stable == 1)
-        return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
+        return union_of_ranges((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
 
     @property
     def errors(self) -> dict[float, float]:
@@ -137,18 +137,18 @@ class RodBranches:
     @property
     def stable_cycles(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the rod has a stable cycle."""
-        return union(piece for curve in self.curves for piece in curve.stable_ranges)
+        return union_of_ranges(piece for curve in self.curves for piece in curve.stable_ranges)
 
     @property
     def two_cycles(self) -> list[ParameterRange]:
         """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
-        return union(piece for one, other in pairs for piece in intersection(one, other))
+        return union_of_ranges(piece for one, other in pairs for piece in intersection_of_ranges(one, other))
 
     @property
     def coexistence(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        return intersection(self.stable_cycles, self.straight_ranges(branch_ends(self.view))[0])
+        return intersection_of_ranges(self.stable_cycles, self.straight_ranges(branch_ends(self.view))[0])
 
     @property
     def coexistence_is_decided(self) -> bool:
@@ -163,7 +163,9 @@ class RodBranches:
         Both lists are empty if special points of some branch are not stored.
         """
         pieces = [] if self.hidden else self.straight_pieces(ends)
-        stable, unstable = (union((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0))
+        stable, unstable = (
+            union_of_ranges((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0)
+        )
         return stable, unstable
 
     def straight_pieces(self, ends: ParameterRange) -> list[tuple[float, float, int]]:
@@ -233,7 +235,7 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
     return np.array(stable, dtype=int)
 
 
-def union(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
+def union_of_ranges(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
     """Union of ranges, in increasing order. Ranges that overlap or touch are joined."""
     found: list[ParameterRange] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
@@ -244,7 +246,7 @@ def union(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
     return found
 
 
-def intersection(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
+def intersection_of_ranges(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
     """Intersection of two unions of ranges; ranges of zero length are left out."""
     common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
     return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]

@@ -54,7 +54,7 @@ def test_a_number_has_the_digits_that_its_error_allows(seed):
     values = rng.choice([-1, 1], 50) * 10 ** rng.uniform(-8, 8, 50)
     relative = 10 ** rng.uniform(-13, -1, 50)
     columns = [real("period", values), real("period_error", relative)]
-    pairs = ColumnTexts(columns, {}).pairs("period")
+    pairs = ColumnTexts(columns, {}).value_and_error_texts("period")
     for (text, stated), value, error in zip(pairs, values, relative * np.abs(values), strict=True):
         digit = 10.0 ** floor(log10(error))
         assert unit_of(text) > 0.9999 * digit, (text, value, error)
@@ -68,7 +68,7 @@ def test_a_number_has_the_digits_that_its_error_allows(seed):
 
 def test_numbers_of_unknown_error_have_six_digits_and_missing_ones_none():
     digits = ColumnTexts([real("tip_x_max", [0.123456789, np.nan, 0, np.inf])], {})
-    assert digits.pairs("tip_x_max") == [("0.123457", ""), ("", ""), ("0", ""), ("inf", "")]
+    assert digits.value_and_error_texts("tip_x_max") == [("0.123457", ""), ("", ""), ("0", ""), ("inf", "")]
 
 
 def test_a_number_below_its_error_has_no_digit():
@@ -78,7 +78,9 @@ def test_a_number_below_its_error_has_no_digit():
 
 def test_an_si_number_has_the_relative_error_of_its_own():
     columns = [real("period", [0.5]), real("period_si", [320.262]), real("period_error", [1e-3])]
-    assert ColumnTexts(columns, {"period": "period_si"}).pairs("period_si") == [("320.3", "4e-01")]
+    assert ColumnTexts(columns, {"period": "period_si"}).value_and_error_texts("period_si") == [
+        ("320.3", "4e-01")
+    ]
 
 
 @pytest.mark.parametrize("seed", range(20))

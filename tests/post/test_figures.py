@@ -17,7 +17,7 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
-from rodsweep.post.figures.lists import number_points
+from rodsweep.post.figures.lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.sections import section_at_values
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
@@ -340,7 +340,7 @@ def test_one_spectrum_is_drawn_as_its_eigenvalues_in_the_complex_plane(command, 
 def test_points_of_a_list_of_arms_are_labelled_by_words_of_the_quantities():
     quantities = {"drag": np.array([0, 2]), "poisson": np.array([0.3, 0.5]), "young": np.array([1e5, 2e5])}
     axes = Figure().subplots()
-    number_points(axes, SimpleNamespace(quantities=quantities), 2)
+    label_point_numbers(axes, SimpleNamespace(quantities=quantities), 2)
     assert axes.get_xlabel() == "drag\nPoisson's ratio\nYoung's modulus (kPa)"
     texts = [label.get_text() for label in axes.get_xticklabels()]
     assert texts == ["likeliest\n0.3\n100", "most rotational\n0.5\n200"]

@@ -321,6 +321,8 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     stored = StoredChanges(view, "F")
     (line,) = lines_along(view.point_columns, "F")
     assert stored.thresholds_on(line) == []
-    assert [point.position for point in stored.up_to(line)] == pytest.approx(WINDOW[:1], rel=1e-12)
-    (sentence,), _ = stability_lines(view, "F", stored.up_to)
+    assert [point.position for point in stored.thresholds_up_to_end(line)] == pytest.approx(
+        WINDOW[:1], rel=1e-12
+    )
+    (sentence,), _ = stability_lines(view, "F", stored.thresholds_up_to_end)
     assert sentence.startswith("F** (straight rod starts to beat): 49.7580049161")

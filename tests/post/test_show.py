@@ -43,7 +43,7 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     found = [
         change
         for change in StoredChanges(view, "F").thresholds_on(line)
-        if isinstance(change, LocatedChange) and change.is_hopf
+        if isinstance(change, LocatedChange) and change.changes_stability
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):

@@ -14,7 +14,12 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.floquet import min_unstable_multipliers
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union
+from rodsweep.post.branch_curves import (
+    RodBranches,
+    intersection_of_ranges,
+    stability_of_pieces,
+    union_of_ranges,
+)
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.summary import branch as summary
@@ -155,9 +160,9 @@ def test_a_cycle_is_unstable_if_its_largest_multiplier_lies_outside_for_certain(
 
 
 def test_ranges_are_joined_and_intersected():
-    assert union([(3, 4), (0, 1), (1, 2)]) == [(0, 2), (3, 4)]
-    assert intersection([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
-    assert intersection([(0, 1)], [(1, 2)]) == []
+    assert union_of_ranges([(3, 4), (0, 1), (1, 2)]) == [(0, 2), (3, 4)]
+    assert intersection_of_ranges([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
+    assert intersection_of_ranges([(0, 1)], [(1, 2)]) == []
 
 
 @pytest.mark.parametrize("suffix", few(["svg", "png", "pdf"], 1))

@@ -40,14 +40,14 @@ fails."""
 class IntegratorFamily:
     """An integrator with its tolerances, from the loosest.
 
-    tolerances: tolerances of the runs that follow a cycle. waiting: tolerances of the runs until the motion
-    is periodic; empty if the integrator has no such runs.
+    tolerances: tolerances of the runs that follow a cycle. waiting_tolerances: tolerances of the runs until
+    the motion is periodic; empty if the integrator has no such runs.
     """
 
     name: str
     integrate: Integration
     tolerances: tuple[float, ...]
-    waiting: tuple[float, ...] = ()
+    waiting_tolerances: tuple[float, ...] = ()
 
     def following_contenders(self) -> list[Contender]:
         """Contenders of the race FOLLOWING, which follow a cycle in time: one for each of `tolerances`."""
@@ -55,8 +55,8 @@ class IntegratorFamily:
 
     def settling_contenders(self) -> list[Contender]:
         """Contenders of the race WAITING, which integrate until the motion is periodic: one for each of
-        `waiting`."""
-        return [self._at(tolerance) for tolerance in self.waiting]
+        `waiting_tolerances`."""
+        return [self._at(tolerance) for tolerance in self.waiting_tolerances]
 
     def _at(self, tolerance: float) -> Contender:
         run = partial(self.integrate, tolerance)

@@ -116,7 +116,7 @@ def instant_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
-        resumed = replace(killed, name="resumed", kind=INSTANT)
+        resumed = replace(killed, name="resumed", solver_kind=INSTANT)
         measurements.append(sweep_measurement(killed, 1, [run(killed, 1)]))
         measurements.append(sweep_measurement(resumed, 1, [run(resumed, 1, fresh=False)]))
     return measurements
@@ -150,7 +150,9 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
         "rss_megabytes_first": memory[0],
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,
         "file_bytes_per_point": runs[0].file_bytes / case.points,
-        "journal_bytes_per_point": runs[0].journal_bytes / (case.points - 1) if case.kind == KILLED else nan,
+        "journal_bytes_per_point": runs[0].journal_bytes / (case.points - 1)
+        if case.solver_kind == KILLED
+        else nan,
         "processors_elsewhere": nan_median(run.processors_busy_elsewhere for run in runs),
         "share_busy": nan_median(run.busy_fraction for run in runs),
     }

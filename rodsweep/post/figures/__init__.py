@@ -104,7 +104,7 @@ def draw(
     taken = output.exists() and (
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
-    request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, keep=keep, **choices)
+    request = FigureRequest(views, output, is_taken=taken, look=look, shapes=shapes, keep=keep, **choices)
     with _style_context(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
         try:
             shown = _draw_and_describe(request)
@@ -118,10 +118,10 @@ def draw(
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
             ) from error
-    return f"wrote {output}: {shown}{_omitted_points(views)}"
+    return f"wrote {output}: {shown}{_omitted_points_clause(views)}"
 
 
-def _omitted_points(views: Sequence[View]) -> str:
+def _omitted_points_clause(views: Sequence[View]) -> str:
     """Clause on the number of points that the figure omits; empty if the figure shows all points."""
     words = np.concatenate([view.status_names for view in views])
     counts = (

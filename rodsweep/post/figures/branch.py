@@ -79,7 +79,7 @@ def draw_branch(request: FigureRequest) -> str:
     upper, lower, *third = figure.subplots(2 + beside, 1)
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
-    marked = draw_curves(upper, lower, curves, colours)
+    marked = draw_branch_curves(upper, lower, curves, colours)
     if alone:
         draw_straight_rod(upper, drawn[0])
     upper.set_ylabel("largest $y/L$ of the tip")
@@ -99,7 +99,7 @@ def draw_branch(request: FigureRequest) -> str:
     return request.write(figure, shown + _omissions_clause(rods, len(beating), len(drawn)))
 
 
-def draw_curves(
+def draw_branch_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
 ) -> dict[str, Line2D]:
     """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
@@ -173,7 +173,7 @@ def _draw_pieces(
 
 
 def _mark_special_points(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
-    """Marks the special points of a branch in two panels, as in `draw_curves`; adds legend entries to
+    """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
     `marked`.
     """
     for special in curve.special:

@@ -40,16 +40,16 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     name = figure_name(request)
     view = _with_needed_variables(request, name)
     if name == "animation":
-        request.check_output(*FILM_SUFFIXES)
+        request.require_output(*FILM_SUFFIXES)
         if request.keep is not None:
             raise InputError("an animation is not a single figure; save it as a .gif")
         return write_animation(view, points, request.output)
-    request.check_output()
+    request.require_output()
     if name == "amplitude":
-        return request.write(*draw_amplitude(request.views, request.look.narrow))
+        return request.write(*draw_amplitude(request.views, request.look.is_narrow))
     if name == "maps":
-        return request.write(*draw_maps(view, request.look.narrow), MAP_ASPECT)
-    return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.narrow), STRIP_ASPECT)
+        return request.write(*draw_maps(view, request.look.is_narrow), MAP_ASPECT)
+    return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.is_narrow), STRIP_ASPECT)
 
 
 def _with_needed_variables(request: FigureRequest, name: str) -> View:

@@ -126,7 +126,7 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     )
 
 
-def fixed_text(view: View, *drawn: str) -> str:
+def constant_parameters_text(view: View, *drawn: str) -> str:
     """Constant parameters with their values, as text. drawn: names of the parameters on axes."""
     return parameter_text(
         {name: values[0] for name, values in view.parameter_values.items() if name not in drawn}
@@ -208,7 +208,7 @@ def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
         axes.set_ylabel(ylabel)
 
 
-def colour_cells(
+def draw_coloured_cells(
     axes: Axes,
     edges: tuple[np.ndarray, np.ndarray],
     values: np.ndarray,

@@ -33,11 +33,13 @@ def eigenvalue_sentence(rod: OneRod) -> str:
     count = rod.count("unstable_count")
     stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
     stability = "number of unstable modes not known" if count is None else stability
-    modes = rod.lists["modes"]
+    modes = rod.list_texts["modes"]
     rate, frequency = (rod.preferred_name(modes, name) for name in ("growth_rate", "frequency"))
     if not len(modes.columns[rate].values):
         return ""
-    return f"{stability}: leading growth rate {modes.short(rate)}, frequency {modes.short(frequency)}"
+    return (
+        f"{stability}: leading growth rate {modes.short_text(rate)}, frequency {modes.short_text(frequency)}"
+    )
 
 
 def threshold_sentence(rod: OneRod) -> str:
@@ -78,13 +80,13 @@ def branch_sentence(rod: OneRod) -> str:
     along, start, stop = (rod.view.config["branch"][key] for key in ("along", "start", "stop"))
     if not branches:
         return f"no branch of cycles: no Hopf point for {along} from {start:g} to {stop:g}"
-    cycles = rod.lists["cycles"]
+    cycles = rod.list_texts["cycles"]
     begin = counted(rod.count("hopf_count") or 0, "Hopf point")
     text = f"{counted(branches, 'branch')} of cycles from {begin}"
     y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
-    largest = cycles.short(y, int(np.nanargmax(cycles.columns[y].values)))
+    largest = cycles.short_text(y, int(np.nanargmax(cycles.columns[y].values)))
     return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest}"
 
 

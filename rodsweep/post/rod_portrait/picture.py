@@ -15,9 +15,9 @@ from matplotlib.lines import Line2D
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ..figures import style
-from ..figures.branch import BRANCH_COLOURS, draw_curves, draw_straight_rod, stability_entries
+from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, force_arrow
-from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
+from ..figures.stability.class_bars import class_legend_entries, draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .results import RodResults
 from .units import rescale_panel
@@ -99,7 +99,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     seen = draw_class_bar(axes, view, 0, upright=False)
     force = results.units.force
     marks = mark_thresholds_on_bars(axes, view, upright=False, unit=force.name, factor=force.factor)
-    return [*class_entries(seen), *marks]
+    return [*class_legend_entries(seen), *marks]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
@@ -115,7 +115,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
         return []
     handles: list[Artist] = [
         *stability_entries(rod.curves),
-        *draw_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
+        *draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
     ]
     draw_straight_rod(upper, rod)
     if not rod.hidden:

@@ -92,7 +92,7 @@ def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     lines = list[str]()
     of_arm = list[str]()
     for name in names[:1] if "F" in names else names:
-        found, found_of_arm = stability_lines(view, name, StoredChanges(view, name).up_to)
+        found, found_of_arm = stability_lines(view, name, StoredChanges(view, name).thresholds_up_to_end)
         lines += found
         of_arm += found_of_arm
     return lines, of_arm

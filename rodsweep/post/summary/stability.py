@@ -70,7 +70,7 @@ def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], alon
         if len(found) < len(names)
         else ""
     )
-    if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
+    if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _position_text(located[0]) + error + some + beats

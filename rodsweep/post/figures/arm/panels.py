@@ -67,7 +67,7 @@ def _cycle_panels(view: View) -> list[Panel]:
     ]
 
 
-PANELS: dict[str, Callable[[View], list[Panel]]] = {
+PANEL_MAKERS: dict[str, Callable[[View], list[Panel]]] = {
     "thresholds": _threshold_panels,
     "spectrum": _mode_panels,
     "modes": _mode_panels,

@@ -19,7 +19,7 @@ VALIDITY_HATCH: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "l
 """Look of the hatches where the model does not apply."""
 
 
-def add_validity(figure: Figure, views: Sequence[View]) -> None:
+def hatch_invalid_points(figure: Figure, views: Sequence[View]) -> None:
     """Hatches a figure where the model does not apply to the arm, if the axes are parameters of the file, and
     adds a note to the title. Without such points, the figure is unchanged.
     """

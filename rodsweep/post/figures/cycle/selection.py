@@ -16,7 +16,7 @@ from ....results.file.view import View
 from ...summary.ranges import rounded
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
-from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_of
+from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""
@@ -165,12 +165,12 @@ def _selected_cycles(
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
-    units = units_of(view, numbers)
+    units = units_at_points(view, numbers)
     shared, own = shared_and_own_of_points(view, numbers)
     cycles = []
     for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
         of_point = view.point_values(number - 1).items()
-        values = drawn_in.drawn({n: v for n, v in of_point if n not in (*view.parameters, "point")})
+        values = drawn_in.converted({n: v for n, v in of_point if n not in (*view.parameters, "point")})
         period = float(values["period"])
         word = str(words[number - 1])
         cycles.append(StoredCycle(number, label, at, period, values, word, drawn_in))

@@ -15,10 +15,19 @@ from ....results.file.view import View
 from ....sweep.points.points import lines_along
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
-from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading_text, legend_below, scale_axis
+from ..style import (
+    BLUE,
+    LABELS,
+    SYMBOLS,
+    VERMILION,
+    constant_parameters_text,
+    heading_text,
+    legend_below,
+    scale_axis,
+)
 from .eigenvalues import scale_if_spread
 
-FOLLOWED_ROOTS = {
+ROOT_CHOICE_TEXTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
     "all": "all stored roots",
@@ -95,7 +104,7 @@ def _followed_roots(view: View, roots: str) -> Complex:
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
-def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
+def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
     """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
     label of the colour bar.
     """
@@ -117,11 +126,11 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _draw_direction_arrow(bottom, w[:, i], colour)
     else:
-        _scatter_all(bottom, view.parameter_values[name], w, LABELS[name])
+        _draw_all_roots(bottom, view.parameter_values[name], w, LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading_text(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]))
+    figure.suptitle(heading_text(view, constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots]))
     return figure
 
 

@@ -19,7 +19,7 @@ from ....results.layouts.rods import has_standard_rods
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import flag_number
 from ....wording import plural
-from ..lists import number_points, shared_parameters
+from ..lists import label_point_numbers, shared_parameters
 from ..style import (
     BLUE,
     GREEN,
@@ -86,7 +86,7 @@ def draw_class_bars(view: View) -> Figure:
     seen = set[str]()
     for rod in range(count):
         seen |= draw_class_bar(axes, view, rod, upright=count > 1)
-    handles: list = class_entries(seen)
+    handles: list = class_legend_entries(seen)
     handles += mark_thresholds_on_bars(axes, view, upright=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:
@@ -94,13 +94,13 @@ def draw_class_bars(view: View) -> Figure:
         axes.spines["left"].set_visible(False)
     else:
         axes.set(ylim=(0, end), ylabel=LABELS["F"])
-        number_points(axes, view, count)
+        label_point_numbers(axes, view, count)
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure
 
 
-def class_entries(seen: set[str]) -> list[Patch]:
+def class_legend_entries(seen: set[str]) -> list[Patch]:
     """Legend entries for the classes in `seen`."""
     shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
     return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]

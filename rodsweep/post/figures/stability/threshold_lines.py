@@ -66,7 +66,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     _label_axes(axes, view, along, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.fixed_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *long), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
     return figure, words + _infinite_values_clause(view, [along])
 
@@ -90,7 +90,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
         axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
-    figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
+    figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, along), searched))))
     return figure, f"critical forces against {along} of {len(views)} files" + _infinite_values_clause(
         longest, [along]
     )
@@ -116,7 +116,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.fixed_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *long), searched))
     shown = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
     return figure, shown + _infinite_values_clause(view, long)
 

@@ -71,7 +71,7 @@ def abscissa_parameter(view: View) -> str:
     return name
 
 
-def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
+def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities.
     """
@@ -91,7 +91,9 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     for line in lines_along(view.point_columns, name):
         changes = stored.thresholds_on(line) if name == "F" else []
         at = line.indices
-        hopf = [change for change in changes if isinstance(change, LocatedChange) and change.is_hopf]
+        hopf = [
+            change for change in changes if isinstance(change, LocatedChange) and change.changes_stability
+        ]
         branches.append(
             AmplitudeBranch(
                 view=view,

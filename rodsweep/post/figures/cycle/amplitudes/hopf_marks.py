@@ -41,7 +41,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
         own = [mark for mark in marks if mark[0].kind == kind]
         places: list[tuple[LocatedChange, set[str]]] = []
         for point, colour in own:
-            same = next((colours for other, colours in places if other.agrees(point)), None)
+            same = next((colours for other, colours in places if other.equals_within_errors(point)), None)
             if same is None:
                 places.append((point, {colour}))
             else:
@@ -59,7 +59,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
     return handles
 
 
-def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
+def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
     """Draws square-root laws as dashed curves; returns legend entries with formula and coefficients. unit:
     unit of the amplitude; empty for amplitudes in L.
     """
