@@ -34,7 +34,7 @@ class SolveStopped(BaseException):
 
 
 class _SolvePart(NamedTuple):
-    """Named part of a solve.
+    """Named part of a solve. name: prefix of the texts of reports from the part.
 
     shares: completed fractions of the work of the whole solve at the start and at the end of the part; None
     if unknown.

@@ -143,7 +143,9 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
 
 
 class AxisRange(TypedDict):
-    """An axis of a sweep as a range: the keys of a range in a config."""
+    """An axis of a sweep as a range. start, stop: first and last value; for a quantity of an arm, with a
+    unit. num: number of values. spacing: "linear" or "log".
+    """
 
     start: float | str
     stop: float | str

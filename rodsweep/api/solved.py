@@ -38,7 +38,7 @@ class Result(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StoredResult:
-    """A result given as a Dataset, from which the view is made."""
+    """A result given as a Dataset, from which the view is made. dataset: the Dataset of the whole file."""
 
     dataset: xr.Dataset
 
@@ -56,6 +56,7 @@ class SolvedPoints:
     plan: Plan = field(repr=False)
     """Plan of the results, without the attributes of a file."""
     statuses: Sequence[PointStatus]
+    """All statuses that a point of the task can have."""
     values: Mapping[str, np.ndarray] = field(repr=False)
     """Variables of the layout by name, shape (points, own dimensions)."""
     filled: Sequence[FilledVariable] = field(repr=False)

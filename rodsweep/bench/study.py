@@ -24,7 +24,7 @@ after the previous run."""
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting that takes part in a race.
+    """A method at one setting that takes part in a race. method, setting: names in the tables.
 
     group: name of a group of methods, which have the same colour in the figure. run: function (case) ->
     result. is_slow: whether the function is run only once, instead of in every round.
@@ -39,7 +39,8 @@ class Contender:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """Time and error of a method at one setting on one case.
+    """Time and error of a method at one setting on one case. case, method, setting, group: names, as in
+    `Contender`.
 
     seconds: median time of the rounds. error: relative error; nan if there is no error to measure, inf if the
     method failed. failure: reason for the failure. least_seconds: minimum time of the rounds, which depends
@@ -157,8 +158,8 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
 
 
 class CaseWithErrorMeasure(NamedTuple):
-    """A case on which methods are compared. judge: function from a result of a method to a dictionary with
-    `error` and further fields of `Measurement`."""
+    """A case on which methods are compared, with its name. judge: function from a result of a method to a
+    dictionary with `error` and further fields of `Measurement`."""
 
     name: str
     case: Any

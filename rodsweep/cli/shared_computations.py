@@ -20,7 +20,9 @@ from ..tasks.protocol import Task
 
 @dataclass(slots=True)
 class _SharedWork:
-    """Computations divided among the ranks. Each rank omits its remaining items after a stop signal."""
+    """Computations divided among the ranks of `team`. Each rank omits its remaining items after a stop
+    signal, recorded in `stop`.
+    """
 
     team: Team
     stop: StopRequest

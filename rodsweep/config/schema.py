@@ -27,7 +27,9 @@ class Config(StrictSection):
     title: Annotated[Text, Field(max_length=200)] = ""
     """Name of the run, printed by `check` and `show`."""
     task: str
+    """Name of the task."""
     parameters: Axes
+    """Axes of the parameters, a file of points, or an arm."""
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode. `limit_cycle` and `branch`, whose
     numbers are cycles, have other limits and defaults."""

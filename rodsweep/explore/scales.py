@@ -14,7 +14,7 @@ from .state import PageState, float_or_text, rod_of
 
 @dataclass(frozen=True, kw_only=True)
 class ControlScale:
-    """Scale of the slider for one parameter of a rod, or one quantity of an arm.
+    """Scale of the slider for one parameter of a rod, or one quantity of an arm, with the name `name`.
 
     low, high: values at the ends of the slider, in `unit`.
     """

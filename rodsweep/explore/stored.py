@@ -122,7 +122,9 @@ def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
 
 
 def _law_key(config: Config, path: Path) -> str:
-    """Constitutive law of a config, as a key of `LAWS`. Raises InputError if the arm has a profile."""
+    """Constitutive law of a config, as a key of `LAWS`; "linear" for a law that the page does not offer.
+    Raises InputError if the arm has a profile.
+    """
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
@@ -141,8 +143,8 @@ def _exact_number_text(value: float) -> str:
 
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
-    """Diagram of a result file over the load and the second parameter of `state`; None if the file contains
-    no such diagram.
+    """Diagram of a result file over the load and the second parameter of `state`, at the middle values of all
+    other parameters; None if the file contains no such diagram.
     """
     second = state.second
     dims = set(data["status"].dims)

@@ -79,7 +79,8 @@ class StoredResults:
 
     def load_near(self, state: PageState, at: float) -> float:
         """Load that a click at `at` selects: the nearest stored load if it is close, see `CLICK_TOLERANCE`,
-        else `at`. Loads are in the unit of the control.
+        else `at`; also `at` if the file has no cycles, fewer than two loads for this rod, or results of the
+        other tab. Loads are in the unit of the control.
         """
         if state.tab != self.state.tab or not self.has_cycles:
             return at
@@ -128,7 +129,9 @@ class StoredResults:
         )
 
     def _cycle(self, state: PageState) -> AnswerVariables | None:
-        """Stored cycle of the rod of `state`; None if the file does not store its shapes."""
+        """Stored cycle of the rod of `state`; if the file says that this rod has no cycle, the straight rod,
+        but only for uniform rods of linear material. None if the point is missing, or the file has no shapes.
+        """
         numbers = self._matching_points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
@@ -165,8 +168,8 @@ class StoredResults:
         return {"pieces": [], "special": [], "cycles": cycles, **self._source_variables()}
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
-        """Stored branches of the rod of `state` along the force; None if the file has no branches of this
-        rod.
+        """Stored branches of the rod of `state` along the force; None if the file has no computed branches of
+        this rod.
         """
         numbers = self._matching_points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:

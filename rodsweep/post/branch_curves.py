@@ -31,7 +31,9 @@ ParameterRange = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch of cycles. The fields are the variables `special_...` of the result file."""
+    """Special point of a branch of cycles. The fields are the variables `special_kind`, `special_at` etc. of
+    the result file, with words for `kind` and `reason`.
+    """
 
     kind: str
     at: float
@@ -61,6 +63,7 @@ class StoredBranch:
     cycles: NDArray[np.bool_]
     """Mask of the vertices that are stored cycles, (n,)."""
     special: tuple[StoredSpecialPoint, ...]
+    """Special points of the branch, in order along the branch."""
 
     @property
     def stable_ranges(self) -> list[ParameterRange]:

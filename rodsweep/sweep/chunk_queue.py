@@ -73,7 +73,9 @@ class ChunkQueue:
         self.seconds_per_item: dict[int, float] = {}
         """Latest time per item, in s, by rank."""
         self.is_stopped = False
+        """Whether a stop request has emptied the queue."""
         self.change = threading.Condition()
+        """Lock of the queue; notified when items or reports arrive."""
 
     def add_report(self, rank: int, report: RankReport) -> None:
         """Updates the queue from a rank's report on finished and returned items."""

@@ -57,14 +57,17 @@ class FirstRankRequests:
         self.stop = stop
         self.show_position = show
         self.waiting_ranks: deque[int] = deque()
+        """Ranks that wait for a chunk, in the order of their requests."""
         self.answered_in_advance: set[int] = set()
         """Ranks whose next request has been answered in advance."""
         self.working_ranks = set(range(1, team.size))
+        """Other ranks that have not been told that no work is left."""
         self.mpi_status = team.MPI.Status()
         self.positions: dict[int, SolvePosition] = {}
         """Latest reported progress within a long point, by rank."""
         self.serving_lock = threading.Lock()
         self.last_served = 0.0
+        """Time of the last poll for messages between two points, on the monotonic clock, in s."""
         self.thread: threading.Thread | None = None
         if team.size > 1:
             # A daemon, so that an exception on this rank does not wait for the thread.
@@ -106,7 +109,8 @@ class FirstRankRequests:
         return sum(position.completed_fraction or 0.0 for position in list(self.positions.values()))
 
     def poll_messages(self) -> None:
-        """Answers requests of other ranks; called on the first rank between two points.
+        """Answers requests of other ranks, or without other ranks checks for a stop request; called on the
+        first rank between two points.
 
         During a long point the thread answers. The thread is not sufficient, because a solve inside PETSc
         holds Python's global interpreter lock, and the thread might rarely get the lock.

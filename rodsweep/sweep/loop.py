@@ -48,8 +48,9 @@ class ProgressSink(Protocol):
 class RankWork:
     """Statistics of a rank after the sweep.
 
-    solved_points: number of solved points. busy_seconds, idle_seconds: time spent on solving and on waiting,
-    in s. ended: whether a stop request interrupted a solve; a later run repeats this solve.
+    solved_points: number of points that this rank solved. busy_seconds, idle_seconds: time spent on solving
+    and on waiting, in s. was_interrupted: whether a stop request interrupted a solve; a later run repeats
+    this solve.
     """
 
     solved_points: int

@@ -66,6 +66,7 @@ class ProgressReporter:
         self.noun = noun
         self.remaining_time = None if total is None else RemainingTimeEstimator(total)
         self.began = self.next_display = 0.0
+        """Time, on the monotonic clock, before which nothing is displayed."""
         self.done = 0
         self.begun = 0.0
         self.where = ""

@@ -39,7 +39,7 @@ class ModesTask(CertifiedTask):
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        as in `Task.afterwards`.
+        as in `Task.variables_from_points`.
         """
         return force_change_variables(self.points, values) if self.config.standard else ()
 

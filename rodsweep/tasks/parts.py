@@ -117,6 +117,7 @@ class NonlinearTask(CertifiedTask):
         True,
         "parameters.gamma1; it changes cycles, but no Hopf point",
     )
+    """Row of `check` on the axial drag."""
 
 
 def crushing_clause(config: Config) -> str:

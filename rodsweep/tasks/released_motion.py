@@ -48,7 +48,7 @@ class ReleasedMotion:
 
 @exclusive_solve
 def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
-    """Shape (x, y) in L, (2, NODES), of the only rod of a job.
+    """Shape (x, y) in L, (2, NODE_COUNT), of the only rod of a job.
 
     tip: position (x, y) in L at which the tip is held; None for the straight rod.
     """

@@ -69,8 +69,9 @@ class SpectrumTask(CertifiedTask):
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
-        """Longitudinal growth rates, if requested, along the parameters on which these rates depend. Empty if
-        not requested.
+        """Longitudinal growth rates, along the parameters on which these rates depend; for arms that are not
+        uniform or not of linear material, also their relative errors. Empty if longitudinal modes are not
+        requested.
         """
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
@@ -88,9 +89,10 @@ class SpectrumTask(CertifiedTask):
         return tuple((variable, found[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
-        """(dimensions, shape, columns) of the points at which longitudinal rates differ.
+        """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ.
 
-        columns: values of the parameters on which the rates depend, by name, flattened to (points,).
+        dimensions: names of the dimensions of these points. shape: their lengths. columns: values of the
+        parameters on which the rates depend, by name, flattened to (points,).
         """
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
@@ -105,7 +107,7 @@ class SpectrumTask(CertifiedTask):
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        as in `Task.afterwards`.
+        as in `Task.variables_from_points`.
         """
         return force_change_variables(self.points, values) if self.config.standard else ()
 

@@ -31,6 +31,7 @@ class ArmReport:
     verdict: tuple[str, ...]
     """Sentences of the verdict; the first is the headline."""
     rows: tuple[NumberRow, ...]
+    """Rows of the table of numbers."""
     checks: tuple[Check, ...]
     """Checks of neglected effects that are not among `warnings`."""
 

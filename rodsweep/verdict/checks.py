@@ -29,7 +29,8 @@ USUAL_POISSON = (0.3, 0.5)
 class Check:
     """Check of one neglected effect or one assumption of the model.
 
-    validity: whether the model applies despite the effect.
+    validity: whether the model applies despite the effect. sentence: result of the check, without the prefix
+    of a warning.
     """
 
     validity: Validity

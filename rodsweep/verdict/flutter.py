@@ -33,6 +33,7 @@ class ThresholdsWithDrag:
     tau2: float
     """Viscous time scale of the arm, in s."""
     thresholds: Thresholds
+    """Result of the search for thresholds along the force."""
 
     @property
     def is_usable(self) -> bool:
@@ -88,9 +89,9 @@ class ThresholdsWithDrag:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Smallest and largest value of a quantity over the drags of an arm.
+    """Range of a quantity over the drags of an arm; drags for which the quantity does not exist are left out.
 
-    for_every_drag: whether the quantity exists for every drag.
+    low, high: smallest and largest value. for_every_drag: whether the quantity exists for every drag.
     """
 
     low: float
@@ -100,9 +101,10 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsOverDrags:
-    """Thresholds of an arm for every drag of its range. The most likely drag comes first."""
+    """Thresholds of an arm for every drag of its range."""
 
     by_drag: tuple[ThresholdsWithDrag, ...]
+    """Thresholds for each drag, the most likely drag first."""
 
     @property
     def failures(self) -> list[str]:

@@ -23,6 +23,7 @@ class PlaneOfMotion:
     """The arm, with its cross-section turned so that the height of the section lies in the plane of
     motion."""
     thresholds: ThresholdsOverDrags
+    """Thresholds for bending in this plane."""
     name: str = ""
     """Name of the plane, such as "the plane of its height"; empty if all planes of motion are equivalent."""
 
@@ -35,8 +36,10 @@ class PlaneOfMotion:
 
 @dataclass(frozen=True, slots=True)
 class Planes:
-    """Planes of motion of an arm. `first` is the plane with the smaller flutter load for the most likely
-    drag.
+    """Planes in which an arm can bend.
+
+    first: plane with the smaller flutter load for the most likely drag. second: the other plane; None if all
+    planes are equivalent.
     """
 
     first: PlaneOfMotion

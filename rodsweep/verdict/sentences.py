@@ -14,10 +14,10 @@ from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """Sentences of the verdict on an arm, over the range of drag: whether the model applies, flutter in the
-    plane with the smaller flutter load, then in the second plane. The second plane is left out if the model
-    applies at flutter but not under the load. If a search in the first plane failed, the list contains only
-    the reason.
+    """Sentences of the verdict on an arm, over the range of drag: whether the model applies, why thresholds
+    are uncertain (if they are), flutter in the plane with the smaller flutter load, then in the second plane.
+    The second plane is left out if the model applies at flutter but not under the load. If a search in the
+    first plane failed, the list contains only the reason.
     """
     plane = planes.first
     if plane.thresholds.failures:

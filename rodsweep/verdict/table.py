@@ -128,7 +128,9 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the dimensionless parameters of an arm, named like the keys of a config."""
+    """Rows with the dimensionless parameters of an arm, named like the keys of a config; F only for an arm
+    with a load.
+    """
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [

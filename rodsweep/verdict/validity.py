@@ -46,8 +46,8 @@ class Assessment:
 
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
-        """Neglected effects at the first flutter force for the most likely drag. The rate of motion is the
-        largest rate over all drags.
+        """Neglected effects at the first flutter force for the most likely drag for which the arm flutters.
+        The rate of motion is the largest rate over all drags.
         """
         return effects_at_flutter(self.arm, self.thresholds)
 
@@ -101,8 +101,9 @@ def first_hopf_point(found: ThresholdsOverDrags) -> Crossing | None:
 
 
 def effects_at_flutter(arm: SlenderArm, found: ThresholdsOverDrags) -> tuple[Effect, ...]:
-    """Neglected effects at the first flutter in `thresholds`. Inertia, compression and Reynolds number are
-    NaN if the arm does not flutter.
+    """Neglected effects at the first flutter in `found`, for the most likely drag for which the arm flutters;
+    the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are NaN if the
+    arm does not flutter.
     """
     first = first_hopf_point(found)
     if first is None:

@@ -35,7 +35,7 @@ number of rows."""
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WholeTable:
-    """All numbers and lists of an answer, as text for a terminal and as HTML for a notebook."""
+    """All numbers and lists of an answer. text: for a terminal. html: for a notebook."""
 
     text: str
     html: str

@@ -37,6 +37,7 @@ class PrintedAnswer:
     """Everything that the text or HTML of an answer contains."""
 
     rod: OneRod
+    """Numbers and lists of the answer, with the digits to print."""
     heading: tuple[str, ...]
     """Lines with the result in a sentence, the rod, and the meaning of the status."""
     headline: Headline

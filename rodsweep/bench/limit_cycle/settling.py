@@ -39,8 +39,8 @@ class SettlingMethod:
 
     force: F. name: name of the method. setting: tolerance. return_count: number of returns of the tip until
     the motion is periodic; nan if the motion does not become periodic. error: relative error of period and
-    largest tip y. run: the timed function. times: duration of the complete method divided by the duration of
-    `run`. failed: looser tolerances at which the integration failed.
+    largest tip y. run: the timed function. time_factor: duration of the complete method divided by the
+    duration of `run`. failed: looser tolerances at which the integration failed.
     """
 
     force: float
@@ -76,8 +76,8 @@ class SettlingMethod:
 
 def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
-    methods. at: reference cycle at F = 50. every: contenders of the race WAITING. rounds: number of timed
-    rounds.
+    methods. at: reference cycle at F = 50. every: contenders of the race WAITING_RACE. rounds: number of
+    timed rounds.
     """
     waiting = {
         method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()

@@ -70,7 +70,7 @@ FAILED_COLUMNS = dict.fromkeys(
 class AccurateCycle:
     """Reference cycle on a mesh with errors of REFERENCE_ACCURACY.
 
-    period: in tau2. tip_y_max: largest y of the tip in L.
+    orbit: the cycle. period: in tau2. tip_y_max: largest y of the tip in L.
     """
 
     orbit: Orbit

@@ -56,7 +56,7 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunEnd:
-    """Counts and times at the end of a run."""
+    """Counts and times at the end of a run. ranks: number of ranks."""
 
     ranks: int
     requested_points: int

@@ -32,6 +32,9 @@ from .contribution import RunContribution
 class PointWork:
     """Solves the points of a shard of a job, and writes the results into journals next to the result file
     `output`.
+
+    team: all ranks. solver: solver of the points. plan: plan of the result file. stop: stop request of this
+    process.
     """
 
     team: Team

@@ -88,7 +88,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
-    """Returns (shares, is_relative). shares: each value of a load divided by the flutter load, None for an
+    """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
     shares = [None if one is None else share_of_flutter(one) for one in _written_values(value)]

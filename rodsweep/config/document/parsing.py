@@ -101,8 +101,8 @@ class _PlainDataParser(Parser):
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
-    """Raises InputError for a YAML scalar that is too long or not printable, a merge key, or an overflowing
-    number."""
+    """Raises InputError for a YAML scalar that is too long or has characters that cannot be printed, for a
+    merge key (<<), and for a number too large for a float."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
         raise InputError(

@@ -37,7 +37,11 @@ number of nodes per shape."""
 
 
 class BeatingPicture:
-    """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`."""
+    """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`. The
+    attributes `..._source` are Bokeh data sources: `shapes` of the cycle, `motion` after a release, `reached`
+    shapes of the cycle that the motion approaches, the drawn `arm`, the `bent` arm that the user drags, the
+    `path` of the tip, the position of the mouse (`grip`).
+    """
 
     def __init__(self) -> None:
         figure = new_figure(

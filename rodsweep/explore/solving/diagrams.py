@@ -195,7 +195,7 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
 
 def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` over a second
-    parameter.
+    parameter. Beyond the end of a row's search, and on rows without a search, the count is UNKNOWN_COUNT.
 
     values: second parameter, (rows,). name: name of the variable with the loads at the thresholds. largest:
     largest load of the diagram.

@@ -62,8 +62,8 @@ def _style_context(look: FigureLook) -> AbstractContextManager[None]:
 class FigureChoices(TypedDict, total=False):
     """Options that choose the content of a figure.
 
-    roots: choice of roots in a figure of spectra, see ROOTS. what: kind of figure, see KINDS. points: numbers
-    of the drawn points, from 1.
+    roots: choice of roots in a figure of spectra, one of ROOT_CHOICES. what: kind of figure, one of
+    FIGURE_KINDS. points: numbers of the drawn points, from 1.
     """
 
     roots: str | None

@@ -174,8 +174,8 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite values.
-    line, row: parameters along a row, and constant on a row.
+    """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
+    parameter. line, row: parameters along a row, and constant on a row.
     """
     x = view.variables[line]
     y = view.parameter_values[row]

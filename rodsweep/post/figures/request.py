@@ -67,8 +67,8 @@ class FigureLook:
         return self.width_in_inches is not None and self.width_in_inches < NARROW_WIDTH
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-        """Scales a figure to the width `width_in_inches` and lays out the figure, see `fitting.fit`.
-        min_aspect: smallest ratio of height to width of a panel.
+        """Scales a figure to the width `width_in_inches`, if given, and lays out the figure, see
+        `fit_layout`. min_aspect: smallest ratio of height to width of a panel.
         """
         if self.width_in_inches is not None:
             across, down = figure.get_size_inches()
@@ -97,8 +97,8 @@ def _inches(width: str) -> float:
 
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
-    """Result files to draw, output file, and options of `rodsweep plot` (roots, what, points: see
-    `FigureChoices`).
+    """Result files `views` to draw, output file, and options of `rodsweep plot` (roots, what, points: see
+    `FigureChoices`; look: appearance).
     """
 
     views: Sequence[View]

@@ -45,7 +45,7 @@ class Plan:
     attributes: dict[str, Any]
     """Attributes of the file, in addition to the attributes that every result file has."""
     flags: tuple[tuple[int, str], ...]
-    """(value, name) of every status except MISSING."""
+    """(value, name) of every status except MISSING_STATUS."""
     quantities: tuple[FilledVariable, ...] = ()
     """Quantities of an arm, with values: axes of a grid over these quantities, or additional coordinates of
     the points."""

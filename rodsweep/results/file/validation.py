@@ -42,7 +42,7 @@ class IncompleteFile(InputError):
 
 @contextmanager
 def damage_refusals(path: Path) -> Iterator[None]:
-    """Context that turns the exceptions DAMAGES, for a damaged or foreign file, into IncompleteFile."""
+    """Context that turns DAMAGE_EXCEPTIONS, which a damaged or foreign file raises, into IncompleteFile."""
     try:
         yield
     except DAMAGE_EXCEPTIONS as error:
@@ -60,7 +60,8 @@ def one_line_message(error: Exception) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ResultHeader:
-    """Description of a complete result file.
+    """Description of a complete result file at `path`. attributes: attributes of the file. layout: its
+    variables.
 
     config: the resolved config. fingerprint: of config and points. points: number of points.
     """
@@ -109,7 +110,7 @@ def refuse_absent(path: Path) -> None:
 
 
 def header_of(path: Path, file: h5py.File, check_content: bool = True) -> ResultHeader:
-    """Header of an open file; raises one of DAMAGES unless the file is a rodsweep result.
+    """Header of an open file; raises one of DAMAGE_EXCEPTIONS unless the file is a rodsweep result.
 
     check_content: whether the content is compared with the seal. Raises InputError for a format that this
     version does not read.
@@ -154,7 +155,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
-    """Raises one of the exceptions DAMAGES unless the file has the variables of a layout.
+    """Raises one of DAMAGE_EXCEPTIONS unless the file has the variables of a layout.
 
     Every variable must be contiguous and have the type and shape of the layout.
     """

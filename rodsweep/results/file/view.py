@@ -31,6 +31,7 @@ class FileVariables(Mapping[str, np.ndarray]):
         self.file = file
         self.recent = recent
         self.values_read: dict[str, np.ndarray] = {}
+        """Arrays that were already read, by name of the variable."""
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.values_read:
@@ -54,7 +55,9 @@ class FileVariables(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Contents of a result file and its journals: attributes, and variables as NumPy arrays."""
+    """Contents of a result file and its journals. path: the file. attributes: its attributes. variables: its
+    variables as NumPy arrays, by name.
+    """
 
     path: Path
     attributes: dict[str, Any]

@@ -66,8 +66,8 @@ OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) |
 
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
-    """Returns ((line, row), number of values by parameter) for a resolved config. line: parameter that varies
-    along each row. row: parameter that differs between rows.
+    """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
+    that varies along each row. row: name of the parameter that differs between rows.
     """
     axes = config["parameters"]
     names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)

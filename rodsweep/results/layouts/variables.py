@@ -49,7 +49,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """Description of a variable of a result file.
+    """Description of a variable of a result file, with its name, unit and long name.
 
     dtype: NumPy type. fill: value at missing points. extra: dimensions that follow the dimensions of the
     points.

@@ -43,12 +43,14 @@ class Journal:
 
     def __init__(self, directory: Path, rank: int, layout: Layout, fingerprint: str):
         self.record = np.zeros((), layout.record_dtype)
+        """Record of a point, of the layout's NumPy type, reused for every point."""
         self.variable_names = tuple(variable.name for variable in layout.variables)
         self.directory = directory
         self.name = f"rank-{rank:06d}-{os.getpid()}"
         self._create()
         self._write(_journal_header(fingerprint))
         self.header_size = len(_journal_header(fingerprint))
+        """Length of the header of the file, in bytes."""
 
     def append(self, index: int, values: dict, reasons: Sequence[str] = ()) -> None:
         """Writes the record of the finished point at a flat index; values: every variable by name.

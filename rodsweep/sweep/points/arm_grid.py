@@ -114,7 +114,7 @@ def _unit_load_forces(
 def _unit_load_force(
     section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterSearch
 ) -> FlutterForce:
-    """Dimensionless force F of a unit load on an arm; UNCOVERED if `arm` is None or has no load.
+    """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load.
 
     The unit load is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces
     the arm's taper unless None.

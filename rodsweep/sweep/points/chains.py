@@ -93,7 +93,11 @@ class ChainedWork:
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints."""
+    """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints.
+
+    work: the chains. missing: flat indices of the missing points. checkpoints: store of solver states. stop:
+    a stop request ends the chain after the present point.
+    """
 
     work: ChainedWork
     missing: IndexSet
@@ -102,9 +106,11 @@ class ChainSolver:
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
         """Yields (flat index, outcome) of each missing point of a chain; ends early after a stop request.
+        Points that are not missing are solved too, from the checkpoint on, because later points start from
+        them.
 
-        The caller stores the outcome before the state is stored. A kill in between costs a second solve of
-        the point; in the reverse order the point could be lost.
+        The caller stores an outcome before the state of the chain after this point is stored. A kill in
+        between costs a second solve of the point; in the reverse order the point could be lost.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)

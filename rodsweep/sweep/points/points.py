@@ -118,7 +118,7 @@ class Points:
     def rod(self, index: int, **beside: float) -> Rod:
         """Rod of the point at a flat index; raises Crushed.
 
-        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL.
+        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL_VALUES.
         """
         parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))

@@ -122,8 +122,9 @@ def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -
 class StretchSolver:
     """Function from the number of a stretch to the results of its missing points.
 
-    solve: function from the flat index of a point that could not be solved together with its stretch to the
-    outcome of the point.
+    stretches: all stretches of the grid. solve_stretch: solves the points of a stretch together. solve:
+    solves a point, given its flat index, that could not be solved together with its stretch. missing: flat
+    indices of the missing points.
     """
 
     stretches: Stretches

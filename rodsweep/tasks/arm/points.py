@@ -55,7 +55,9 @@ class NoRodStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class OutcomeWithoutRod:
-    """Outcome of a point of an arm to which the rod model does not apply."""
+    """Outcome of a point of an arm to which the rod model does not apply. status: reason. message: further
+    text on the reason, or empty.
+    """
 
     status: NoRodStatus
     message: str = ""
@@ -125,7 +127,9 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
 
 @dataclass(slots=True)
 class _OutcomeCache:
-    """Cache of the outcomes of a rank's latest solves. most: maximum number of outcomes."""
+    """Cache of the outcomes of a rank's latest solves. max_outcomes: maximum number of outcomes. outcomes:
+    cached outcomes by key, the least recently used first.
+    """
 
     max_outcomes: int
     outcomes: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
@@ -148,8 +152,9 @@ class SkippingSolver:
     """A solver that skips the points to which the rod model does not apply, and gives these points fill
     values.
 
-    inner: solver of the points with a rod. coverage: SLENDER for points with a rod, else a value of
-    `NoRodStatus`, (points,). failures: additional messages by flat index of the point.
+    rod_solver: solver of the points with a rod. coverage: SLENDER for points with a rod, else a value of
+    `NoRodStatus`, (points,). failures: additional messages by flat index of the point. layout: variables of a
+    point.
     """
 
     rod_solver: Solver

@@ -145,6 +145,7 @@ class ArmValidity:
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
         self.arm_by_number = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
+        """Function from a number to the arm with this number; caches the latest arms."""
 
     def variables_of_points(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
         """The variables of VALIDITY for one point, or for n points of one arm, (n,).
@@ -214,10 +215,9 @@ class ArmValidity:
         return np.asarray(F) * (arm.k1 / own)
 
     def _equivalent_base_force(self, F: Array, index: int | NDArray[np.int64]) -> Array:
-        """The force that would compress the base as much as F compresses the weakest section.
-
-        NaN for rubber, whose constitutive law includes large compression. F, index: forces, and indices of
-        their points, as in `variables_of_points`.
+        """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
+        whose constitutive law includes large compression. F, index: forces, and indices of their points, as
+        in `variables_of_points`.
         """
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:

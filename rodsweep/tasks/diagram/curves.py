@@ -63,7 +63,7 @@ class DiagramCurves:
 
     def initial_data(self, items: "SpecialBoundaries", chosen: Sequence[int]) -> "dict[int, Any]":
         """Special points cached on this rank, by number of the row, for the rows on which the half curves
-        `items_to_solve` start.
+        numbered `chosen` start. items: all half curves.
         """
         rows = {items.row_of(item) for item in chosen}
         return {row: self.special_points_by_row[row] for row in rows if row in self.special_points_by_row}

@@ -28,9 +28,10 @@ MAX_POINTS_IN_MEMORY = 1 << 13
 class ForceLines:
     """Lines of points along F in a file; all lines have the same forces.
 
-    names: parameters other than F, among them `taper` where a config says `taper: 1`. fixed: values of these
-    parameters on each line, (lines, names). F: forces, increasing, (n,). eigenvalues: in 1/tau2, leading
-    first, (lines, n, modes). unstable: number of modes with positive growth rate, -1 if unknown, (lines, n).
+    names: parameters other than F, among them `taper` where a config says `taper: 1`. fixed_values: values of
+    these parameters on each line, (lines, names). F: forces, increasing, (n,). eigenvalues: in 1/tau2,
+    leading first, (lines, n, modes). unstable_counts: number of modes with positive growth rate, -1 if
+    unknown, (lines, n).
     """
 
     names: tuple[str, ...]

@@ -34,9 +34,12 @@ class HopfLine:
     start: float
     stop: float
     build: Build = STANDARD
+    """Constitutive law and profile of all rods on the line."""
 
     def hopf_points(self) -> "Transitions | None":
-        """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""
+        """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
+        all rods on such a line are crushed, or if the search fails.
+        """
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
         from ...solve.changes.unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS

@@ -16,7 +16,8 @@ def parameters_text(values: Mapping[str, float]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FailureReasons:
-    """Distinct reasons why points failed, each with the first point that failed for this reason.
+    """Distinct reasons why points failed, each with the first point that failed for this reason; at most
+    MAX_FAILURE_REASONS.
 
     point_text: function from the flat index of a point to a text with its parameters. examples: text with
     parameters, status and message, by the reason with all numbers replaced.
@@ -26,8 +27,8 @@ class FailureReasons:
     examples: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: Indices, result: Any) -> list[str]:
-        """Adds the reason why a point failed, if the reason is new; returns a list with this example, or an
-        empty list.
+        """Adds the reason why a point failed; returns a list with this example, or an empty list if the
+        reason is known, the list of reasons is full, or no point failed.
 
         index, result: flat index and outcome of one point, or flat indices, (n,), and result of a stretch, of
         which no point failed.

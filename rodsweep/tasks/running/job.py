@@ -42,6 +42,7 @@ class Job:
     """A validated config with its points, its task and the layout of its results."""
 
     path: Path
+    """Path of the config file; for a call in Python, a path with the name of the task."""
     config: Config
     source: str | dict[str, Any]
     """The config as the user wrote it: the text of a YAML file, or the tree of keys of a call in Python."""
@@ -127,7 +128,7 @@ def job_of_config(
 
     source: the config as the user wrote it. flutter: flutter forces of rods with a load relative to flutter;
     None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
-    into a file.
+    into a file, or if the results of one point exceed MAX_RECORD_BYTES.
     """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_PER_VALUE > machine_memory():

@@ -42,7 +42,9 @@ the solver."""
 
 @dataclass(frozen=True, slots=True)
 class RecordedOutcome:
-    """Outcome of a point with the values of all variables of the layout by name."""
+    """Outcome of a point that is ready to be stored. status, message: as in the solver's outcome. values: all
+    variables of the layout by name.
+    """
 
     status: PointStatus
     message: str

@@ -33,8 +33,8 @@ the option `samples`."""
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """Limit cycle or transient at one point of a result file. values: variables in `units`, by name. period:
-    NaN if there is no cycle.
+    """Limit cycle or transient at one point of a result file. parameters: of the point, by name. values:
+    variables in `units`, by name. period: NaN if there is no cycle.
     """
 
     number: int
@@ -104,6 +104,7 @@ class CycleSelection:
     """Cycles that one figure shows."""
 
     cycles: list[StoredCycle]
+    """The cycles, at most MAX_CYCLES."""
     title: str
     """Title of the file, and text of the parameters that all cycles share."""
     left_out: str

@@ -46,6 +46,7 @@ class CycleUnits:
     energy: Factor = 1.0
     power: Factor = 1.0
     in_si: bool = False
+    """Whether the units are SI units, with prefixes."""
     names: tuple[str, str, str, str] = ("L", r"$\tau_2$", "", "")
     """Names of the units of length, time, energy and power, as TeX."""
 

@@ -81,8 +81,8 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
 
 
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
-    """Choice of the roots along lines of spectra, one of ROOTS: the user's choice `asked`, or else "smallest"
-    or "rightmost", whichever gives fewer gaps.
+    """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `asked`, or else
+    "smallest" or "rightmost", whichever gives fewer gaps.
 
     If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
     one root, the choice is "all".

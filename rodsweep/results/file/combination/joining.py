@@ -42,7 +42,9 @@ PlanMaker = Callable[[Config, Points], Plan]
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """Plan of the joined file, its source files, and for each source the map to the points of the plan."""
+    """Plan of the joined file. sources: headers of the source files. point_maps: for each source, the map
+    from its points to the points of the plan.
+    """
 
     plan: Plan
     sources: Sequence[ResultHeader]

@@ -17,10 +17,11 @@ from .square_root import SquareRootLaw, square_root_laws
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Limit cycles at points that differ in one parameter x, in the order of the file.
+    """Limit cycles of the file `view` at points that differ in one parameter x, in the order of the file.
 
     Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. amplitude_y: largest y of the
-    tip. Unknown amplitudes are NaN.
+    tip. Amplitudes, period and power of points without a cycle are NaN, but the amplitudes of a straight rod
+    0.
     """
 
     view: View
