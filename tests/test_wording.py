@@ -7,7 +7,7 @@ from rodsweep.post.summary.ranges import (
     error_text,
     number_with_error,
     ranges_text,
-    rounded,
+    rounded_text,
     span_text,
     stated_error,
 )
@@ -73,7 +73,7 @@ def test_a_number_and_its_error_contain_the_true_number():
         text, _, stated = number_with_error(value, error).partition(" (+- ")
         assert abs(float(text) - true) <= float(stated.rstrip(")")) * (1 + 1e-12) + 1e-15 * abs(value)
         assert stated_error(value, error)[0] == text
-        end = rounded(value, error)
+        end = rounded_text(value, error)
         size = abs(float(end)) or abs(value)
         assert abs(float(end) - true) <= 1.001 * 10.0 ** np.ceil(np.log10(2 * error)) + 1e-5 * size
 

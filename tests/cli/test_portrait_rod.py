@@ -42,7 +42,7 @@ def test_an_arm_in_segments_has_the_profile_of_its_config():
     found = rod_of_options({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
     build = PortraitRequest(rod=found).job_of_task("thresholds", {}).config.build
     assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
-    assert found.words == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
+    assert found.description == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
 
 
 def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
@@ -51,7 +51,7 @@ def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
     found = rod_of_options({**ROD, "taper": 0.9}, {}, material)
     assert found.parameters == {**ROD, "gamma1": 1.0, "taper": 0.9}
     assert found.material == {"law": "neo_hookean", "profile": {"u": [0, 1], "k3": [1, 0.5]}}
-    assert found.words.endswith("taper = 0.9, law neo_hookean, a profile along its length")
+    assert found.description.endswith("taper = 0.9, law neo_hookean, a profile along its length")
 
 
 @pytest.mark.parametrize(

@@ -116,9 +116,9 @@ class Answer:
             raise AttributeError(name)
         tables = self._tables
         if name in self.lists:
-            columns = tables.items(name)
+            columns = tables.list_columns(name)
             return frame_of(columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None)
-        for variable in tables.contents.of_points:
+        for variable in tables.contents.point_variables:
             if variable.name == name:
                 return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
         for each, variables in tables.contents.lists.items():
@@ -137,7 +137,7 @@ class Answer:
         table: name of the list. name: name of the variable or coordinate.
         """
         dimensions = self._tables.contents.dimensions(table)
-        (column,) = (column for column in self._tables.items(table) if column.name == name)
+        (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
         lacks_counts = column.values.dtype.kind in "iu" and column.absent.any() and not column.words
@@ -173,11 +173,13 @@ class Answer:
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
-        own = [c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.given]
+        own = [
+            c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.is_input
+        ]
         own.sort(key=_is_dimensionless)
         lists = {}
         for name in self.lists:
-            number, *others = tables.items(name)
+            number, *others = tables.list_columns(name)
             lists[name] = (number, *sorted(others, key=_is_dimensionless))
         if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}

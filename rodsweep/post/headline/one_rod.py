@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
-from ..summary.ranges import error_text, number_and_error, rounded
+from ..summary.ranges import error_text, number_and_error, rounded_text
 from ..tables import Tables
 from ..tables.columns import Column
 from ..tables.contents import POINTS
@@ -61,7 +61,7 @@ class ColumnTexts:
         if column.is_boolean:
             return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
         if column.words or column.values.dtype.kind != "f":
-            return [(text, "") for text in column.text()]
+            return [(text, "") for text in column.texts()]
         if column.is_estimate:
             stated = self._values[name] + self._rounding(name)
             texts = (error_text(float(value)) if value else "0" for value in stated)
@@ -92,7 +92,7 @@ class ColumnTexts:
         column = self.columns[name]
         value = float(self._values[name][row])
         error = float(np.nan_to_num(self.absolute_error(name)[row]))
-        return f"{rounded(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
+        return f"{rounded_text(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
 
 
 FIRST_THRESHOLD_KINDS = ("onset", "hopf", "restabilization")
@@ -110,9 +110,9 @@ class OneRod:
         self.view = view
         self.tables = Tables(view)
         self.si_names = _si_variable_names(view)
-        own = [column for column in self.tables.table(POINTS).columns if not column.given]
+        own = [column for column in self.tables.table(POINTS).columns if not column.is_input]
         self.list_texts: dict[str, ColumnTexts] = {
-            name: ColumnTexts(self.tables.items(name), self.si_names)
+            name: ColumnTexts(self.tables.list_columns(name), self.si_names)
             for name in self.tables.contents.tables[1:]
         }
         self.point_texts = ColumnTexts(own, self.si_names, self._threshold_errors())
@@ -158,7 +158,7 @@ class OneRod:
 
     def words(self, table: str, name: str) -> list[str]:
         """Words in the column `name` of the table `table`, one for each row."""
-        return self.list_texts[table].columns[name].text()
+        return self.list_texts[table].columns[name].texts()
 
 
 def _si_variable_names(view: View) -> dict[str, str]:

@@ -195,7 +195,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
         ends = length * np.array([-0.1, 1 + ARROW_LENGTH])
         axes.set(xlim=ends, ylim=(-length * reach, length * reach), aspect="equal")
-        axes.set(xlabel=units.along("x"), ylabel=units.along("y") if axes is panels[0] else "")
+        axes.set(xlabel=units.axis_label("x"), ylabel=units.axis_label("y") if axes is panels[0] else "")
         axes.tick_params(labelleft=axes is panels[0])
 
 

@@ -63,14 +63,18 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     a = view.attributes
     return Summary(
         answer=_answer_lines(view, done, lines),
-        trust=[*_unfinished_lines(view, int((~done).sum()), noun), *lines.trust, *_failure_sentences(view)],
+        reliability=[
+            *_unfinished_lines(view, int((~done).sum()), noun),
+            *lines.reliability,
+            *_failure_sentences(view),
+        ],
         statuses=TextTable(
             ("status", plural(noun), "meaning"), tuple(_status_rows(view, status, every_status))
         ),
         details=lines.details,
         axes=_axes_table(view),
         numbers=lines.numbers,
-        origin=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
+        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
     )
 
 
@@ -89,10 +93,10 @@ def show_summary(view: View, every_status: bool = False) -> None:
     if summary.numbers is not None:
         _print_numbers(console, summary.numbers)
     groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
-        ("Reliability", summary.trust, summary.statuses),
+        ("Reliability", summary.reliability, summary.statuses),
         ("Further results", summary.details, None),
         ("Parameters", (), summary.axes),
-        ("Provenance", summary.origin, None),
+        ("Provenance", summary.provenance, None),
     )
     for heading, lines, table in groups:
         if not lines and table is None:
@@ -133,7 +137,7 @@ def _answer_lines(view: View, done: np.ndarray, summary: SummaryLines) -> list[s
     """
     if not view.quantities or not done.any():
         return [*summary.answer]
-    lines = [*arm_answer(view, done), *summary.of_arm, *arm_lines(view, done)]
+    lines = [*arm_answer(view, done), *summary.arm_sentences, *arm_lines(view, done)]
     return [*lines, "", "the rods without dimension:", *summary.answer] if summary.answer else lines
 
 

@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import ParameterRange, RodBranches, StoredBranch, branch_ends, followed_parameter
 from .errors import known_range_text
-from .ranges import number_with_error, ranges_text, rounded, span_text
+from .ranges import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
 
@@ -124,7 +124,7 @@ def _ends_phrase(curve: StoredBranch, along: str) -> str:
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
         return f"{start} to a cycle with h1 = 0, {end}"
-    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
+    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded_text(last.at, last.error)}"
 
 
 def _sizes_text(view: View, done: np.ndarray) -> str:
@@ -160,7 +160,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
             verb = "leads" if len(located) == 1 else "lead"
             yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
-        f"{point_text(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
+        f"{point_text(rod.view, rod.rod)}: branch {number}, at {along} = {rounded_text(end.at, end.error)}"
         for rod, number, curve in curves
         if (end := curve.special[-1]).reason == "no_cycle_found"
     ]

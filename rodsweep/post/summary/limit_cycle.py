@@ -39,11 +39,11 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     v = view.variables
     beats = done & view.has_status("cycle")
     orbit = done & view.has_status(*CYCLE_WORDS)
-    stability, of_arm = _threshold_lines(view)
+    stability, arm_sentences = _threshold_lines(view)
     answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(v, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
-        of_arm.insert(0, outcome_line(view, done, region_of_arms))
-    trust = _proof_lines(view)
+        arm_sentences.insert(0, outcome_line(view, done, region_of_arms))
+    reliability = _proof_lines(view)
     rate, frequency = (known_range_text(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
@@ -58,9 +58,9 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     elif beats.any():
         period, y = (known_range_text(v, name, beats) for name in ("period", "tip_y_max"))
         answer.insert(1, f"period: {period} tau2; largest y of the tip: {y} L")
-        trust.insert(0, _error_line(v, beats))
+        reliability.insert(0, _error_line(v, beats))
     details += _cycle_lines(v, beats) if beats.any() else []
-    return SummaryLines(answer, trust, details, of_arm, numbers)
+    return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
@@ -90,12 +90,14 @@ def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     """
     names = [name for name in LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
-    of_arm = list[str]()
+    arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
-        found, found_of_arm = stability_lines(view, name, StoredChanges(view, name).thresholds_up_to_end)
+        found, found_arm_sentences = stability_lines(
+            view, name, StoredChanges(view, name).thresholds_up_to_end
+        )
         lines += found
-        of_arm += found_of_arm
-    return lines, of_arm
+        arm_sentences += found_arm_sentences
+    return lines, arm_sentences
 
 
 def _proof_lines(view: View) -> list[str]:

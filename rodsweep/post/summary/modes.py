@@ -24,21 +24,21 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
         answer = [count_line(view)]
-        trust = []
+        reliability = []
         details = unknowns
-        of_arm = list[str]()
+        arm_sentences = list[str]()
     else:
-        lines, how, of_arm = threshold_lines(view)
+        lines, how, arm_sentences = threshold_lines(view)
         answer = [stable_line(view, done), *lines]
-        trust = [*error_lines(view, done), stability_line(view, done), *how]
+        reliability = [*error_lines(view, done), stability_line(view, done), *how]
         details = [leading_line(view, done), *unknowns]
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
         unknown = int((~np.isfinite(errors)).any(axis=-1).sum())
         where = f"; not known at {count_of_total(unknown, len(errors), 'point')}" if unknown else ""
-        trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
+        reliability.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
     numbers = eigenvalue_table(view) if done.size == 1 else None
-    return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm, numbers)
+    return SummaryLines([*answer, *growth_lines(view, done)], reliability, details, arm_sentences, numbers)
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:

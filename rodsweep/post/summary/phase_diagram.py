@@ -37,14 +37,14 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     answer = [*class_share_lines(v["class"][done]), *lines_about_rows(view, done, line, row)]
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
-    trust = search_lines(view, done, "row")
+    reliability = search_lines(view, done, "row")
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
-        trust += [*agreement_lines(view, line), *cut_lines(view, line, row)]
+        reliability += [*agreement_lines(view, line), *cut_lines(view, line, row)]
     if "curve_criticality" in v:
         details += criticality_lines(view)
-    return SummaryLines(answer, trust, details, crossings_of_arms(view, done))
+    return SummaryLines(answer, reliability, details, crossings_of_arms(view, done))
 
 
 def count_lines(found: np.ndarray) -> list[str]:

@@ -28,10 +28,10 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of spectra. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
         return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
-    lines, how, of_arm = threshold_lines(view)
-    trust = [*error_lines(view, done), stability_line(view, done), *how]
+    lines, how, arm_sentences = threshold_lines(view)
+    reliability = [*error_lines(view, done), stability_line(view, done), *how]
     details = [leading_line(view, done), *unknowns_lines(view, done)]
-    return SummaryLines([stable_line(view, done), *lines], trust, details, of_arm)
+    return SummaryLines([stable_line(view, done), *lines], reliability, details, arm_sentences)
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
@@ -64,9 +64,9 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
     empty lists if F does not vary.
     """
-    lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    lines, arm_sentences = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
     how = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
-    return lines, [f"thresholds: {how}"] if lines else [], of_arm
+    return lines, [f"thresholds: {how}"] if lines else [], arm_sentences
 
 
 def eigenvalue_table(view: View) -> TextTable | None:

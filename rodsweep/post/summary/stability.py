@@ -46,15 +46,15 @@ def stability_lines(
     names = [", ".join(f"{n} = {line.parameters[n]:.6g}" for n in varied) for line in lines]
     along = [found_on(line) for line in lines]
     texts = list[str]()
-    of_arm = list[str]()
+    arm_sentences = list[str]()
     for kind, words in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions_text(found, names, name)}")
             every = [(point, lines[i].indices) for i, points in found.items() for point in points]
             located = [(point, at) for point, at in every if isinstance(point, LocatedChange)]
-            of_arm += thresholds_of_arm(view, kind, located) if name == "F" else []
-    return texts, of_arm
+            arm_sentences += thresholds_of_arm(view, kind, located) if name == "F" else []
+    return texts, arm_sentences
 
 
 def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:

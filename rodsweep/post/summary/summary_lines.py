@@ -28,11 +28,11 @@ class SummaryLines:
 
     answer: Sequence[str]
     """Lines with the main results of the task."""
-    trust: Sequence[str] = ()
+    reliability: Sequence[str] = ()
     """Lines about accuracy and proved completeness."""
     details: Sequence[str] = ()
     """Lines about further results."""
-    of_arm: Sequence[str] = ()
+    arm_sentences: Sequence[str] = ()
     """Sentences of the answer in the units of an arm."""
     numbers: TextTable | None = None
     """Table of numbers below the answer."""
@@ -44,7 +44,7 @@ class Summary:
 
     answer: Sequence[str]
     """Lines with the main results of the task."""
-    trust: Sequence[str]
+    reliability: Sequence[str]
     """Lines about unfinished points, accuracy and proved completeness."""
     statuses: TextTable
     """Number of points with each status, and the meaning of the status."""
@@ -52,7 +52,7 @@ class Summary:
     """Lines about further results."""
     axes: TextTable
     """Values or ranges of the parameters."""
-    origin: Sequence[str]
+    provenance: Sequence[str]
     """Lines about computing time, MPI ranks, dates and versions."""
     numbers: TextTable | None = None
     """Table of numbers below the answer."""

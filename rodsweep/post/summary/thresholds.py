@@ -9,7 +9,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted, plural
 from .arm.arm import crossings_of_arm
-from .ranges import error_text, number_and_error, rounded, span_text
+from .ranges import error_text, number_and_error, rounded_text, span_text
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
 from .threshold_trends import monotony_lines
 
@@ -34,16 +34,16 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of thresholds. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
         details = cost_lines(view, done)
-        of_arm = crossings_of_arm(view)
+        arm_sentences = crossings_of_arm(view)
         return SummaryLines(
-            crossing_lines(view), completeness_lines(view), details, of_arm, crossing_table(view)
+            crossing_lines(view), completeness_lines(view), details, arm_sentences, crossing_table(view)
         )
     answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
-    trust = [
+    reliability = [
         *search_lines(view, done, "rod"),
         f"searched up to F = {span_text(view.variables['F_end'][done])}",
     ]
-    return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
+    return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, done)])
 
 
 def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
@@ -64,7 +64,7 @@ def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
     low = int(np.nanargmin(F))
     high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
-    places = [f"{rounded(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
+    places = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
     where = (
         f"all {counted(rods, 'rod')}"

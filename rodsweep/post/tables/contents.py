@@ -60,13 +60,14 @@ DEFAULT_TABLE = {
 class Contents:
     """Variables of a result, divided into tables.
 
-    of_points: variables with one value per point, which are columns of all tables. lists: variables of each
-    list, by name of the table. joint: names of lists that belong to the whole file, not to single points.
+    point_variables: variables with one value per point, which are columns of all tables. lists: variables of
+    each list, by name of the table. joint_lists: names of lists that belong to the whole file, not to single
+    points.
     """
 
-    of_points: tuple[Variable, ...]
+    point_variables: tuple[Variable, ...]
     lists: dict[str, tuple[Variable, ...]]
-    joint: frozenset[str]
+    joint_lists: frozenset[str]
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -129,7 +130,7 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
         raise InputError(
             f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; name columns of one table"
         )
-    every = (*(v.name for v in contents.of_points), *holding, *view.point_columns, *view.quantities)
+    every = (*(v.name for v in contents.point_variables), *holding, *view.point_columns, *view.quantities)
     refuse_unknown_columns(view.path, columns, every, "")
     if lists:
         return lists[0]

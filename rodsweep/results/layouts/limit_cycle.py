@@ -29,8 +29,8 @@ from .variables import (
 POWER_UNIT = "k3/(L tau2)"
 """Dimensionless unit of a power."""
 STORED_MULTIPLIERS = 6
-"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.length`; NaN stands for a
-modulus below its `min_modulus`."""
+"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST_SETTINGS.length`; NaN stands
+for a modulus below its `min_modulus`."""
 CYCLE_WORDS = ("cycle", "unstable")
 """Names of the statuses of points with a limit cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))

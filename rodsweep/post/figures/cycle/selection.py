@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
-from ...summary.ranges import rounded
+from ...summary.ranges import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
 from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
@@ -74,7 +74,7 @@ class StoredCycle:
         or empty.
         """
         error = float(self.values["period_error"])
-        return rf"${symbol}{{=}}$ ${power_in_tex(rounded(value, abs(value) * error))}\,{unit}$"
+        return rf"${symbol}{{=}}$ ${power_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
 
     @property
     def tip(self) -> tuple[Array, Array]:
@@ -94,7 +94,7 @@ class StoredCycle:
 
 
 def power_in_tex(number: str) -> str:
-    """TeX for a number written by `rounded`, with the power of ten as a superscript."""
+    """TeX for a number written by `rounded_text`, with the power of ten as a superscript."""
     mantissa, _, power = number.partition("e")
     return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
 

@@ -51,33 +51,41 @@ def _validity_lines(view: View, done: np.ndarray) -> Lines:
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     if not inside.any():
-        return [caveat, *(f"if the model applied: {line}" for line in LINES_OF[view.task](view, rods))]
+        return [
+            caveat,
+            *(f"if the model applied: {line}" for line in ANSWER_LINES_BY_TASK[view.task](view, rods)),
+        ]
     if (inside != rods).any():
-        return [caveat, *(f"where the model applies: {line}" for line in LINES_OF[view.task](view, inside))]
-    answer = LINES_OF[view.task](view, rods)
+        return [
+            caveat,
+            *(f"where the model applies: {line}" for line in ANSWER_LINES_BY_TASK[view.task](view, inside)),
+        ]
+    answer = ANSWER_LINES_BY_TASK[view.task](view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def unit_range(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+def answer_range_text(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit that the user typed.
     errors: absolute errors, of the shape of `values`, or 0.
     """
     return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
-def load_spanned(view: View, loads: np.ndarray) -> str:
+def load_range_text(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return unit_range(view, loads, UNITS[load_kind(view)][0])
+    return answer_range_text(view, loads, UNITS[load_kind(view)][0])
 
 
-def _add_failed(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
+def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
     """Function from (view, mask of the points with a rod) to the answer's lines, with a line on failed
     searches. answer: function from (view, mask of the solved points) to (answer, further lines).
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
         failed = rods & view.has_status(FAILED_STATUS)
-        unsolved = [f"not known{_share_clause(failed, rods)}: the search failed"] if failed.any() else []
+        unsolved = (
+            [f"not known{_point_count_clause(failed, rods)}: the search failed"] if failed.any() else []
+        )
         if (failed == rods).all():
             return unsolved
         first, further = answer(view, rods & ~failed)
@@ -96,10 +104,10 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
-        lines.append(f"a disturbance swings as it dies away from {load_spanned(view, onset)} on")
+        lines.append(f"a disturbance swings as it dies away from {load_range_text(view, onset)} on")
     if len(hopf) > 1 and np.isfinite(back).any():
         points = count_of_total(int(np.isfinite(back).sum()), len(back), "point")
-        lines.append(f"is straight again at {points}, from {load_spanned(view, back)} on")
+        lines.append(f"is straight again at {points}, from {load_range_text(view, back)} on")
     return _flutter_lines(view, hopf, end, rate), lines
 
 
@@ -129,7 +137,7 @@ def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, loads, end, frequency), []
 
 
-def _share_clause(some: np.ndarray, rods: np.ndarray) -> str:
+def _point_count_clause(some: np.ndarray, rods: np.ndarray) -> str:
     """Clause on the number of points in `rods` that are also in `some` (masks); empty if `rods` has one
     point.
     """
@@ -139,11 +147,12 @@ def _share_clause(some: np.ndarray, rods: np.ndarray) -> str:
 def _flutter_lines(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
     """Lines about flutter. hopf: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
     flutters = np.isfinite(hopf)
-    searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
+    searched = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
         return [f"does not flutter {searched}".rstrip()]
     of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
-    lines = [f"flutters{of} from {load_spanned(view, hopf)}; beats at {unit_range(view, frequency, 'Hz')}"]
+    rate = answer_range_text(view, frequency, "Hz")
+    lines = [f"flutters{of} from {load_range_text(view, hopf)}; beats at {rate}"]
     if not flutters.all():
         stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
         lines.append(stable.rstrip())
@@ -159,13 +168,13 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     cycles = rods & view.has_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
         masks = {words: rods & view.has_status(status) for status, words in NO_CYCLE_WORDS.items()}
-        return [f"{words}{_share_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
+        return [f"{words}{_point_count_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
-        unit_range(view, v[name][beats], unit, errors[name][beats])
+        answer_range_text(view, v[name][beats], unit, errors[name][beats])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
-    motion = f"beats{_share_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
+    motion = f"beats{_point_count_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
     return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
@@ -197,12 +206,14 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     unknown = rods & (count < 0)
     lines = []
     if unstable.any():
-        frequency = unit_range(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        lines = [f"gives way{_share_clause(unstable, rods)}; its leading mode oscillates at {frequency}"]
+        frequency = answer_range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
+        lines = [
+            f"gives way{_point_count_clause(unstable, rods)}; its leading mode oscillates at {frequency}"
+        ]
     elif not unknown.any():
         lines = ["stays straight"]
     if unknown.any():
-        lines.append(f"whether the arm gives way is not known{_share_clause(unknown, rods)}")
+        lines.append(f"whether the arm gives way is not known{_point_count_clause(unknown, rods)}")
     return lines
 
 
@@ -212,8 +223,8 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
-    rate = unit_range(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"beats at {load_spanned(view, loads)}, at {rate}"], []
+    rate = answer_range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
+    return [f"beats at {load_range_text(view, loads)}, at {rate}"], []
 
 
 def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
@@ -238,13 +249,15 @@ def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray,
     return values, frequency
 
 
-LINES_OF: dict[str, Callable[[View, np.ndarray], Lines]] = {
+ANSWER_LINES_BY_TASK: dict[str, Callable[[View, np.ndarray], Lines]] = {
     "spectrum": _mode_lines,
     "modes": _mode_lines,
-    "thresholds": _add_failed(_threshold_lines),
-    "criticality": _add_failed(_crossing_lines),
+    "thresholds": _with_failure_line(_threshold_lines),
+    "criticality": _with_failure_line(_crossing_lines),
     "limit_cycle": _cycle_lines,
-    "branch": _add_failed(_branch_lines),
-    "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _add_failed(_row_lines)(view, rods),
+    "branch": _with_failure_line(_branch_lines),
+    "phase_diagram": lambda view, rods: (
+        [] if "F" in view.parameters else _with_failure_line(_row_lines)(view, rods)
+    ),
 }
 """For each task, the function of the view and a mask of computed points that returns the answer's lines."""

@@ -20,7 +20,7 @@ from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedChange
 from ...tables.rows import quantities_at_points
 from ..errors import absolute_errors, is_known
-from ..ranges import RANGE_DIGITS, rounded, span_text
+from ..ranges import RANGE_DIGITS, rounded_text, span_text
 
 SI_LINE_WIDTH = 80
 """Largest length of a line with variables in SI units, in characters."""
@@ -168,7 +168,7 @@ def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
     finite = values[is_finite]
     known = errors[is_finite]
     if values.ndim > 1 and 1 < finite.size <= FEW_ITEMS:
-        return ", ".join(map(rounded, finite, np.nan_to_num(known)))
+        return ", ".join(map(rounded_text, finite, np.nan_to_num(known)))
     return span_text(finite, known)
 
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ....hopf_points import LocatedChange
-from ....summary.ranges import rounded
+from ....summary.ranges import rounded_text
 from ...style import SYMBOLS
 from .square_root import SquareRootLaw
 
@@ -82,7 +82,7 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
 def _coefficients_text(laws: Sequence[SquareRootLaw]) -> str:
     """Distinct coefficients of the laws as text; the range if there are more than MAX_COEFFICIENTS."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
-    each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
+    each = {law: rounded_text(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
     texts = list(dict.fromkeys(each.values()))
     if len(texts) > MAX_COEFFICIENTS:
         return f"{each[ordered[0]]} to {each[ordered[-1]]}"
