@@ -59,7 +59,7 @@ class FigureLook:
     """Width of the figure, in inches; None for the natural width."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "inches", None if self.width is None else _inches(self.width))
+        object.__setattr__(self, "width_in_inches", None if self.width is None else _inches(self.width))
 
     @property
     def is_narrow(self) -> bool:
