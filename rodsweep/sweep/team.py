@@ -53,7 +53,7 @@ class Team:
         self.wait_for_all()
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
-            raise refusal.on_all_ranks()
+            raise refusal.marked_collective()
         return value
 
     def wait_for_all(self) -> None:
@@ -75,7 +75,7 @@ class Team:
             refusal = error
         refusals = [r for r in self.comm.allgather(refusal) if r is not None]
         if refusals:
-            raise refusals[0].on_all_ranks()
+            raise refusals[0].marked_collective()
 
     def gather(self, value: T) -> list[T] | None:
         """List of the `value` of every rank, in order of ranks, on the first rank; None on other ranks."""

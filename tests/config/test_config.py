@@ -329,7 +329,7 @@ def test_phase_diagram_may_reach_into_the_crushed_rods(tmp_path):
 )
 def test_rows_of_a_phase_diagram_lie_along_the_first_of_its_two_axes(tmp_path, axes, line, row):
     made = job(tmp_path, config("phase_diagram", axes))
-    assert made.config.plane == (line, row)
+    assert made.config.plane_parameters == (line, row)
     assert made.points.names == tuple(name for name in ("F", "k1", "k2", "gamma3") if name != line)
     assert made.points.count == 2
     assert made.points.values(0)[row] != made.points.values(1)[row]
@@ -418,7 +418,7 @@ def test_a_list_may_have_a_column_of_tapers_in_every_task(tmp_path, task):
     assert made.layout.parameters == (*names, "taper")
     assert not made.config.standard
     assert config_from_resolved(made.resolved) == made.config
-    assert job(tmp_path, config_yaml(made.config)).points.identity[-1].tolist() == [0.5, 0.8]
+    assert job(tmp_path, config_yaml(made.config)).points.identifying_arrays[-1].tolist() == [0.5, 0.8]
 
 
 def test_columns_are_those_of_the_header(tmp_path):

@@ -34,7 +34,7 @@ def test_an_arm_that_varies_is_read_again_from_its_file_and_its_text(tmp_path, a
     for other in (again, load_config(tmp_path / "text.yaml")[0]):
         assert other.build == read.build
         assert other.settings_of_results == read.settings_of_results
-        assert other.parameter_names == read.names
+        assert other.parameter_names == read.parameter_names
     assert not read.standard
 
 

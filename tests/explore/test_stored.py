@@ -144,7 +144,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
     page = page_with(
         NoSolvers(), state=state, stored=StoredResults(path, data, state, stored_diagram(data, state))
     )
-    curves = page.contents.diagram.of_cycles.data
+    curves = page.contents.diagram.cycle_curve_source.data
     assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS_COLOUR, "dashed")]
     assert curves["x"][0] == pytest.approx(data["cycle_curve_F"].values)
     words = [item.label.value for item in page.contents.diagram.legend.items]

@@ -118,7 +118,7 @@ def test_every_place_of_the_pointer_bends_the_arm(place):
 def test_the_film_shows_the_shapes_of_a_period():
     page = page_with(ImmediateSolvers(("film",)))
     given = []
-    page.contents.sharing.give_film = given.append
+    page.contents.sharing.save_film = given.append
     page.solve("film")
     run_callbacks(page.document)
     assert len(given) == 1

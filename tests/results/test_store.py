@@ -64,7 +64,7 @@ def record(index, error=1e-12):
 
 
 def journal(store, indices, rank=0, error=1e-12):
-    pages = Journal(store.journals, rank, LAYOUT, store.plan.fingerprint)
+    pages = Journal(store.journal_directory, rank, LAYOUT, store.plan.fingerprint)
     for index in indices:
         pages.append(index, record(index, error))
     pages.close()

@@ -261,7 +261,7 @@ def test_viscosity_is_an_axis_of_times_alone():
     assert ratio.item() == pytest.approx(1000, rel=1e-12)
     other = arm | {"viscosity": ["1.4 mPa s", "2 Pa s"]}
     one, two = (job("thresholds", arm=each, crossings=4) for each in (arm, other))
-    assert not np.array_equal(one.points.identity[0], two.points.identity[0])
+    assert not np.array_equal(one.points.identifying_arrays[0], two.points.identifying_arrays[0])
 
 
 def test_a_parameter_beside_the_arm_is_an_axis_too():

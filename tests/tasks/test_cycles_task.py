@@ -166,7 +166,7 @@ REFUSED = [
 def test_neighbours_follow_each_other_along_the_longest_axis(tmp_path):
     for axes, along in (({}, "F"), ({"k2": "[1, 2, 3]"}, "k2"), ({"gamma1": "[1, 2, 3]"}, "gamma1")):
         job = job_of(tmp_path, config(NEIGHBOUR, **axes))
-        assert job.config.along == along
+        assert job.config.chain_parameter == along
         assert job.task.chains.axis == job.points.names.index(along)
 
 

@@ -66,7 +66,7 @@ def plan_of(job):
         job.points,
         job.layout,
         job.task.coordinates(),
-        job.task.constants,
+        job.task.config_variables,
         job.resolved,
         {"title": "t", "task": job.config.task},
         ((0, "ok"), (5, "failed")),

@@ -198,7 +198,7 @@ def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
 def test_silicone_arm_is_just_below_flutter():
     """A filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it; frequencies as 1/viscosity."""
     rod = arm(viscosity=THICK)
-    flutter = rod.flutter.force(ChangeKind.hopf)
+    flutter = rod.flutter.first_forces(ChangeKind.hopf)
     assert rod.F < flutter.low < flutter.high < 37.695
     assert flutter.for_every_drag
     verdict = rod.report().verdict
@@ -208,9 +208,9 @@ def test_silicone_arm_is_just_below_flutter():
 
 def test_frequency_follows_from_tau2():
     rod = arm()
-    for drag, found in zip(rod.drags, rod.flutter.forces, strict=True):
-        rate = found.first(ChangeKind.hopf).frequency
-        assert found.frequency(ChangeKind.hopf) == pytest.approx(
+    for drag, found in zip(rod.drags, rod.flutter.by_drag, strict=True):
+        rate = found.first_threshold(ChangeKind.hopf).frequency
+        assert found.first_frequency(ChangeKind.hopf) == pytest.approx(
             abs(rate) / (2 * math.pi * rod.tau2_with(drag))
         )
 
@@ -221,7 +221,7 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     from rodsweep.verdict.flutter import SEARCH_REQUEST
 
     rod = arm()
-    flutter = rod.flutter.force(ChangeKind.hopf)
+    flutter = rod.flutter.first_forces(ChangeKind.hopf)
     all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):

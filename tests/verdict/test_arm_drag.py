@@ -48,11 +48,13 @@ def test_thresholds_over_the_drags_are_those_of_the_verdict():
     arm = rs.Arm(**SILICONE)
     assert data.drag.attrs["flag_meanings"].split() == list(DRAGS)
     assert data.drag.values.tolist() == [0, 1, 2, 3, 4]
-    for drag, found in zip(DRAGS, arm.flutter.forces, strict=True):
+    for drag, found in zip(DRAGS, arm.flutter.by_drag, strict=True):
         here = data.sel(drag=DRAGS.index(drag))
-        force = found.force(ChangeKind.hopf) * arm.pressure_scale
+        force = found.first_force(ChangeKind.hopf) * arm.pressure_scale
         assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
-        assert here.frequency_hopf_hz.item() == pytest.approx(found.frequency(ChangeKind.hopf), rel=1e-9)
+        assert here.frequency_hopf_hz.item() == pytest.approx(
+            found.first_frequency(ChangeKind.hopf), rel=1e-9
+        )
         assert here.tau2.item() == arm.replace(drag=drag).tau2
 
 
@@ -132,7 +134,7 @@ def test_a_relative_load_is_one_of_the_arm_as_it_is_built(kind):
     arm = {name: value for name, value in (SILICONE | VARIED[kind]).items() if value is not None}
     given = arm | {"pressure": ["0.9999 of flutter", "1.0001 of flutter"]}
     data = rs.sweep("modes", arm=given, modes=1, nodes=5)
-    flutter = rs.Arm(**arm).flutter.forces[0].force(ChangeKind.hopf)
+    flutter = rs.Arm(**arm).flutter.by_drag[0].first_force(ChangeKind.hopf)
     assert data.F.values.ravel() == pytest.approx([0.9999 * flutter, 1.0001 * flutter], rel=2e-6)
     below, above = data.growth_rate.values.ravel()
     assert below < 0 < above

@@ -105,5 +105,5 @@ class BranchConfig(Config):
                 f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
                 "or give the parameters without an arm"
             )
-        self.parameters.require(self.parameter_names)
+        self.parameters.require_points(self.parameter_names)
         return self

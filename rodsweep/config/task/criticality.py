@@ -46,5 +46,5 @@ class CriticalityConfig(Config):
     @model_validator(mode="after")
     def _refuse_force(self) -> "CriticalityConfig":
         self.refuse_solved_parameter("F", f"finds F itself; remove it and set {self.task}.F_max")
-        self.parameters.require(self.parameter_names)
+        self.parameters.require_points(self.parameter_names)
         return self

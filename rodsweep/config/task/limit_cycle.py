@@ -95,7 +95,7 @@ class LimitCycleConfig(Config):
 
     @model_validator(mode="after")
     def _refuse_unused_keys(self) -> "LimitCycleConfig":
-        self.parameters.require(self.parameter_names)
+        self.parameters.require_points(self.parameter_names)
         self.refuse_options_without_effect()
         arm = self.parameters.arm
         along = self.limit_cycle.along

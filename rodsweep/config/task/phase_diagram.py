@@ -136,7 +136,7 @@ class PhaseDiagramConfig(LinearConfig):
         if self.phase_diagram.curves:
             meant |= {
                 "together": {
-                    "logarithmic": [name for name in self.plane_parameters if axes[name].logarithmic]
+                    "logarithmic": [name for name in self.plane_parameters if axes[name].is_logarithmic]
                 }
             }
         if asked_of_curves:
@@ -171,7 +171,7 @@ class PhaseDiagramConfig(LinearConfig):
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
                 f"{every}"
             )
-        self.parameters.require(LINEAR_PARAMETERS, or_points=False)
+        self.parameters.require_points(LINEAR_PARAMETERS, or_points=False)
         if self.parameters.arm_axes:
             several = next(
                 name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")

@@ -152,7 +152,7 @@ class DiagramCurves:
             name: float(axis.array()[-1 if name in ("k1", "taper") else 0]) for name, axis in axes.items()
         }
         abscissa, ordinate = (
-            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
+            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].is_logarithmic)
             for name, values in ((line, self.task.line_values), (row, finite))
         )
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
