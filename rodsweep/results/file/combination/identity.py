@@ -23,7 +23,7 @@ LONGEST_VALUE = 80
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     """SHA-256 of a resolved config and its points: two runs with equal fingerprints have the same results.
 
-    columns: `Points.identity`, (n,) each. Raises ValueError for an invalid config.
+    columns: `Points.identifying_arrays`, (n,) each. Raises ValueError for an invalid config.
     """
     asked = config_from_resolved(config)
     meant = {"meaning": asked.settings_of_results, "grid": not asked.parameters.is_list}
