@@ -31,9 +31,7 @@ ParameterRange = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch of cycles. The fields are the variables `special_kind`, `special_at` etc. of
-    the result file, with words for `kind` and `reason`.
-    """
+    """Special point of a branch: variables `special_at` etc. of the file; `kind` and `reason` are words."""
 
     kind: str
     at: float
@@ -82,8 +80,7 @@ class StoredBranch:
         return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) up to the first
-        fold.
+        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) to the first fold.
 
         at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are
         skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.
@@ -166,10 +163,8 @@ class RodBranches:
         Both lists are empty if special points of some branch are not stored.
         """
         pieces = [] if self.hidden else self.straight_pieces(ends)
-        stable, unstable = (
-            union_of_ranges((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0)
-        )
-        return stable, unstable
+        stable, unstable = ([(a, b) for a, b, s in pieces if s == kind] for kind in (1, 0))
+        return union_of_ranges(stable), union_of_ranges(unstable)
 
     def straight_pieces(self, ends: ParameterRange) -> list[tuple[float, float, int]]:
         """(low, high, stability) between Hopf points within `ends`: 1 stable, 0 unstable, -1 unknown."""

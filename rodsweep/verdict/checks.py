@@ -29,8 +29,7 @@ USUAL_POISSON = (0.3, 0.5)
 class Check:
     """Check of one neglected effect or one assumption of the model.
 
-    validity: whether the model applies despite the effect. sentence: result of the check, without the prefix
-    of a warning.
+    validity: whether the model applies despite the effect. sentence: result, without the warning's prefix.
     """
 
     validity: Validity

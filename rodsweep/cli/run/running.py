@@ -230,9 +230,7 @@ class _RankRun:
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
-            followed_halves=sum(share.solved_points for share in shares)
-            if joint.is_missing and self.joint
-            else None,
+            followed_halves=sum(s.solved_points for s in shares) if joint.is_missing and self.joint else None,
             stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:

@@ -29,7 +29,7 @@ class LimitCycleOptions(StrictSection):
     """Parameter along which the cycle of a point is the initial guess at the next point, or the quantity of
     the arm that changes only this parameter; `longest`: the parameter with the most values."""
     direction: Literal["up", "down"] = "up"
-    """Whether the parameter `chain_parameter` increases or decreases from a point to the next."""
+    """Whether the parameter `along` increases or decreases from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
     """Number of stored harmonics of the tip's y."""
     samples: Annotated[int, Field(ge=0, le=100_000)] = 0

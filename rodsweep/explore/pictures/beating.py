@@ -129,7 +129,7 @@ class BeatingPicture:
 
     def show_motion(self, found: dict[str, Any]) -> None:
         """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
-        found: result of `motion_source`, and the position `tip`.
+        found: result of `released_motion_answer`, and the position `tip`.
         """
         factor = self.length.factor
         step = found["step"]

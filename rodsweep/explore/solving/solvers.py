@@ -172,7 +172,7 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `question_number` if it is still being solved while a newer question with an equal
+        """Cancels question `number` if it is still being solved while a newer question with an equal
         key waits.
         """
         if number == self.question_number and key in self.waiting:

@@ -42,9 +42,8 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         lines = list(_hopf_lines(of_rod)) or [none]
         lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
         reliability = [_searched_range_line(view, done)]
-        return SummaryLines(
-            lines, reliability, arm_sentences=crossings_of_arm(view), numbers=_hopf_table(of_rod)
-        )
+        numbers = _hopf_table(of_rod)
+        return SummaryLines(lines, reliability, arm_sentences=crossings_of_arm(view), numbers=numbers)
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)

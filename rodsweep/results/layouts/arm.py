@@ -188,25 +188,20 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...
         return ()
     if not points.arm_axes:
         return tuple(
-            _filled_variable_of(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
+            _si_variable(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
     own = points.units | {name: column for name, column in points.columns_by_name.items() if name not in axes}
     return (
-        *(_filled_variable_of(arm, name, values, (name,)) for name, values in axes.items()),
-        *(_filled_variable_of(arm, name, value, ()) for name, value in numbers.items()),
-        *(
-            _filled_variable_of(arm, name, column.reshape(points.shape), tuple(axes))
-            for name, column in own.items()
-        ),
+        *(_si_variable(arm, name, values, (name,)) for name, values in axes.items()),
+        *(_si_variable(arm, name, value, ()) for name, value in numbers.items()),
+        *(_si_variable(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
     )
 
 
-def _filled_variable_of(
-    arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
-) -> FilledVariable:
+def _si_variable(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)

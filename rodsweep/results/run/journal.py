@@ -137,19 +137,14 @@ def delete_matching_files(directory: Path, pattern: str) -> None:
 
 def journals_with_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
-    return [
-        path
-        for path in sorted(directory.glob(JOURNALS))
-        if _header_of_journal_with_points(path) == _journal_header(fingerprint)
-    ]
+    known = _journal_header(fingerprint)
+    return [path for path in sorted(directory.glob(JOURNALS)) if _header_if_points(path) == known]
 
 
 def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
     known = (b"", _journal_header(fingerprint))
-    return [
-        path for path in sorted(directory.glob(JOURNALS)) if _header_of_journal_with_points(path) not in known
-    ]
+    return [path for path in sorted(directory.glob(JOURNALS)) if _header_if_points(path) not in known]
 
 
 def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
@@ -179,7 +174,7 @@ def _journal_header(fingerprint: str) -> bytes:
     return JOURNAL_HEAD + fingerprint.encode() + b"\n"
 
 
-def _header_of_journal_with_points(path: Path) -> bytes:
+def _header_if_points(path: Path) -> bytes:
     """First two lines of a journal that has points; empty for any other file."""
     if not path.is_file():
         return b""

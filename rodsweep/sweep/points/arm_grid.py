@@ -42,9 +42,7 @@ def grid_of_arms(
     of the task. flutter: force of first flutter of an arm, for relative loads. build: constitutive law and
     profile of all arms. Raises ValueError if the rod model applies to no point.
     """
-    arms, statuses = zip(
-        *(_arm_or_status(section, values) for values in section.values_of_arms()), strict=True
-    )
+    arms, statuses = zip(*(_arm_or_status(section, v) for v in section.values_of_arms()), strict=True)
     loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)

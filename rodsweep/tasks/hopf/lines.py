@@ -81,7 +81,7 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 
 def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Yields the lines along the parameter `varied_parameter`, if at least two of its values are finite.
+    """Yields the lines along the parameter `name`, if at least two of its values are finite.
 
     names: all parameters of the lines. Lines along F begin at 0, because the Hopf point may lie below the
     smallest force of the points. Arms with equal parameters and different profiles have no line, because a

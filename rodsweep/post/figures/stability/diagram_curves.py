@@ -38,7 +38,7 @@ CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points 
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
 """Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
-CURVE_LABEL_FONT_SIZE = 8
+LABEL_FONTSIZE = 8
 """Font size of a curve's symbol, in points."""
 DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
@@ -98,13 +98,10 @@ def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2
             label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
     if "partial_beam_k1" in v:
-        F = float(v["partial_beam_F"])
-        k = float(v["partial_beam_k1"])
+        F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
-        if not (
-            v[line][0] <= x <= v[line][-1]
-            and view.parameter_values[row][0] <= y <= view.parameter_values[row][-1]
-        ):
+        rows = view.parameter_values[row]
+        if not (v[line][0] <= x <= v[line][-1] and rows[0] <= y <= rows[-1]):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
@@ -249,10 +246,5 @@ def _label_longest_curve(axes: Axes, paths: list[Array], name: str, share: float
     if lengths[longest][-1] > 0:
         at = int(np.searchsorted(lengths[longest], share * lengths[longest][-1]))
         axes.annotate(
-            name,
-            seen[longest][at],
-            xytext=(4, -2),
-            textcoords="offset points",
-            size=CURVE_LABEL_FONT_SIZE,
-            va="top",
+            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=LABEL_FONTSIZE, va="top"
         )

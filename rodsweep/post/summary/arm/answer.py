@@ -50,30 +50,24 @@ def _validity_lines(view: View, done: np.ndarray) -> Lines:
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
+    answer_lines = ANSWER_LINES_BY_TASK[view.task]
     if not inside.any():
-        return [
-            caveat,
-            *(f"if the model applied: {line}" for line in ANSWER_LINES_BY_TASK[view.task](view, rods)),
-        ]
+        return [caveat, *(f"if the model applied: {line}" for line in answer_lines(view, rods))]
     if (inside != rods).any():
-        return [
-            caveat,
-            *(f"where the model applies: {line}" for line in ANSWER_LINES_BY_TASK[view.task](view, inside)),
-        ]
-    answer = ANSWER_LINES_BY_TASK[view.task](view, rods)
+        return [caveat, *(f"where the model applies: {line}" for line in answer_lines(view, inside))]
+    answer = answer_lines(view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def answer_range_text(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
-    """Range of `values`, in the SI unit `si`, as text in the unit that the user typed.
-    errors: absolute errors, of the shape of `values`, or 0.
-    """
+def range_text(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+    """Range of `values`, in the SI unit `si`, as text in the unit that the user typed. errors:
+    absolute errors, of the shape of `values`, or 0."""
     return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
 def load_range_text(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return answer_range_text(view, loads, UNITS[load_kind(view)][0])
+    return range_text(view, loads, UNITS[load_kind(view)][0])
 
 
 def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
@@ -83,9 +77,7 @@ def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]
 
     def lines(view: View, rods: np.ndarray) -> Lines:
         failed = rods & view.has_status(FAILED_STATUS)
-        unsolved = (
-            [f"not known{_point_count_clause(failed, rods)}: the search failed"] if failed.any() else []
-        )
+        unsolved = [f"not known{_count_clause(failed, rods)}: the search failed"] if failed.any() else []
         if (failed == rods).all():
             return unsolved
         first, further = answer(view, rods & ~failed)
@@ -137,10 +129,8 @@ def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, loads, end, frequency), []
 
 
-def _point_count_clause(some: np.ndarray, rods: np.ndarray) -> str:
-    """Clause on the number of points in `rods` that are also in `some` (masks); empty if `rods` has one
-    point.
-    """
+def _count_clause(some: np.ndarray, rods: np.ndarray) -> str:
+    """Clause on the number of points in the mask `some`; empty if the mask `rods` has one point only."""
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
@@ -151,8 +141,7 @@ def _flutter_lines(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.
     if not flutters.any():
         return [f"does not flutter {searched}".rstrip()]
     of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
-    rate = answer_range_text(view, frequency, "Hz")
-    lines = [f"flutters{of} from {load_range_text(view, hopf)}; beats at {rate}"]
+    lines = [f"flutters{of} from {load_range_text(view, hopf)}; beats at {range_text(view, frequency, 'Hz')}"]
     if not flutters.all():
         stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
         lines.append(stable.rstrip())
@@ -168,13 +157,13 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     cycles = rods & view.has_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
         masks = {words: rods & view.has_status(status) for status, words in NO_CYCLE_WORDS.items()}
-        return [f"{words}{_point_count_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
+        return [f"{words}{_count_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
-        answer_range_text(view, v[name][beats], unit, errors[name][beats])
+        range_text(view, v[name][beats], unit, errors[name][beats])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
-    motion = f"beats{_point_count_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
+    motion = f"beats{_count_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
     return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
@@ -206,14 +195,12 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     unknown = rods & (count < 0)
     lines = []
     if unstable.any():
-        frequency = answer_range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        lines = [
-            f"gives way{_point_count_clause(unstable, rods)}; its leading mode oscillates at {frequency}"
-        ]
+        frequency = range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
+        lines = [f"gives way{_count_clause(unstable, rods)}; its leading mode oscillates at {frequency}"]
     elif not unknown.any():
         lines = ["stays straight"]
     if unknown.any():
-        lines.append(f"whether the arm gives way is not known{_point_count_clause(unknown, rods)}")
+        lines.append(f"whether the arm gives way is not known{_count_clause(unknown, rods)}")
     return lines
 
 
@@ -223,7 +210,7 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
-    rate = answer_range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
+    rate = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
     return [f"beats at {load_range_text(view, loads)}, at {rate}"], []
 
 

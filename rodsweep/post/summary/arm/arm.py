@@ -55,9 +55,7 @@ def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     converts the numbers to this unit. The unit is typed by the user, or has a prefix suitable for numbers up
     to `largest`.
     """
-    typed = next(
-        (view.typed_units[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed_units), si
-    )
+    typed = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
     if typed != si:
         return value_in_unit(1.0, typed, si), typed
     if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:

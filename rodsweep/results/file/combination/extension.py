@@ -146,7 +146,7 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
 
 
 def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
-    """Map from the stored points `stored_layout` to the points of the plan; InputError if the plan lacks a
+    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
     point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
@@ -190,7 +190,7 @@ def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) 
 
 
 def _positions_before_first_change(places: Indices, count: int, upward: bool) -> Indices:
-    """Positions `axis_positions` of the values along a chain, (n,), with -1 from the first changed position
+    """Positions `places` of the values along a chain, (n,), with -1 from the first changed position
     of the chain on.
 
     count: number of values on the new axis. upward: direction of the chains.

@@ -42,9 +42,7 @@ PlanMaker = Callable[[Config, Points], Plan]
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """Plan of the joined file. sources: headers of the source files. point_maps: for each source, the map
-    from its points to the points of the plan.
-    """
+    """`plan` of the joined file. point_maps: map from the points of each source to the points of the plan."""
 
     plan: Plan
     sources: Sequence[ResultHeader]
