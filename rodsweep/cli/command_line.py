@@ -82,13 +82,13 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     output = result_file_path(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources = counted(len(shards), "file")
-    click.echo(f"{output}: {merged.points} points from {sources}, {merged.missing} missing")
-    if merged.kernels:
-        click.echo(f"{output}: {merged.kernels}")
-    if merged.missing:
+    click.echo(f"{output}: {merged.point_count} points from {sources}, {merged.missing_count} missing")
+    if merged.kernel_warning:
+        click.echo(f"{output}: {merged.kernel_warning}")
+    if merged.missing_count:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(STOPPED_STATUS)
-    if not merged.finished:
+    if not merged.is_finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 

@@ -168,9 +168,10 @@ def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
-    """Returns (end, forces): the largest force requested, and the thresholds up to this force. For an arm
-    that is not uniform or not of linear material, `end` exceeds the first flutter force and the load by at
-    least the factor MIN_SEARCH_RATIO, if possible.
+    """Returns (end, found): the largest force requested, and the thresholds up to this force. `end` is
+    SEARCH_END; for an arm that is not uniform or not of linear material, the first of SEARCH_ENDS_OF_VARIED
+    that exceeds the first flutter force and a known load by at least the factor MIN_SEARCH_RATIO, or before
+    which the search ended, else the last.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):

@@ -126,7 +126,7 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
         store.add_journals({})
         store.close()
     merged = merge(tmp_path / "m.h5", paths, lambda config, points: plan(False, count=points.count))
-    assert (merged.points, merged.missing, merged.finished) == (6, whole - 1, False)
+    assert (merged.point_count, merged.missing_count, merged.is_finished) == (6, whole - 1, False)
     with h5py.File(tmp_path / "m.h5") as file:
         done = np.flatnonzero(file["status"][...] == 0)
         assert done.tolist() == shares[1]

@@ -57,10 +57,10 @@ FIGURE_STYLE = {
     "ps.fonttype": 42,
 }
 """Settings of matplotlib for all figures."""
-FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
+FONT_SIZE_SETTINGS = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
 """Names of matplotlib's settings of font sizes."""
-PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZES, 8)
+PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZE_SETTINGS, 8)
 """Settings of matplotlib for a figure with a given width; all text has a size of 8 points."""
 
 

@@ -13,7 +13,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
 from ..summary.arm.validity import plane_lines, validity_sentence
-from ..summary.branch import SPECIAL_WORDS
+from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded_text
 from ..summary.thresholds import ENDED_EARLY
@@ -145,7 +145,7 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     cycles = sum(int(curve.cycles.sum()) for curve in curves)
     special = [
         f"{counted(len(at), word)} at {units.load_phrase(', '.join(at))}"
-        for kind, word in SPECIAL_WORDS.items()
+        for kind, word in SPECIAL_POINT_WORDS.items()
         if (at := _special_point_loads(curves, kind, units.force.factor))
     ]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"

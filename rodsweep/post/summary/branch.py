@@ -19,7 +19,7 @@ COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES_WORDS = "stable cycles of two branches"
 """Phrase for a range in which stable cycles of two branches coexist."""
-SPECIAL_WORDS = {
+SPECIAL_POINT_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
@@ -142,7 +142,9 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods.
     along: followed parameter.
     """
-    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *BRANCH_END_WORDS)}
+    found: dict[str, list[tuple[float, float]]] = {
+        word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
+    }
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     for _, number, curve in curves:
         for special in curve.special:
@@ -154,8 +156,8 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
         if not located:
             continue
         where = f"{along} = {span_text(*np.array(located).T)}"
-        if kind in SPECIAL_WORDS:
-            yield f"{counted(len(located), SPECIAL_WORDS[kind])}: {where}"
+        if kind in SPECIAL_POINT_WORDS:
+            yield f"{counted(len(located), SPECIAL_POINT_WORDS[kind])}: {where}"
         else:
             verb = "leads" if len(located) == 1 else "lead"
             yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"

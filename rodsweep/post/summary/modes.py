@@ -7,7 +7,6 @@ from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
 from .ranges import NONE_TEXT, span_text
 from .spectrum import (
-    count_line,
     eigenvalue_table,
     error_lines,
     leading_line,
@@ -15,6 +14,7 @@ from .spectrum import (
     stable_line,
     threshold_lines,
     unknowns_lines,
+    unstable_count_line,
 )
 from .summary_lines import SummaryLines
 
@@ -23,7 +23,7 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of modes. done: mask of the computed points, of the shape of the points."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
-        answer = [count_line(view)]
+        answer = [unstable_count_line(view)]
         reliability = []
         details = unknowns
         arm_sentences = list[str]()

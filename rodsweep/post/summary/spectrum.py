@@ -27,7 +27,9 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of spectra. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
-        return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
+        return SummaryLines(
+            [unstable_count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view)
+        )
     lines, how, arm_sentences = threshold_lines(view)
     reliability = [*error_lines(view, done), stability_line(view, done), *how]
     details = [leading_line(view, done), *unknowns_lines(view, done)]
@@ -81,7 +83,7 @@ def eigenvalue_table(view: View) -> TextTable | None:
     return TextTable(headings, tuple(rows)) if rows else None
 
 
-def count_line(view: View) -> str:
+def unstable_count_line(view: View) -> str:
     """Line on the number of unstable modes at the only point of a file."""
     v = view.variables
     unstable = int(v["unstable_count"].max())

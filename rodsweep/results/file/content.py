@@ -169,7 +169,9 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
 
 
 def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
-    """Yields the numbers of a variable as buffers; contiguous numbers are read from the file without HDF5."""
+    """Yields the numbers of a variable as buffers. Contiguous numbers are read from the file without HDF5;
+    other numbers, and big-endian numbers, come as one buffer of little-endian numbers.
+    """
     start = data.id.get_offset()
     size = data.id.get_storage_size()
     if start is None or data.dtype.byteorder == ">":

@@ -107,7 +107,7 @@ VALIDITY = (
 
 
 def with_si_variables(layout: Layout, config: Mapping[str, Any]) -> Layout:
-    """The layout with the SI variables of an arm; unchanged for a config without an arm."""
+    """The layout with the SI and validity variables and the axes of an arm; unchanged without an arm."""
     if config.get("parameters", {}).get("arm") is None:
         return layout
     variables = (*layout.variables, *si_variables_of(layout, config).values(), *VALIDITY)

@@ -28,7 +28,7 @@ GHOST_COUNT = 6
 TIME_DIGITS = 3
 """Number of significant digits of the period. The running time is printed with as many decimals as the
 period."""
-TIME_HEIGHT = 0.08
+TIME_TEXT_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
 MAX_GHOST_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
@@ -65,7 +65,7 @@ def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     set_frame(panels, cycles)
     low, high = panels[0].get_ylim()  # shared by all panels
-    panels[0].set_ylim(low - TIME_HEIGHT * (high - low), high)
+    panels[0].set_ylim(low - TIME_TEXT_HEIGHT * (high - low), high)
     for arm in arms:
         arm.show_frame(0)
     fit_layout(figure)

@@ -26,10 +26,10 @@ from .joining import JoinedFile, PlanMaker, joined_file_of
 class MergeResult:
     """Outcome of a merge: numbers of computed and of missing points, whether the file is finished."""
 
-    points: int
-    missing: int
-    finished: bool
-    kernels: str
+    point_count: int
+    missing_count: int
+    is_finished: bool
+    kernel_warning: str
     """Warning about the BLAS kernels that computed the points; empty for a single kernel."""
 
 
