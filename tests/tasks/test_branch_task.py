@@ -58,7 +58,7 @@ def test_show_of_many_rods_names_those_with_two_stable_states(command):
 
 
 def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cycles(command):
-    """SummaryLines once each: a symmetry breaking lies on both branches that meet there."""
+    """Each is told once: a symmetry breaking lies on both branches that meet there."""
     shown(command, CONFIG.format(k1="[100, 150]", stop=80))
     view = read_view(command.directory / "c.h5")
     (branch,) = RodBranches(view, 1).curves
