@@ -312,7 +312,8 @@ def test_longitudinal_modes_are_added_only_where_asked(command):
 def test_package_imports_start_neither_mpi_nor_petsc(command):
     code = (
         "import sys, rodsweep, rodsweep.cli\n"
-        "from rodsweep.tasks.running.job import job_of_file\nfrom rodsweep.results.file.view import read_view\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
+        "from rodsweep.results.file.view import read_view\n"
         "from rodsweep.post.figures import draw\nfrom rodsweep.post.summary import show_summary\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py.PETSc', 'slepc4py.SLEPc') if m in sys.modules])"
     )

@@ -394,7 +394,8 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     file = filled_file(tmp_path)
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import print_job_check\nfrom rodsweep.tasks.running.job import job_of_file\n"
+        "from rodsweep.cli.checking import print_job_check\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "print_job_check(job_of_file(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"

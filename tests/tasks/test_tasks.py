@@ -345,10 +345,12 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     """For any task: they must work on a login node."""
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import print_job_check\nfrom rodsweep.tasks.running.job import job_of_file\n"
+        "from rodsweep.cli.checking import print_job_check\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "for place in map(Path, sys.argv[1:]):\n"
-        "    print_job_check(job_of_file(place / 'c.yaml', ()))\n    show_summary(read_view(place / 'c.h5'))\n"
+        "    print_job_check(job_of_file(place / 'c.yaml', ()))\n"
+        "    show_summary(read_view(place / 'c.h5'))\n"
         "    print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     for task in TASKS:

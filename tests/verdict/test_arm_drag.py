@@ -310,7 +310,8 @@ def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
     (tmp_path / "a.yaml").write_text(tube, encoding="utf-8")
     code = (
         "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import print_job_check\n"
-        "from rodsweep.tasks.running.job import job_of_file\nprint_job_check(job_of_file(Path(sys.argv[1]), ()))\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
+        "print_job_check(job_of_file(Path(sys.argv[1]), ()))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]
