@@ -27,7 +27,7 @@ def arms(lengths=(0.15,), gamma1=None):
     view = make_view(columns, [0] * len(made), as_list=True)
     units = {name: [getattr(arm, name) for arm in made] for name in ("tau2", "force_scale", "pressure_scale")}
     quantities = {name: np.array(value) for name, value in (ARM | units | {"length": list(lengths)}).items()}
-    return replace(view, variables=view.variables | quantities, typed=TYPED), made
+    return replace(view, variables=view.variables | quantities, typed_units=TYPED), made
 
 
 def test_an_arm_beats_in_cm_and_s_under_its_quantities():

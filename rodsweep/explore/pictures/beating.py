@@ -144,7 +144,7 @@ class BeatingPicture:
         self._draw_path(x, y, is_closed=False)
         self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
-        end = END_WORDS.get(found["status"], found["sentence"])
+        end = END_WORDS.get(found["status"], found["status_sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
         self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{part}")
 
