@@ -30,7 +30,7 @@ class ReleasedMotion:
 
     status: str
     """Status of the task limit_cycle."""
-    status_sentence: str
+    sentence: str
     """Sentence of the status."""
     message: str
     """Message of the task limit_cycle."""
@@ -84,7 +84,7 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
     x, y = cycle.motion_shapes.shapes
     return ReleasedMotion(
         status=cycle.status.name,
-        status_sentence=cycle.status.sentence,
+        sentence=cycle.status.sentence,
         message=cycle.message,
         cycle=task.record(job.points.values(0), cycle),
         step=cycle.motion_shapes.step,

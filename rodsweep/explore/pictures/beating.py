@@ -23,7 +23,7 @@ from .card import (
     new_figure,
     set_axis_range,
     source_columns,
-    status_sentence,
+    sentence,
 )
 
 PERIOD_SECONDS = 2.0
@@ -119,7 +119,7 @@ class BeatingPicture:
         if has_cycle:
             self.card.show_figure()
         else:
-            self.card.show_sentence_above(status_sentence(found))
+            self.card.show_sentence_above(sentence(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
@@ -144,7 +144,7 @@ class BeatingPicture:
         self._draw_path(x, y, is_closed=False)
         self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
-        end = END_WORDS.get(found["status"], found["status_sentence"])
+        end = END_WORDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
         self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{part}")
 
