@@ -23,7 +23,7 @@ from .card import (
     new_figure,
     set_axis_range,
     source_columns,
-    sentence,
+    status_sentence,
 )
 
 PERIOD_SECONDS = 2.0
@@ -119,7 +119,7 @@ class BeatingPicture:
         if has_cycle:
             self.card.show_figure()
         else:
-            self.card.show_sentence_above(sentence(found))
+            self.card.show_sentence_above(status_sentence(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
