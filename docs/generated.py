@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 
 from rodsweep.cli import commands
-from rodsweep.config.document.parsing import parse
+from rodsweep.config.document.parsing import parsed_yaml
 
 sys.path.insert(0, str(Path(__file__).parent))  # where a test loads this script
 import figures  # noqa: E402
@@ -46,7 +46,7 @@ Every command of `rodsweep` with its options, as its help prints them. The
 
 def gallery() -> str:
     """The page with all configs, task by task."""
-    documents = {path: parse(path.read_text(), path.name) for path in sorted(CONFIGS.glob("*.yaml"))}
+    documents = {path: parsed_yaml(path.read_text(), path.name) for path in sorted(CONFIGS.glob("*.yaml"))}
     contents = "".join(f"- [{title}](#{title.lower().replace(' ', '-')})\n" for title in TASKS.values())
     parts = [GALLERY, contents]
     for task, title in TASKS.items():

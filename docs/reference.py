@@ -18,7 +18,7 @@ from pydantic.fields import FieldInfo
 
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.config.document.refusals import allowed_values_text
-from rodsweep.config.json_schema import meanings_of
+from rodsweep.config.json_schema import key_docstrings
 from rodsweep.config.material import MaterialSection, ProfileTable
 from rodsweep.config.task.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS
@@ -39,7 +39,7 @@ from rodsweep.results.layouts.spectrum import FORCE_CHANGES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
 from rodsweep.tasks.arm.points import NoRodStatus
-from rodsweep.tasks.running.job import Job, make_job
+from rodsweep.tasks.running.job import Job, job_of_file
 
 DOCS = Path(__file__).parent
 MARK = "<!-- Written by `python docs/reference.py` from here on; change it there. -->\n"
@@ -262,14 +262,14 @@ def parameters() -> str:
 def common_keys() -> str:
     """Table of the keys of every task."""
     config = CONFIGS["spectrum"]
-    meanings = meanings_of(config)
+    meanings = key_docstrings(config)
     points = config.model_fields["parameters"].annotation
     assert isinstance(points, type)
     rows = [["`task`", code(", ".join(CONFIGS)), "", "What is computed."]]
     rows += [key_row(name, config.model_fields[name], meanings[name]) for name in ("title", "accuracy")]
     for name in ("points", "columns", "arm"):
-        rows.append(key_row(f"parameters.{name}", points.model_fields[name], meanings_of(points)[name]))
-    meanings = meanings_of(ArmSection)
+        rows.append(key_row(f"parameters.{name}", points.model_fields[name], key_docstrings(points)[name]))
+    meanings = key_docstrings(ArmSection)
     fields = ArmSection.model_fields
     rows += [key_row(f"parameters.arm.{name}", field, meanings[name]) for name, field in fields.items()]
     return "\n### Keys of every task\n\n" + key_table(rows) + material_keys()
@@ -278,7 +278,7 @@ def common_keys() -> str:
 def material_keys() -> str:
     """Table of the keys of the material and the columns of its profile."""
     rows = [
-        key_row(f"{place}.{name}", field, meanings_of(section)[name])
+        key_row(f"{place}.{name}", field, key_docstrings(section)[name])
         for place, section in (("material", MaterialSection), ("material.profile", ProfileTable))
         for name, field in section.model_fields.items()
     ]
@@ -293,10 +293,10 @@ def task_keys(task: str) -> str:
     config = CONFIGS[task]
     rows = []
     if config.model_fields["accuracy"].default != CONFIGS["spectrum"].model_fields["accuracy"].default:
-        rows.append(key_row("accuracy", config.model_fields["accuracy"], meanings_of(config)["accuracy"]))
+        rows.append(key_row("accuracy", config.model_fields["accuracy"], key_docstrings(config)["accuracy"]))
     section = config.model_fields[task].annotation
     assert isinstance(section, type)
-    meanings = meanings_of(section)
+    meanings = key_docstrings(section)
     rows += [key_row(f"{task}.{name}", field, meanings[name]) for name, field in section.model_fields.items()]
     return f"## Config keys\n\n{inspect.getdoc(config)} {KEYS_OF_ALL}\n\n" + key_table(rows)
 
@@ -425,7 +425,7 @@ for a diagram over F and k1; in a diagram over different parameters their names 
 def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
     """(condition, row) of each variable of the curves of a phase diagram."""
     assert isinstance(job.config, PhaseDiagramConfig)
-    line, row = job.config.plane
+    line, row = job.config.plane_parameters
     for variable in curve_variables(line, row).values():
         beam = variable.name.startswith(("partial_beam", "filament"))
         yield "diagrams over F and k1" if beam else "", variable_row(variable, list(variable.extra))
@@ -442,7 +442,7 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
     """The variables of a job's file by name, each with its dimensions."""
     found = {v.name: (v, ["...", *v.extra]) for v in job.layout.variables}
-    beside = [v for v, _ in job.task.constants()]
+    beside = [v for v, _ in job.task.config_variables()]
     if job.config.task in ("spectrum", "modes"):
         beside += FORCE_CHANGES
     return found | {v.name: (v, list(v.extra)) for v in beside}
@@ -482,7 +482,7 @@ def whole(task: str, overrides: tuple[str, ...] = ()) -> Job:
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / f"{task}.yaml"
         path.write_text(f"task: {task}\n{textwrap.dedent(WHOLE[task])}\n")
-        return make_job(path, overrides)
+        return job_of_file(path, overrides)
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

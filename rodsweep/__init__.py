@@ -34,7 +34,7 @@ __all__ = [
     "table",
 ]
 
-_PLACES = {
+_IMPORT_PATHS = {
     "Answer": "api.answers.answer.Answer",
     "Arm": "api.arm.Arm",
     "EnvironmentIncomplete": "errors.EnvironmentIncomplete",
@@ -53,9 +53,9 @@ _PLACES = {
 
 def __getattr__(name: str) -> Any:
     """Imports the public name `name` when it is first used. Raises AttributeError for an unknown name."""
-    if name not in _PLACES:
+    if name not in _IMPORT_PATHS:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, _, own = _PLACES[name].rpartition(".")
+    module, _, own = _IMPORT_PATHS[name].rpartition(".")
     found = import_module(f".{module or own}", __name__)
     globals()[name] = value = getattr(found, own) if module else found
     return value

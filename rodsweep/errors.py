@@ -19,7 +19,7 @@ class Refusal(Exception):
     collective = False
     exit_status = BUG_STATUS
 
-    def on_all_ranks(self) -> Self:
+    def marked_collective(self) -> Self:
         """Marks this error as collective, which means that every MPI rank raises a copy, and returns it."""
         self.collective = True
         return self

@@ -15,12 +15,12 @@ from typing import NamedTuple
 class SolvePosition(NamedTuple):
     """Position of a running solve, for display by a listener.
 
-    words: text of the position, such as "branch 2 of 3". share: completed fraction of the work, from 0 to 1;
-    None if unknown.
+    words: text of the position, such as "branch 2 of 3". completed_fraction: completed fraction of the work,
+    from 0 to 1; None if unknown.
     """
 
     words: str = ""
-    share: float | None = None
+    completed_fraction: float | None = None
 
 
 PositionMaker = Callable[[], SolvePosition]
@@ -34,7 +34,7 @@ class SolveStopped(BaseException):
 
 
 class _SolvePart(NamedTuple):
-    """Named part of a solve.
+    """Named part of a solve. name: prefix of the texts of reports from the part.
 
     shares: completed fractions of the work of the whole solve at the start and at the end of the part; None
     if unknown.
@@ -43,12 +43,12 @@ class _SolvePart(NamedTuple):
     name: str
     shares: tuple[float, float] | None
 
-    def of_whole(self, inner: SolvePosition) -> SolvePosition:
+    def position_in_whole(self, inner: SolvePosition) -> SolvePosition:
         """Converts a position within this part into a position within the whole solve."""
         share = None
         if self.shares is not None:
             begin, end = self.shares
-            share = begin + (end - begin) * (inner.share or 0.0)
+            share = begin + (end - begin) * (inner.completed_fraction or 0.0)
         return SolvePosition(": ".join(filter(None, (self.name, inner.words))), share)
 
 
@@ -106,5 +106,5 @@ def _position_in_whole_solve(make_position: PositionMaker, outside: int) -> Solv
     if not position.words:
         return position
     for outer in reversed(_solve_parts.get()[outside:]):
-        position = outer.of_whole(position)
+        position = outer.position_in_whole(position)
     return position

@@ -3,7 +3,7 @@
 SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
-LONGEST_IN_MS = 0.9995
+SHORTEST_IN_SECONDS = 0.9995
 """`duration` writes durations of at least this many seconds in seconds; in milliseconds, three digits would
 round such a duration to 1000 ms or more."""
 
@@ -32,11 +32,11 @@ def has_or_have(count: int) -> str:
     return "has" if count == 1 else "have"
 
 
-def some_of(count: int, whole: int, noun: str) -> str:
+def count_of_total(count: int, whole: int, noun: str) -> str:
     """`count` out of the total `whole`, with the noun: `some_of(2, 4, "row")` is "2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"
 
 
 def duration(seconds: float) -> str:
     """A duration with three digits: in milliseconds below one second, else in seconds."""
-    return f"{1e3 * seconds:.3g} ms" if seconds < LONGEST_IN_MS else f"{seconds:.3g} s"
+    return f"{1e3 * seconds:.3g} ms" if seconds < SHORTEST_IN_SECONDS else f"{seconds:.3g} s"

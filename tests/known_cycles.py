@@ -9,11 +9,11 @@ from rodsweep.results.file.creation import Plan, create_file
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
-from rodsweep.results.layouts.limit_cycle import hopf_points_of
+from rodsweep.results.layouts.limit_cycle import hopf_point_variables
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.sweep.points.points import Points
 
-HOPF_POINTS = hopf_points_of(("F", "k1", "k2", "gamma3"))
+HOPF_POINTS = hopf_point_variables(("F", "k1", "k2", "gamma3"))
 NAMES = ("F", "k1", "k2", "gamma3", "gamma1")
 FLAGS = {-1: "missing", 0: "cycle", 1: "straight", 2: "not_settled", 3: "left_the_model", 4: "failed"}
 UNSTABLE, TORUS = 5, 6

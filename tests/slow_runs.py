@@ -47,7 +47,7 @@ def pause_until_journalled(process: Popen, path: Path, points: int) -> None:
 
     def are_there() -> bool:
         assert process.poll() is None, process.communicate()
-        return path.exists() and read_view(path).journalled >= points
+        return path.exists() and read_view(path).journalled_count >= points
 
     # The run waits for what comes, and to read its file takes some milliseconds of the processor.
     pause_until(are_there, f"{points} points are not in the journals of {path}", pause=0.05)

@@ -19,7 +19,7 @@ from surveyed import RODS
 
 from rodsweep.cli import commands
 from rodsweep.config import load_config
-from rodsweep.config.document.parsing import parse
+from rodsweep.config.document.parsing import parsed_yaml
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
 
@@ -244,7 +244,7 @@ def test_python_page_prints_what_it_says(tmp_path, monkeypatch, capsys):
 
 
 def test_bibtex_says_what_the_citation_file_says():
-    cited = parse((ROOT / "CITATION.cff").read_text(), "CITATION.cff")
+    cited = parsed_yaml((ROOT / "CITATION.cff").read_text(), "CITATION.cff")
     (paper,) = cited["references"]
     (block,) = blocks(DOCS / "citing.md", "bibtex")
     fields = [dict(re.findall(r"(\w+) += \{+(.*?)\}+,?\n", entry)) for entry in block.split("\n\n")]

@@ -7,11 +7,11 @@ from rodsweep.post.summary.ranges import (
     error_text,
     number_with_error,
     ranges_text,
-    rounded,
+    rounded_text,
     span_text,
     stated_error,
 )
-from rodsweep.wording import counted, duration, is_or_are, some_of
+from rodsweep.wording import count_of_total, counted, duration, is_or_are
 
 
 @pytest.mark.parametrize(
@@ -40,8 +40,8 @@ def test_a_time_needs_no_power_of_ten(seconds, text):
 
 
 def test_a_part_is_named_by_its_whole():
-    assert some_of(1, 1, "rod") == "1 of 1 rod"
-    assert some_of(1, 2, "rod") == "1 of 2 rods"
+    assert count_of_total(1, 1, "rod") == "1 of 1 rod"
+    assert count_of_total(1, 2, "rod") == "1 of 2 rods"
     assert (is_or_are(1), is_or_are(2)) == ("is", "are")
 
 
@@ -73,7 +73,7 @@ def test_a_number_and_its_error_contain_the_true_number():
         text, _, stated = number_with_error(value, error).partition(" (+- ")
         assert abs(float(text) - true) <= float(stated.rstrip(")")) * (1 + 1e-12) + 1e-15 * abs(value)
         assert stated_error(value, error)[0] == text
-        end = rounded(value, error)
+        end = rounded_text(value, error)
         size = abs(float(end)) or abs(value)
         assert abs(float(end) - true) <= 1.001 * 10.0 ** np.ceil(np.log10(2 * error)) + 1e-5 * size
 

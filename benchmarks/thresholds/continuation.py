@@ -100,7 +100,7 @@ def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], l
     if module := optional_module(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
-            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION_GROUP, by_pycont, slow=True))
+            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION_GROUP, by_pycont, is_slow=True))
     else:
         skipped.append(f"{PYCONT} is skipped: it is not installed (extra `bench`).")
     return found, skipped

@@ -165,7 +165,7 @@ def contenders(kind: str, quick: bool) -> list[Contender]:
     grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
     by_grid = [
         Contender(
-            name, f"{n} forces", GRID_GROUP, partial(threshold_on_grid, estimate, n), slow=n == LARGE_GRID
+            name, f"{n} forces", GRID_GROUP, partial(threshold_on_grid, estimate, n), is_slow=n == LARGE_GRID
         )
         for name, estimate in GRID_ESTIMATES[kind].items()
         for n in grids

@@ -12,7 +12,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answers.answer import Answer
-from .keyword_arguments import config_tree, job_from, with_load_in_si
+from .keyword_arguments import config_tree, job_of_tree, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -21,11 +21,11 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving import solve_here
+from .solving import solve_in_process
 
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport
-    from ..verdict.flutter import FlutterRange
+    from ..verdict.flutter import ThresholdsOverDrags
     from .answers.rod_portrait import RodPortrait
 
 ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
@@ -57,11 +57,11 @@ class Arm(SlenderArm):
     __init__ = refusing_wrong_arguments(ARM_EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
-    def flutter(self) -> "FlutterRange":
+    def flutter(self) -> "ThresholdsOverDrags":
         """Flutter threshold and frequency in the arm's plane of motion, over the uncertainty of its drag."""
-        from ..verdict.flutter import flutter_range
+        from ..verdict.flutter import thresholds_over_drags
 
-        return flutter_range(self)
+        return thresholds_over_drags(self)
 
     def report(self) -> "ArmReport":
         """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
@@ -161,7 +161,7 @@ class Arm(SlenderArm):
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
-            if name in self._names:
+            if name in self._quantity_names:
                 raise InputError(
                     f"{name} is a quantity of the arm, not an option; "
                     f"arm.replace({name}=...) makes another arm"
@@ -174,11 +174,11 @@ class Arm(SlenderArm):
                 f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
                 "arm.replace(pressure='1.2 of flutter')"
             )
-        solved = solve_here(job_from(config_tree(task, {"arm": self} | options)), progress=progress)
-        return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane))))
+        solved = solve_in_process(job_of_tree(config_tree(task, {"arm": self} | options)), progress=progress)
+        return Answer(repr(self), solved, "; ".join(filter(None, (solved.messages[0], self._plane_warning))))
 
     @property
-    def _plane(self) -> str:
+    def _plane_warning(self) -> str:
         """Warning for a rectangular section that bends more easily out of the plane of motion; else ""."""
         if not self.si.height > self.si.width:
             return ""
@@ -188,13 +188,13 @@ class Arm(SlenderArm):
         )
 
     @property
-    def _names(self) -> list[str]:
+    def _quantity_names(self) -> list[str]:
         return [each.name for each in fields(self) if each.init]
 
     @property
     def _given_quantities(self) -> dict[str, Any]:
         """The quantities of the arm that are not None, by name."""
-        return {name: getattr(self, name) for name in self._names if getattr(self, name) is not None}
+        return {name: getattr(self, name) for name in self._quantity_names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:
         default = {each.name: each.default for each in fields(self)}

@@ -28,7 +28,7 @@ from ..results.file.validation import (
     open_checked,
 )
 from ..results.file.view import View
-from ..results.layouts import beside_points, layout_of
+from ..results.layouts import joint_variables_of_config, layout_of
 from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
@@ -73,10 +73,10 @@ def _open_result_file(path: Path) -> xr.Dataset:
             insert_records(data[name].values, str(name), recent)
         data.attrs |= journalled_reasons(header)
         data = with_checksums(data)
-    return with_arm_selection(data)
+    return with_arm_indexes(data)
 
 
-def with_arm_selection(data: xr.Dataset) -> xr.Dataset:
+def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
     this quantity.
     """
@@ -95,7 +95,7 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
     config: the config as a tree of keys.
     """
-    declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
+    declared = (*layout.variables, *joint_variables_of_config(config, "point" not in data.dims))
     places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
     variables = {name: data.variables[name] for name in names}

@@ -20,7 +20,7 @@ from ..model.arm.drag import DRAGS
 from ..model.arm.quantities import LOADS, RELATIVE_LOADS
 from ..model.material.build import STANDARD
 from ..solve.exclusive import defer_signals
-from ..tasks.running.job import Job, job_of, machine_memory
+from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Class of an arm."""
@@ -79,19 +79,19 @@ def with_load_in_si(arm: ArmKind) -> ArmKind:
     """
     if arm.share_of_flutter is None:
         return arm
-    from ..verdict.planes import with_known_load
+    from ..verdict.planes import arm_with_absolute_load
 
-    return with_known_load(arm)
+    return arm_with_absolute_load(arm)
 
 
 @defer_signals
-def job_from(tree: ConfigTree) -> Job:
+def job_of_tree(tree: ConfigTree) -> Job:
     """The validated job of a config tree; InputError, as on the command line, for bad input.
 
     Raises InputError also if the results do not fit into memory.
     """
     config = validated_config(with_file_contents(tree, Path()))
-    job = job_of(Path(config.task), config, tree)
+    job = job_of_config(Path(config.task), config, tree)
     size = job.points.count * job.layout.bytes_per_point
     if size > machine_memory():
         raise InputError(
@@ -102,15 +102,15 @@ def job_from(tree: ConfigTree) -> Job:
     return job
 
 
-def require_allowed_keys(tree: ConfigTree) -> None:
-    """Raises InputError for a config tree that `job_from` refuses, before any rank of a run starts.
+def require_valid_tree(tree: ConfigTree) -> None:
+    """Raises InputError for a config tree that `job_of_tree` refuses, before any rank of a run starts.
 
     For loads relative to flutter only the config is validated, because the points need a search for flutter,
     which the ranks of the run share.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
-    if arm is None or arm.load_axis not in RELATIVE_LOADS:
-        job_from(tree)
+    if arm is None or arm.load_key not in RELATIVE_LOADS:
+        job_of_tree(tree)
 
 
 def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
@@ -143,7 +143,9 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
 
 
 class AxisRange(TypedDict):
-    """An axis of a sweep as a range: the keys of a range in a config."""
+    """An axis of a sweep as a range. start, stop: first and last value; for a quantity of an arm, with a
+    unit. num: number of values. spacing: "linear" or "log".
+    """
 
     start: float | str
     stop: float | str

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS, joined_names
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
-from ..config.document.refusals import sentence_of, similar_keys, unknown_key_hint
+from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
 from ..config.material import MaterialSection, with_profile_read
 from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
@@ -20,9 +20,9 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.as_rod import material_of, parameters_of
 from ..model.material.build import STANDARD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
-from ..sweep.points.grid import refuse_axes
+from ..sweep.points.grid import refuse_invalid_axes
 from .answers.answer import Answer
-from .keyword_arguments import config_tree, job_from, plain_keyword, plain_value, with_load_in_si
+from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
 from .options import (
     BranchKeywords,
     CriticalityKeywords,
@@ -31,7 +31,7 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving import solve_here
+from .solving import solve_in_process
 
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait
@@ -93,7 +93,7 @@ class SoftRod:
         build = STANDARD if self._material is None else self._material.build
         if arm is not None and build.section == "swelling":
             replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
-        refuse_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)
+        refuse_invalid_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -165,12 +165,12 @@ class SoftRod:
         def __getattr__(self, name: str) -> Callable[..., Answer]:
             """Method for a task that this class does not define; AttributeError if `name` is not a task."""
             if name not in CONFIGS:
-                known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
+                known = [task for task, config in CONFIGS.items() if not config.needs_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
             return lambda **options: self._answer(name, options)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
-        if CONFIGS[task].of_several_rods:
+        if CONFIGS[task].needs_several_rods:
             raise InputError(f"{task} is a task of several rods; use rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
@@ -189,7 +189,7 @@ class SoftRod:
         names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
         tree = config_tree(task, values | self._given_material | options)
-        solved = solve_here(job_from(tree), progress=progress)
+        solved = solve_in_process(job_of_tree(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
 
     def __repr__(self) -> str:
@@ -221,7 +221,7 @@ def _material_section(given: Mapping[str, Any]) -> MaterialSection | None:
     except ValidationError as error:
         problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
         in_config = problem | {"loc": ("material", *problem["loc"])}
-        raise InputError(sentence_of(CONFIGS["spectrum"], in_config)) from None
+        raise InputError(message_of_problem(CONFIGS["spectrum"], in_config)) from None
 
 
 def _parameter_value(name: str, value: Any) -> float:

@@ -20,8 +20,8 @@ from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
-from ..tasks.running.job import Job, attributes_of
-from .dataset import in_layout_order, view_of_dataset, with_arm_selection, with_checksums
+from ..tasks.running.job import Job, file_attributes
+from .dataset import in_layout_order, view_of_dataset, with_arm_indexes, with_checksums
 
 
 class Result(Protocol):
@@ -38,7 +38,7 @@ class Result(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StoredResult:
-    """A result given as a Dataset, from which the view is made."""
+    """A result given as a Dataset, from which the view is made. dataset: the Dataset of the whole file."""
 
     dataset: xr.Dataset
 
@@ -56,11 +56,12 @@ class SolvedPoints:
     plan: Plan = field(repr=False)
     """Plan of the results, without the attributes of a file."""
     statuses: Sequence[PointStatus]
+    """All statuses that a point of the task can have."""
     values: Mapping[str, np.ndarray] = field(repr=False)
     """Variables of the layout by name, shape (points, own dimensions)."""
     filled: Sequence[FilledVariable] = field(repr=False)
     """Variables of the file that do not belong to single points."""
-    history: Mapping[str, Any]
+    run_attributes: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""
     messages: Sequence[str]
     """Message of each point; "" for points solved together in a stretch."""
@@ -75,9 +76,9 @@ class SolvedPoints:
             "fingerprint": self.plan.fingerprint,
             "config_resolved": json.dumps(self.plan.config),
         }
-        attributes = attributes_of(self.job, self.statuses, blas_kernels())
-        whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.history))
-        return with_arm_selection(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
+        attributes = file_attributes(self.job, self.statuses, blas_kernels())
+        whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.run_attributes))
+        return with_arm_indexes(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
 
     @cached_property
     def view(self) -> View:

@@ -20,7 +20,7 @@ from ..sweep.points.stretches import SolveStretch, Stretches
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import JointVariables, NamedArrays, Solver
-from ..tasks.running.failures import FailureReasons, parameters_in_words
+from ..tasks.running.failures import FailureReasons, parameters_text
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
@@ -35,7 +35,7 @@ _compiled_tasks: set[str] = set()
 
 
 @exclusive_solve
-def solve_here(
+def solve_in_process(
     job: Job, note: PointExceptionNote | None = None, progress: bool | None = None
 ) -> SolvedPoints:
     """Solves all points of a job in this process, and returns the results.
@@ -70,14 +70,14 @@ def solve_here(
             raise
         finally:
             shown.close()
-        filled = (*plan.constants(), *joint, *plan.afterwards(values))
+        filled = (*plan.config_variables(), *joint, *plan.variables_from_points(values))
     return SolvedPoints(
         job=job,
         plan=plan,
         statuses=solver.statuses,
         values=values,
         filled=filled,
-        history=_solve_attributes(started, reasons),
+        run_attributes=_solve_attributes(started, reasons),
         messages=messages,
     )
 
@@ -105,7 +105,7 @@ def _solve_points(
     """Returns (variables, messages, reasons). variables: by name, with the dimensions of the points first.
     messages: for each point. reasons: why points failed. shown: progress display.
     """
-    reasons = FailureReasons(lambda index: parameters_in_words(job.points.values(index)))
+    reasons = FailureReasons(lambda index: parameters_text(job.points.values(index)))
     count = job.points.count
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
@@ -138,10 +138,10 @@ def _solve_stretches(
     done = 0
     for indices in map(stretches.indices, range(stretches.count)):
         found = solve_stretch(indices)
-        here = np.flatnonzero(found.solved)
-        for name, column in found.at(here).values.items():
+        here = np.flatnonzero(found.is_solved)
+        for name, column in found.part_at(here).values.items():
             flat[name][indices[here]] = column
-        left += indices[~found.solved].tolist()
+        left += indices[~found.is_solved].tolist()
         done += len(here)
         shown(done)
     return left
@@ -216,7 +216,9 @@ def display_listener(shown: Display, name: str) -> RankListener:
     KeyboardInterrupt.
     """
     return RankListener(
-        SingleRankCommunication(lambda position: shown.show_position(position.words, position.share or 0.0)),
+        SingleRankCommunication(
+            lambda position: shown.show_position(position.words, position.completed_fraction or 0.0)
+        ),
         StopRequest(),
         lambda: name,
     )

@@ -18,8 +18,8 @@ from ..config.document.reading import tree_yaml
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from .dataset import open_result
-from .keyword_arguments import ConfigTree, config_tree, job_from, plain_keyword, require_allowed_keys
-from .solving import Display, progress_display, solve_here
+from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, require_valid_tree
+from .solving import Display, progress_display, solve_in_process
 
 COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""
@@ -60,9 +60,9 @@ def sweep(
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)
     if ranks is not None:
-        require_allowed_keys(tree)
+        require_valid_tree(tree)
         return _solve_on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
-    return solve_here(job_from(tree), None if strict else _warn_of_failed_points, progress).dataset
+    return solve_in_process(job_of_tree(tree), None if strict else _warn_of_failed_points, progress).dataset
 
 
 def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:

@@ -24,22 +24,23 @@ after the previous run."""
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A method at one setting that takes part in a race.
+    """A method at one setting that takes part in a race. method, setting: names in the tables.
 
     group: name of a group of methods, which have the same colour in the figure. run: function (case) ->
-    result. slow: whether the function is run only once, instead of in every round.
+    result. is_slow: whether the function is run only once, instead of in every round.
     """
 
     method: str
     setting: str
     group: str
     run: Callable[[Any], Any]
-    slow: bool = False
+    is_slow: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """Time and error of a method at one setting on one case.
+    """Time and error of a method at one setting on one case. case, method, setting, group: names, as in
+    `Contender`.
 
     seconds: median time of the rounds. error: relative error; nan if there is no error to measure, inf if the
     method failed. failure: reason for the failure. least_seconds: minimum time of the rounds, which depends
@@ -74,21 +75,21 @@ class Study:
     undrawn: Sequence[Measurement] = ()
 
     @property
-    def drawable(self) -> bool:
+    def is_drawable(self) -> bool:
         """Whether a measurement in `measurements` has a finite error, so that the figure is not empty."""
         return any(isfinite(m.error) for m in self.measurements)
 
     def draw(self, output: Path) -> None:
         """Writes the figure into the file `output`: errors against time, with one panel per case and one
         curve per method."""
-        draw_work_precision(columns_of(self.measurements), f"ms a {self.unit}", self.target, output)
+        draw_work_precision(measurement_columns(self.measurements), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
         """All measurements as the columns of a table, for the file."""
-        return columns_of([*self.measurements, *self.undrawn])
+        return measurement_columns([*self.measurements, *self.undrawn])
 
 
-def columns_of(measurements: Sequence[Measurement]) -> Table:
+def measurement_columns(measurements: Sequence[Measurement]) -> Table:
     """The measurements as columns, by name; a number that a measurement does not have is nan."""
     columns: Table = {
         name: [getattr(m, name) for m in measurements]
@@ -157,8 +158,8 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
 
 
 class CaseWithErrorMeasure(NamedTuple):
-    """A case on which methods are compared. judge: function from a result of a method to a dictionary with
-    `error` and further fields of `Measurement`."""
+    """A case on which methods are compared, with its name. judge: function from a result of a method to a
+    dictionary with `error` and further fields of `Measurement`."""
 
     name: str
     case: Any
@@ -180,7 +181,7 @@ def measure_cases(
     rounds."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
-    raced = time_runs(runs, [0 if contender.slow else rounds for _, contender in pairs])
+    raced = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, raced, strict=True):
         least = min(timed.seconds)

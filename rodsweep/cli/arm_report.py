@@ -12,7 +12,7 @@ LINE_STYLES = {"headline": "bold", "warning": "yellow"}
 """Text styles of the printed lines, by kind of line."""
 
 
-def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
+def print_arm_report(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
     """Prints the report on an arm.
 
     given: values of the options by name of the quantity or law, None if not given. poisson, segments: as in
@@ -25,9 +25,9 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
     try:
         report = arm_report(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
     except InputError as error:
-        raise InputError(as_options(str(error))) from None
+        raise InputError(with_option_names(str(error))) from None
     console = Console(highlight=False, soft_wrap=True)
-    for line, kind in report.lines():
+    for line, kind in report.styled_paragraphs():
         console.print(line, markup=False, style=LINE_STYLES.get(kind, ""))
 
 
@@ -37,7 +37,7 @@ QUANTITY_IN_SENTENCE = re.compile(rf"^({QUANTITY_NAMES})|(?<= and )({QUANTITY_NA
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
 
 
-def as_options(sentence: str) -> str:
+def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities.
     """

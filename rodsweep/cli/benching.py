@@ -63,7 +63,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))
-        if study.drawable:
+        if study.is_drawable:
             figure = output.with_name(f"{output.stem}_{name}.png")
             study.draw(figure)
             blocks.append(f"![Errors against time, {name}]({figure.name})")

@@ -28,7 +28,7 @@ def print_job_check(job: Job) -> None:
     console = Console(highlight=False, markup=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip())
     console.print(job.task.headline())
-    if arms := job.task.arms():
+    if arms := job.task.arms_line():
         print_lines(console, [arms])
     print_lines(console, _arm_lines(job) if job.quantities else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
@@ -41,13 +41,13 @@ def print_job_check(job: Job) -> None:
         console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
     console.print(
         f"expected: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run "
-        f"may compile for up to three minutes more), {cost.memory / 1e6:.0f} MB of memory per rank, "
+        f"may compile for up to three minutes more), {cost.memory_bytes / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
-    if cost.too_large:
+    if cost.too_large_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)
         console.print(
-            f"warning: {cost.too_large} of {sampled} sampled points need more than the "
+            f"warning: {cost.too_large_count} of {sampled} sampled points need more than the "
             f"{RESOLUTION_SETTINGS.max_unknowns} unknowns allowed and will end with status failed; "
             "use a smaller F, fewer modes or a larger number for the accuracy"
         )
@@ -58,9 +58,13 @@ def _arm_lines(job: Job) -> list[str]:
     rod, validity of the model at rest."""
     arm = job.config.parameters.arm
     assert arm is not None
-    columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
+    columns = job.points.columns_by_name | {
+        v.name: values for v, values in job.quantities if v.name == "tau2"
+    }
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
-    validity = validity_sentence(ArmValidity(job.config, job.points).at_rest(), when=" before anything moves")
+    validity = validity_sentence(
+        ArmValidity(job.config, job.points).variables_at_rest(), when=" before anything moves"
+    )
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),

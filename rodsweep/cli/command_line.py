@@ -53,7 +53,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 
     stop = StopRequest(acknowledges=not launcher_rank_values())
     stop.listen()  # first: a launcher's warning signal may come before slow imports are done
-    from ..sweep.points.ranges import shard_of
+    from ..sweep.points.ranges import parsed_shard
     from .run.options import RunOptions
     from .run.running import run_config
 
@@ -62,8 +62,8 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
             "--fresh and --extend are both given; give one of them: --fresh replaces the file, --extend adds "
             "points to it"
         )
-    part = shard_of(shard)
-    suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
+    part = parsed_shard(shard)
+    suffix = f"-{part.number}-of-{part.shard_count}.h5" if part.shard_count > 1 else ".h5"
     output = result_file_path(output or Path(config.stem + suffix))
     code = run_config(config, output, RunOptions(overrides=overrides, shard=part, **options), stop)
     stop.ignore()  # the status is decided
@@ -82,13 +82,13 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     output = result_file_path(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources = counted(len(shards), "file")
-    click.echo(f"{output}: {merged.points} points from {sources}, {merged.missing} missing")
-    if merged.kernels:
-        click.echo(f"{output}: {merged.kernels}")
-    if merged.missing:
+    click.echo(f"{output}: {merged.point_count} points from {sources}, {merged.missing_count} missing")
+    if merged.kernel_warning:
+        click.echo(f"{output}: {merged.kernel_warning}")
+    if merged.missing_count:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(STOPPED_STATUS)
-    if not merged.finished:
+    if not merged.is_finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 
@@ -109,10 +109,10 @@ def snapshot(file: Path, output: Path | None) -> None:
 @overrides_option
 def check(config: Path, overrides: tuple[str, ...]) -> None:
     """Validate CONFIG and print the points, the modelled effects and the expected cost, without computing."""
-    from ..tasks.running.job import make_job
+    from ..tasks.running.job import job_of_file
     from .checking import print_job_check
 
-    print_job_check(make_job(config, overrides))
+    print_job_check(job_of_file(config, overrides))
 
 
 @commands.command()
@@ -167,6 +167,6 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 @click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
 def arm(poisson: float, segment: tuple[str, ...], **quantities: str | None) -> None:
     """Print when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
-    from .arm_report import describe_arm
+    from .arm_report import print_arm_report
 
-    describe_arm(quantities, poisson, segment)
+    print_arm_report(quantities, poisson, segment)

@@ -36,7 +36,7 @@ def rod_of_options(
     from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
     from ..model.arm.arm import SlenderArm
     from ..post.rod_portrait.results import DescribedRod
-    from .arm_report import as_options
+    from .arm_report import with_option_names
 
     own = _options_that_are_set(parameters)
     for name, value in own.items():
@@ -52,7 +52,7 @@ def rod_of_options(
         try:
             SlenderArm(**of_arm)
         except InputError as error:
-            raise InputError(as_options(str(error))) from None
+            raise InputError(with_option_names(str(error))) from None
         return DescribedRod(parameters=own, material=_read_material(words), arm=of_arm)
     for name in REQUIRED_PARAMETERS:
         if name not in own:
@@ -82,7 +82,7 @@ def solve_with_progress(shown: "ProgressReporter", solve: "SolveJob") -> "Iterat
     numbers = count(1)
 
     def show(position: SolvePosition) -> None:
-        shown.show_position(position.words, position.share or 0.0)
+        shown.show_position(position.words, position.completed_fraction or 0.0)
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")

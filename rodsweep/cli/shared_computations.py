@@ -11,7 +11,7 @@ import click
 from ..config.schema import Config
 from ..results.file.creation import Plan
 from ..solve.backend.availability import require_solvers, start_solvers
-from ..sweep.points.flutter_forces import FlutterForces, flutter_of_rod
+from ..sweep.points.flutter_forces import FlutterForces, flutter_force_of_rod
 from ..sweep.points.grid import rods_for_flutter_forces
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
@@ -20,36 +20,38 @@ from ..tasks.protocol import Task
 
 @dataclass(slots=True)
 class _SharedWork:
-    """Computations divided among the ranks. Each rank omits its remaining items after a stop signal."""
+    """Computations divided among the ranks of `team`. Each rank omits its remaining items after a stop
+    signal, recorded in `stop`.
+    """
 
     team: Team
     stop: StopRequest
-    skipped: bool = False
+    has_skipped_items: bool = False
     """Whether this rank has omitted an item after a stop signal."""
 
     def gather_in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
         """Results of `work` for all items, in order, on every rank; None for an omitted item."""
-        return self.team.in_order(items, lambda item: self._run_unless_stopped(work, item))
+        return self.team.map_in_order(items, lambda item: self._run_unless_stopped(work, item))
 
     def _run_unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
-        self.skipped = self.skipped or bool(self.stop)
-        return None if self.skipped else work(item)
+        self.has_skipped_items = self.has_skipped_items or bool(self.stop)
+        return None if self.has_skipped_items else work(item)
 
     @property
     def any_rank_stopped(self) -> bool:
         """Whether any rank has omitted an item. Collective: all ranks call together."""
-        return any(self.team.exchange(self.skipped))
+        return any(self.team.gather_on_all_ranks(self.has_skipped_items))
 
 
-def with_shared_constants(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
+def with_config_variables(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
     """The plan of a result file, with the variables that do not depend on points, computed by all ranks
     together.
 
     None if a stop signal came before the computation ended.
     """
     shared = _SharedWork(team, stop)
-    found = task.constants(shared.gather_in_order)
-    return None if shared.any_rank_stopped else replace(plan, constants=lambda: found)
+    found = task.config_variables(shared.gather_in_order)
+    return None if shared.any_rank_stopped else replace(plan, config_variables=lambda: found)
 
 
 def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
@@ -57,12 +59,12 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
 
     None if a stop signal came before the computation ended.
     """
-    rods = team.on_first(lambda: rods_for_flutter_forces(config))
+    rods = team.call_on_first_rank(lambda: rods_for_flutter_forces(config))
     if not all(rod.standard for rod in rods):  # a rank without a rod must start PETSc with the others
         team.require_on_all_ranks(require_solvers)
         team.require_on_all_ranks(start_solvers)
     shared = _SharedWork(team, stop)
-    found = shared.gather_in_order(rods, flutter_of_rod)
+    found = shared.gather_in_order(rods, flutter_force_of_rod)
     return None if shared.any_rank_stopped else dict(zip(rods, found, strict=True))
 
 
@@ -71,6 +73,6 @@ def report_stop(team: Team, stop: StopRequest) -> None:
 
     Collective: all ranks call together.
     """
-    signal = max(team.exchange(stop.name))
+    signal = max(team.gather_on_all_ranks(stop.name))
     if team.is_first:
         click.echo(f"stopped by {signal}; no point is computed yet, the same command starts again")

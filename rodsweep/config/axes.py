@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
-from .arm.axes import MOST_POINTS, grid_axis_names, parameter_of_axis
+from .arm.axes import MAX_ARM_GRID_POINTS, grid_axis_names, parameter_of_axis
 from .arm.section import ArmSection
-from .values import Axis, Number, StrictSection, Text, Values
+from .values import Axis, Number, ParameterAxis, StrictSection, Text
 
 NONLINEAR_ONLY_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 """Names of the parameters on which limit cycles depend but the linear problem does not."""
@@ -27,7 +27,7 @@ def _section_with_keys(base: type[StrictSection], names: tuple[str, ...], kind: 
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section_with_keys(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), Values)
+LinearAxes: Any = _section_with_keys(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), ParameterAxis)
 
 
 class Axes(LinearAxes):
@@ -44,7 +44,7 @@ class Axes(LinearAxes):
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given in addition to the arm replaces the arm's value."""
 
-    of_arm: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+    task_parameters: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
     """Names of the parameters that the task takes from an arm, or from axes given in addition to the arm."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are the rows of a phase diagram, which needs a grid of parameters."""
@@ -58,18 +58,18 @@ class Axes(LinearAxes):
             return given
         return {
             name: DEFAULT_VALUES_OF_PARAMETERS[name]
-            for name in cls.of_arm
+            for name in cls.task_parameters
             if name in DEFAULT_VALUES_OF_PARAMETERS
         } | given
 
     @model_validator(mode="after")
-    def _columns_of_points(self) -> "Axes":
+    def _require_points_for_columns(self) -> "Axes":
         if self.columns is not None and self.points is None:
             raise ValueError("parameters.columns is given but parameters.points is not; remove it")
         return self
 
     @property
-    def optional(self) -> tuple[str, ...]:
+    def given_optional_parameters(self) -> tuple[str, ...]:
         """Names of the optional parameters that are given as an axis or as a column of the file of points."""
         given = (*self.given_axes, *(self.columns or ()))
         return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
@@ -82,7 +82,7 @@ class Axes(LinearAxes):
         if self.arm is None or self.arm_axes:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
-        return {name: axes[name] for name in self.of_arm if name in axes}
+        return {name: axes[name] for name in self.task_parameters if name in axes}
 
     @cached_property
     def given_axes(self) -> dict[str, Axis]:
@@ -119,7 +119,7 @@ class Axes(LinearAxes):
     def _given_values(self) -> dict[str, Any]:
         return {name: getattr(self, name, None) for name in PARAMETERS}
 
-    def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
+    def require_points(self, names: tuple[str, ...], or_points: bool = True) -> None:
         """Raises ValueError unless the section defines points in exactly one way: by axes of all `names`, by
         an arm, or by a file of points.
 
@@ -143,21 +143,21 @@ class Axes(LinearAxes):
 
         forced: whether F is a parameter of the task.
         """
-        arm.require_allowed_keys()
-        arm.refuse_misuse(forced, self.given_axes)
+        arm.require_allowed_values()
+        arm.refuse_conflicting_keys(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
-        count = arm.count(math.prod(axis.size for axis in beside.values()))
-        if self.arm_axes and count > MOST_POINTS:
+        count = arm.grid_point_count(math.prod(axis.size for axis in beside.values()))
+        if self.arm_axes and count > MAX_ARM_GRID_POINTS:
             raise ValueError(
-                f"parameters.arm makes a grid of {count} points, more than the {MOST_POINTS} allowed; use "
-                "fewer values"
+                f"parameters.arm makes a grid of {count} points, more than the {MAX_ARM_GRID_POINTS} "
+                "allowed; use fewer values"
             )
         if not self.arm_axes:
             arm.grid_axes()
 
 
 AxesAndNumbers: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, Number)
-AllAxes: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, Values)
+AllAxes: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, ParameterAxis)
 
 
 class LinearParameters(AxesAndNumbers):
@@ -176,7 +176,7 @@ class DiagramParameters(LinearParameters):
 class NonlinearParameters(AllAxes):
     """Section `parameters` of a task on the nonlinear rod, all of whose parameters may be axes."""
 
-    of_arm: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
+    task_parameters: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
 
 
 def joined_names(names: tuple[str, ...], last: str) -> str:

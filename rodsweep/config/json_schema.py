@@ -19,7 +19,7 @@ from pydantic import BaseModel
 
 from ..model.arm.quantities import LOADS, QUANTITIES, RELATIVE_LOADS, SECTION_SIDES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .arm.axes import LOAD_AXES, NON_LOAD_KEYS
+from .arm.axes import LOAD_KEYS, NON_LOAD_KEYS
 from .document.refusals import value_type_of_key
 from .tasks import CONFIGS
 from .values import Axis, StrictSection
@@ -48,10 +48,10 @@ def json_schema() -> dict[str, Any]:
         schema = config.model_json_schema(ref_template="#/definitions/{model}")
         definitions |= schema.pop("$defs", {})
         _describe_keys(schema, config)
-        for section in sections_of(config):
+        for section in section_classes(config):
             _describe_keys(definitions[section.__name__], section)
-        if not config.others_may_be_needed:
-            condition = points_condition(config.rod_parameters_used({}), lists=not config.of_several_rods)
+        if not config.parameters_depend_on_options:
+            condition = points_condition(config.rod_parameters_used({}), lists=not config.needs_several_rods)
             schema["properties"]["parameters"] = {"allOf": [schema["properties"]["parameters"], condition]}
         tasks.append(schema)
     for section in definitions.values():
@@ -67,16 +67,16 @@ def json_schema() -> dict[str, Any]:
     return {"$schema": DIALECT, "title": "A config of rodsweep", **whole}
 
 
-def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
+def section_classes(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
     """Yields the classes of the sections of a config, including nested sections."""
     for field in config.model_fields.values():
         kind = value_type_of_key(field)
         if isinstance(kind, type) and issubclass(kind, StrictSection) and not issubclass(kind, Axis):
             yield kind
-            yield from sections_of(kind)
+            yield from section_classes(kind)
 
 
-def meanings_of(section: type[BaseModel]) -> dict[str, str]:
+def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
     """Docstring of every key of a section, by key, including keys of base classes."""
     found: dict[str, str] = {}
     for kind in reversed(section.__mro__):
@@ -101,7 +101,7 @@ def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
     titles.
     """
     parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
-    meanings = parameters | meanings_of(section)
+    meanings = parameters | key_docstrings(section)
     for name, key in schema["properties"].items():
         key.pop("title", None)
         if name in meanings:
@@ -179,7 +179,7 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
     section["allOf"] = [
         {"oneOf": [circle, rectangle, pieces]},
         {"not": all_keys_given(["inner_radius", "tip_radius"])},
-        *({"not": all_keys_given(pair)} for pair in combinations(LOAD_AXES, 2)),
+        *({"not": all_keys_given(pair)} for pair in combinations(LOAD_KEYS, 2)),
     ]
 
 
@@ -190,9 +190,9 @@ def points_condition(needed: Iterable[str], lists: bool) -> Schema:
     needed, either the arm has a load or F is given; otherwise both are forbidden.
     """
     axes = tuple(name for name in needed if PARAMETERS[name].default is None)
-    loads = [all_keys_given([name]) for name in LOAD_AXES]
+    loads = [all_keys_given([name]) for name in LOAD_KEYS]
     loaded = {"properties": {"arm": {"anyOf": loads}}}
-    unloaded = {"properties": {"arm": no_key_given(LOAD_AXES)}}
+    unloaded = {"properties": {"arm": no_key_given(LOAD_KEYS)}}
     load = {"oneOf": [key_is_given("F"), loaded]} if "F" in axes else unloaded
     none_listed = no_key_given(["points", "columns"])
     ways = [

@@ -12,14 +12,15 @@ from ..model.material.build import Build
 from ..model.material.profile import FACTOR_NAMES, Profile
 from .values import Number, StrictSection, cell_number, short_repr
 
-MOST_ROWS = 1000
+MAX_PROFILE_ROWS = 1000
 """Maximum number of rows of a profile; longer profiles are refused."""
-LARGEST_FILE = 1_000_000
+MAX_PROFILE_CHARACTERS = 1_000_000
 """Maximum number of characters in the CSV file of a profile; longer files are refused."""
 LawName = Literal["linear", "neo_hookean"]
 SectionName = Literal["fixed", "swelling"]
-Column = Annotated[
-    list[Number] | None, Field(max_length=MOST_ROWS, description=f"a list of at most {MOST_ROWS} numbers")
+FactorColumn = Annotated[
+    list[Number] | None,
+    Field(max_length=MAX_PROFILE_ROWS, description=f"a list of at most {MAX_PROFILE_ROWS} numbers"),
 ]
 
 
@@ -28,20 +29,22 @@ class ProfileTable(StrictSection):
     omitted column is 1 along the whole arm.
     """
 
-    u: Annotated[list[Number], Field(max_length=MOST_ROWS, description="a list of numbers from 0 to 1")]
+    u: Annotated[
+        list[Number], Field(max_length=MAX_PROFILE_ROWS, description="a list of numbers from 0 to 1")
+    ]
     """Material coordinate, from 0 at the base to 1 at the tip, not decreasing. Two equal values mark a jump
     of the factors."""
-    k1: Column = None
+    k1: FactorColumn = None
     """Factor of the stretch stiffness at each u."""
-    k2: Column = None
+    k2: FactorColumn = None
     """Factor of the shear stiffness at each u."""
-    k3: Column = None
+    k3: FactorColumn = None
     """Factor of the bending stiffness at each u."""
-    gamma1: Column = None
+    gamma1: FactorColumn = None
     """Factor of the axial drag at each u."""
-    gamma2: Column = None
+    gamma2: FactorColumn = None
     """Factor of the normal drag at each u."""
-    gamma3: Column = None
+    gamma3: FactorColumn = None
     """Factor of the rotational drag at each u."""
 
     @cached_property
@@ -57,7 +60,7 @@ class ProfileTable(StrictSection):
         return Profile(tuple(self.u), tuple(zip(*columns.values(), strict=True)))
 
     @model_validator(mode="after")
-    def _is_a_profile(self) -> "ProfileTable":
+    def _require_valid_profile(self) -> "ProfileTable":
         assert self.profile
         return self
 
@@ -90,7 +93,7 @@ class MaterialSection(StrictSection):
         return Build(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")
-    def _is_known(self) -> "MaterialSection":
+    def _require_valid_build(self) -> "MaterialSection":
         if not self.model_fields_set:
             raise ValueError("the section is empty; give law, section or profile")
         assert self.build
@@ -119,14 +122,14 @@ def read_profile(path: Path) -> dict[str, list[float]]:
         if not path.is_file():
             raise InputError(f"{where} {'is not a file' if path.exists() else 'does not exist'}")
         with path.open(newline="", encoding="utf-8-sig") as file:
-            text = file.read(LARGEST_FILE + 1)
+            text = file.read(MAX_PROFILE_CHARACTERS + 1)
         rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
     except OSError as error:
         raise InputError(f"{where} cannot be read: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{where} is not CSV text ({error})") from error
-    if len(text) > LARGEST_FILE or len(rows) > MOST_ROWS + 1:
-        raise InputError(f"{where} has more than {MOST_ROWS} rows")
+    if len(text) > MAX_PROFILE_CHARACTERS or len(rows) > MAX_PROFILE_ROWS + 1:
+        raise InputError(f"{where} has more than {MAX_PROFILE_ROWS} rows")
     header = rows[0] if rows else []
     if "u" not in header or not set(header) <= {"u", *FACTOR_NAMES} or len(set(header)) < len(header):
         raise InputError(f"{where}: the header must name u and any of {', '.join(FACTOR_NAMES)}, each once")

@@ -16,9 +16,9 @@ from .axes import Axes, LinearParameters
 from .material import MaterialSection
 from .values import Number, StrictSection, Text
 
-Modes = Annotated[int, Field(ge=1, le=100)]
-Nodes = Annotated[int, Field(ge=3, le=513)]
-Crossings = Annotated[int, Field(ge=1, le=1000)]
+ModeCount = Annotated[int, Field(ge=1, le=100)]
+NodeCount = Annotated[int, Field(ge=3, le=513)]
+CrossingCount = Annotated[int, Field(ge=1, le=1000)]
 
 
 class Config(StrictSection):
@@ -27,7 +27,9 @@ class Config(StrictSection):
     title: Annotated[Text, Field(max_length=200)] = ""
     """Name of the run, printed by `check` and `show`."""
     task: str
+    """Name of the task."""
     parameters: Axes
+    """Axes of the parameters, a file of points, or an arm."""
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode. `limit_cycle` and `branch`, whose
     numbers are cycles, have other limits and defaults."""
@@ -37,18 +39,18 @@ class Config(StrictSection):
     ] = None
     """Constitutive law and profile of the arm; by default a linear law and a uniform arm."""
 
-    of_cycles: ClassVar[bool] = False
+    solves_nonlinear_motion: ClassVar[bool] = False
     """Whether the task solves the nonlinear motion of the rods."""
     allows_crushed_rods: ClassVar[bool] = False
     """Whether a grid may contain crushed rods: True for tasks with the state `crushed`."""
 
-    others_may_be_needed: ClassVar[bool] = False
+    parameters_depend_on_options: ClassVar[bool] = False
     """Whether the names of the needed parameters depend on the task's options."""
-    of_several_rods: ClassVar[bool] = False
+    needs_several_rods: ClassVar[bool] = False
     """Whether the task needs a grid of several rods, so that a list of points is refused."""
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def parameter_names(self) -> tuple[str, ...]:
         """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
         in the config.
         """
@@ -59,7 +61,9 @@ class Config(StrictSection):
         """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
         made = () if arm is None else arm.cone_parameters
-        return tuple(n for n in OPTIONAL_PARAMETERS if n in self.parameters.optional or n in made)
+        return tuple(
+            n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_optional_parameters or n in made
+        )
 
     @property
     def stated_build(self) -> Build | None:
@@ -97,7 +101,7 @@ class Config(StrictSection):
         """
         return {}
 
-    def refuse_unused(self) -> None:
+    def refuse_options_without_effect(self) -> None:
         """Raises ValueError if the config gives an option that has no effect."""
         for option, remedy in self.options_without_effect.items():
             if option in getattr(self, self.task).model_fields_set:
@@ -121,11 +125,14 @@ class Config(StrictSection):
             return meant
         if self.parameters.arm_axes:  # the grid's axes do not contain parameters with one value
             given = self.parameters.given_axes
-            beside = {name: float(given[name].array()[0]) if name in given else None for name in self.names}
+            beside = {
+                name: float(given[name].array()[0]) if name in given else None
+                for name in self.parameter_names
+            }
             meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.arm_axes}
         return meant | {"arm": self.parameters.arm.settings_of_results}
 
-    def refuse_found(self, name: str, why: str) -> None:
+    def refuse_solved_parameter(self, name: str, why: str) -> None:
         """Raises ValueError, with the reason `why`, if the config gives the parameter `name`, for which the
         task solves.
         """
@@ -133,7 +140,7 @@ class Config(StrictSection):
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
 
     @model_validator(mode="after")
-    def _one_material(self) -> "Config":
+    def _refuse_two_materials(self) -> "Config":
         arm = self.parameters.arm
         if arm is None:
             return self
@@ -152,7 +159,7 @@ class LinearConfig(Config):
 
     parameters: LinearParameters
 
-    beyond: ClassVar[tuple[str, ...]] = ()
+    nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ()
     """Names of the parameters that only the nonlinear problem has but that some options of the task use."""
 
     @classmethod
@@ -160,9 +167,9 @@ class LinearConfig(Config):
         return LINEAR_PARAMETERS
 
     @model_validator(mode="after")
-    def _only_parameters_that_are_used(self) -> "LinearConfig":
+    def _refuse_unused_parameters(self) -> "LinearConfig":
         for name in self.parameters.constant_parameters:
-            if name not in self.beyond:
+            if name not in self.nonlinear_parameters_used:
                 raise ValueError(
                     f"parameters.{name} is given but the task {self.task} does not use it; remove it"
                 )

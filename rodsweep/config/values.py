@@ -8,7 +8,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSeriali
 
 from ..arrays import Array
 
-MOST_VALUES = 1_000_000_000
+MAX_AXIS_VALUES = 1_000_000_000
 """Maximum number of values on an axis; a range with more values is refused."""
 
 
@@ -102,7 +102,12 @@ AXIS_SCHEMA: dict[str, Any] = {
             "properties": {
                 "start": {"type": "number", "description": "the first value"},
                 "stop": {"type": "number", "description": "the last value"},
-                "num": {"type": "integer", "minimum": 1, "maximum": MOST_VALUES, "description": "how many"},
+                "num": {
+                    "type": "integer",
+                    "minimum": 1,
+                    "maximum": MAX_AXIS_VALUES,
+                    "description": "how many",
+                },
                 "spacing": {"enum": ["linear", "log"], "default": "linear"},
             },
             "required": ["start", "stop", "num"],
@@ -111,7 +116,7 @@ AXIS_SCHEMA: dict[str, Any] = {
     ],
 }
 """JSON schema of the values that `as_axis` accepts."""
-DIGITS_OF_QUANTITY = 15
+QUANTITY_DIGITS = 15
 """Number of significant digits to which quantities in SI units are rounded: unit conversion changes the
 16th."""
 
@@ -140,7 +145,7 @@ class Axis(StrictSection):
         return self.num if self.values is None else len(self.values)
 
     @property
-    def logarithmic(self) -> bool:
+    def is_logarithmic(self) -> bool:
         """Whether the axis has log spacing, or is a list of positive values over more than a decade, inf left
         out.
         """
@@ -169,7 +174,7 @@ class Axis(StrictSection):
 
     def array(self) -> Array:
         """Values of the axis in increasing order, (size,); for an arm's quantity rounded to
-        DIGITS_OF_QUANTITY digits.
+        QUANTITY_DIGITS digits.
         """
         if self.values is not None:
             values = np.array(self.values)
@@ -180,7 +185,7 @@ class Axis(StrictSection):
         if self.written is None:
             return values
         # Rounded, so that 10 cm between 4 cm and 12 cm is 0.1 m, as a user would type, and not 0.099999...
-        return np.array([float(f"{value:.{DIGITS_OF_QUANTITY}g}") for value in values.tolist()])
+        return np.array([float(f"{value:.{QUANTITY_DIGITS}g}") for value in values.tolist()])
 
 
 def as_axis(value: Any) -> Axis:
@@ -217,8 +222,8 @@ def _axis_from_range(value: dict) -> Axis:
     spacing = value.get("spacing", "linear")
     if spacing not in ("linear", "log"):
         raise ValueError(f"spacing = {short_repr(spacing)} is neither linear nor log")
-    if isinstance(num, bool) or not isinstance(num, int) or not 1 <= num <= MOST_VALUES:
-        raise ValueError(f"num = {short_repr(num)} is not a whole number from 1 to {MOST_VALUES}")
+    if isinstance(num, bool) or not isinstance(num, int) or not 1 <= num <= MAX_AXIS_VALUES:
+        raise ValueError(f"num = {short_repr(num)} is not a whole number from 1 to {MAX_AXIS_VALUES}")
     if abs(start) == inf or abs(stop) == inf:
         raise ValueError("start and stop of a range must be finite; put inf in a list")
     if num == 1 and start != stop:
@@ -240,4 +245,4 @@ def axis_from_resolved(resolved: dict[str, Any]) -> Axis:
     return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_float, values))}))
 
 
-Values = Annotated[Axis, BeforeValidator(as_axis)]
+ParameterAxis = Annotated[Axis, BeforeValidator(as_axis)]

@@ -22,7 +22,7 @@ from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
-from .texts import SolvingSign, show_texts
+from .texts import SolvingSign, add_texts
 
 NO_CYCLE_CURVES_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""
@@ -47,7 +47,7 @@ class PageContents:
         self.diagram = DiagramPicture()
         self.numbers = NumbersTable()
         self.sign = SolvingSign(name="working")
-        self.sharing = Sharing(self.cards, self.beating.line, loaded)
+        self.sharing = Sharing(self.cards, self.beating.arm_line, loaded)
         self.buttons = {
             kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])
             for kind, name, label in (
@@ -85,9 +85,9 @@ class PageContents:
                 *(card.root for card in self.cards),
             ):  # fmt: skip
                 document.add_root(root)
-            show_texts(document, (self.sign, self.numbers.root))
+            add_texts(document, (self.sign, self.numbers.root))
         document.js_on_event(DocumentReady, colour_script([card.figure for card in self.cards]))
-        document.js_on_event(DocumentReady, self.beating.animation())
+        document.js_on_event(DocumentReady, self.beating.animation_script())
         document.title = "rodsweep explore"
         document.template = template_text("page.html")
         document.template_variables["page_css"] = template_text("page.css")
@@ -99,8 +99,8 @@ class PageContents:
         axis = load_axis(state)
         at = F * axis.factor
         self.controls.show_largest_load(state, axis)
-        self.growth.move_point(at)
-        self.branches.move_point(at)
+        self.growth.move_load_line(at)
+        self.branches.move_load_line(at)
         load = SCALES[state.tab][state.load]
         second = SCALES[state.tab][state.second]
         x = load.value(state.values[state.load])
@@ -124,7 +124,7 @@ class PageContents:
         elif kind == "motion":
             self.beating.show_motion(found)
         elif kind == "film":
-            self.sharing.give_film(found["gif"])
+            self.sharing.save_film(found["gif"])
         elif kind == "thresholds":
             self.growth.show_thresholds(found, load_axis(state))
         elif kind == "growth":
@@ -144,7 +144,7 @@ class PageContents:
         """
         self.numbers.show(kind, None)
         if kind == "cycle":
-            self.beating.stop()
+            self.beating.remove_all_shapes()
         if kind == "cycles":
             self.diagram.card.show_sentence_above(sentence)
             return

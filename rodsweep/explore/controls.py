@@ -38,7 +38,7 @@ class SliderField:
         self.text.on_change("value", self._on_text_change)
         self.slider.on_change("value", self._on_slider_change)
         self.root = Column(self.text, self.slider, sizing_mode="stretch_width", spacing=0)
-        self._is_shown = False
+        self._is_updating = False
         """True while the page itself changes widgets; callbacks of the widgets then return at once."""
         self._sliding = False
 
@@ -46,21 +46,21 @@ class SliderField:
         """Shows `text` in the field, and moves the slider to the value of `text` unless the user is dragging
         the slider.
         """
-        self._is_shown = True
+        self._is_updating = True
         try:
             self.text.value = text
             position = self.scale.position(text)
             if position is not None and not self._sliding:
                 self.slider.value = position
         finally:
-            self._is_shown = False
+            self._is_updating = False
 
     def _on_text_change(self, attribute: str, old: str, new: str) -> None:
-        if not self._is_shown:
+        if not self._is_updating:
             self.changed(self.scale.name, new)
 
     def _on_slider_change(self, attribute: str, old: float, new: float) -> None:
-        if self._is_shown:
+        if self._is_updating:
             return
         self._sliding = True
         try:
@@ -78,7 +78,7 @@ class Controls:
 
     def __init__(self, changed: ChangeCallback, style_sheet: InlineStyleSheet):
         self._changed = changed
-        self._is_shown = False
+        self._is_updating = False
         sheets: list[StyleSheet] = [style_sheet]
         self.fields = {
             tab: {name: SliderField(scale, self._field_changed, sheets) for name, scale in scales.items()}
@@ -107,7 +107,7 @@ class Controls:
 
     def show(self, state: PageState) -> None:
         """Sets all controls to the values of `state`."""
-        self._is_shown = True
+        self._is_updating = True
         try:
             self.tabs.active = list(TAB_DEFAULTS).index(state.tab)
             for name, field in self.fields[state.tab].items():
@@ -117,7 +117,7 @@ class Controls:
             self.across.value = state.second
             self.F_max.value = state.F_max
         finally:
-            self._is_shown = False
+            self._is_updating = False
 
     def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
@@ -130,9 +130,9 @@ class Controls:
         self._changed(values={name: text})
 
     def _tab_changed(self, attribute: str, old: int, new: int) -> None:
-        if not self._is_shown:
+        if not self._is_updating:
             self._changed(tab=list(TAB_DEFAULTS)[new])
 
     def _choice_changed(self, key: str, attribute: str, old: Any, new: Any) -> None:
-        if not self._is_shown:
+        if not self._is_updating:
             self._changed(**{key: new})

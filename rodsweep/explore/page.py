@@ -11,7 +11,7 @@ from ..errors import InputError
 from .contents import PageContents
 from .idle_timer import IdleTimer
 from .scales import SCALES
-from .sharing import state_of_text
+from .sharing import state_from_config_text
 from .solving import needs as kinds
 from .solving.diagrams import has_uniform_rods
 from .solving.needs import AnswerInputs, answer_inputs, state_to_solve
@@ -67,7 +67,7 @@ class Page:
     def load(self, text: str) -> None:
         """Shows the rod or the arm of a config, or an error message; text: the config in YAML."""
         try:
-            loaded = state_of_text(text, self.state.F_max)
+            loaded = state_from_config_text(text, self.state.F_max)
             self._change_to(replace(loaded, across=loaded.across or self.state.across))
         except InputError as error:
             self._show_error(str(error))

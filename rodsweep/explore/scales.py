@@ -14,7 +14,7 @@ from .state import PageState, float_or_text, rod_of
 
 @dataclass(frozen=True, kw_only=True)
 class ControlScale:
-    """Scale of the slider for one parameter of a rod, or one quantity of an arm.
+    """Scale of the slider for one parameter of a rod, or one quantity of an arm, with the name `name`.
 
     low, high: values at the ends of the slider, in `unit`.
     """
@@ -24,7 +24,7 @@ class ControlScale:
     """Text above the slider, with the unit."""
     low: float
     high: float
-    logarithmic: bool = True
+    is_logarithmic: bool = True
     """Whether the slider is logarithmic."""
     unit: str = ""
     """Unit of an arm's quantity; empty for a rod's parameter, which is dimensionless."""
@@ -54,7 +54,7 @@ class ControlScale:
         """Slider positions of the two ends: `low` and `high`, or their common logarithms for a logarithmic
         slider.
         """
-        return (log10(self.low), log10(self.high)) if self.logarithmic else (self.low, self.high)
+        return (log10(self.low), log10(self.high)) if self.is_logarithmic else (self.low, self.high)
 
     def position(self, text: str) -> float | None:
         """Slider position for a text that the user typed, clipped to the ends; None if the text is invalid or
@@ -66,7 +66,7 @@ class ControlScale:
             return None
         if value == inf:
             return end
-        if self.logarithmic:
+        if self.is_logarithmic:
             value = log10(value) if value > 0 else start
         return min(max(value, start), end)
 
@@ -74,7 +74,7 @@ class ControlScale:
         """Value at a slider position, as text."""
         if self.has_inf and position >= self.ends[1]:
             return "inf"
-        value = 10**position if self.logarithmic else position
+        value = 10**position if self.is_logarithmic else position
         assert isfinite(value)
         return self.text(value)
 
@@ -108,7 +108,9 @@ def _rod_scale(
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"
-    return ControlScale(name=name, label=label, low=low, high=high, logarithmic=logarithmic, has_inf=has_inf)
+    return ControlScale(
+        name=name, label=label, low=low, high=high, is_logarithmic=logarithmic, has_inf=has_inf
+    )
 
 
 def _arm_scale(
@@ -117,7 +119,7 @@ def _arm_scale(
     """Scale of an arm's quantity `name`. low, high, unit, factor, logarithmic: as in `ControlScale`."""
     label = f"{quantity_words(name)} ({unit})"
     return ControlScale(
-        name=name, label=label, low=low, high=high, unit=unit, factor=factor, logarithmic=logarithmic
+        name=name, label=label, low=low, high=high, unit=unit, factor=factor, is_logarithmic=logarithmic
     )
 
 

@@ -9,13 +9,13 @@ from bokeh.core.properties import String
 from bokeh.model import DataModel
 from bokeh.models import Button, Column, CustomJS, Div, FileInput, GlyphRenderer, Row, Select
 
-from ..config.document.parsing import parse
+from ..config.document.parsing import parsed_yaml
 from ..config.document.reading import validated_config
 from ..errors import InputError
 from .page_style import style_sheet, template_text
 from .pictures.card import Card
 from .state import DEFAULT_F_MAX, PageState
-from .stored import state_of
+from .stored import state_from_config
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Browser script that writes the state of the page into the address bar."""
@@ -63,7 +63,7 @@ class Sharing:
             Div(name=name, sizing_mode="stretch_width", stylesheets=[texts])
             for name in ("address", "yaml", "python")
         )
-        self.lines = SharedLines()
+        self.shared_lines = SharedLines()
         self.task = Select(
             title="Config of the task",
             name="task",
@@ -74,7 +74,7 @@ class Sharing:
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
         save.js_on_click(
-            CustomJS(args={"lines": self.lines}, code=template_text("download.js") + SAVE_SCRIPT)
+            CustomJS(args={"lines": self.shared_lines}, code=template_text("download.js") + SAVE_SCRIPT)
         )
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._load_chosen_file)
@@ -83,7 +83,7 @@ class Sharing:
             for what, name in (("config", "yaml"), ("Python lines", "python"))
         ]
         for button, name in zip(copies, ("config", "python"), strict=True):
-            button.js_on_click(CustomJS(args={"lines": self.lines}, code=COPY_SCRIPT.format(name)))
+            button.js_on_click(CustomJS(args={"lines": self.shared_lines}, code=COPY_SCRIPT.format(name)))
         self.film = Div(name="film", tags=[""], visible=False)
         self.film.js_on_change(
             "tags", CustomJS(args={"film": self.film}, code=template_text("download.js") + FILM_SCRIPT)
@@ -97,7 +97,7 @@ class Sharing:
     def update_hidden_texts(self, state: PageState) -> None:
         """Updates the texts that the buttons copy and save. The visible texts are updated by `show_texts`."""
         self._state = state
-        self.lines.update(config=self._config(), python=state.python())
+        self.shared_lines.update(config=self._config(), python=state.python())
 
     def show_texts(self) -> None:
         """Writes the visible texts of the latest state.
@@ -108,10 +108,10 @@ class Sharing:
         """
         address = self._state.address()
         self.address.update(text=f'<a href="?{escape(address)}">This page as an address</a>', tags=[address])
-        for shown, lines in ((self.python, self.lines.python), (self.yaml, self.lines.config)):
+        for shown, lines in ((self.python, self.shared_lines.python), (self.yaml, self.shared_lines.config)):
             shown.text = f"<pre>{escape(lines)}</pre>"
 
-    def give_film(self, gif: bytes) -> None:
+    def save_film(self, gif: bytes) -> None:
         """Makes the browser save a film; gif: content of the file."""
         self.film.tags = [b64encode(gif).decode()]
         # Remove half a megabyte from the page; removal in the same message would prevent saving.
@@ -119,7 +119,7 @@ class Sharing:
 
     def _choose_task(self, attribute: str, old: str, new: str) -> None:
         """Shows the config of the task that the user has chosen; the arguments, from Bokeh, are not used."""
-        self.lines.config = self._config()
+        self.shared_lines.config = self._config()
         self.show_texts()
 
     def _config(self) -> str:
@@ -154,12 +154,12 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
     return [choice, Row(*buttons)]
 
 
-def state_of_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
+def state_from_config_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
     invalid config, raises the same InputError as the command line.
     """
     where = "the loaded file"
-    tree = parse(text, where)
+    tree = parsed_yaml(text, where)
     if not isinstance(tree, dict):
         raise InputError(f"{where} does not consist of keys and values; give task and parameters")
-    return state_of(validated_config(tree), Path(where), F_max)
+    return state_from_config(validated_config(tree), Path(where), F_max)

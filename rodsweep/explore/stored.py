@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..api.dataset import open_result
-from ..config.document.reading import config_of, load_config
+from ..config.document.reading import config_from_resolved, load_config
 from ..config.schema import Config
 from ..errors import InputError
 from .scales import SCALES
@@ -44,16 +44,16 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
     if path.suffix not in RESULT_SUFFIXES:
-        return state_of(load_config(path)[0], path), None
+        return state_from_config(load_config(path)[0], path), None
     data = open_result(path)
     try:
-        state = state_of(config_of(json.loads(data.attrs["config_resolved"])), path)
+        state = state_from_config(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
     return state, StoredResults(path, data, state, stored_diagram(data, state))
 
 
-def state_of(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
+def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for a config.
 
     Each parameter has the middle value of its axis, and the load the middle of its values that do not crush
@@ -122,7 +122,9 @@ def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
 
 
 def _law_key(config: Config, path: Path) -> str:
-    """Constitutive law of a config, as a key of `LAWS`. Raises InputError if the arm has a profile."""
+    """Constitutive law of a config, as a key of `LAWS`; "linear" for a law that the page does not offer.
+    Raises InputError if the arm has a profile.
+    """
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
@@ -141,8 +143,8 @@ def _exact_number_text(value: float) -> str:
 
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
-    """Diagram of a result file over the load and the second parameter of `state`; None if the file contains
-    no such diagram.
+    """Diagram of a result file over the load and the second parameter of `state`, at the middle values of all
+    other parameters; None if the file contains no such diagram.
     """
     second = state.second
     dims = set(data["status"].dims)

@@ -68,7 +68,7 @@ class StoredResults:
         """Stored cycle of the rod of `state`, with axes of length 1; None if no such cycle is stored, or too
         few shapes for a film.
         """
-        numbers = self._points(state)
+        numbers = self._matching_points(state)
         is_other = state.tab != self.state.tab or state.law != self.state.law
         if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
             return None
@@ -79,18 +79,21 @@ class StoredResults:
 
     def load_near(self, state: PageState, at: float) -> float:
         """Load that a click at `at` selects: the nearest stored load if it is close, see `CLICK_TOLERANCE`,
-        else `at`. Loads are in the unit of the control.
+        else `at`; also `at` if the file has no cycles, fewer than two loads for this rod, or results of the
+        other tab. Loads are in the unit of the control.
         """
         if state.tab != self.state.tab or not self.has_cycles:
             return at
-        stored = np.unique(self._values(state.tab, state.load)[self._points(state, (state.load,))])
+        stored = np.unique(
+            self._control_values(state.tab, state.load)[self._matching_points(state, (state.load,))]
+        )
         if len(stored) < 2:
             return at
         nearest = float(stored[np.argmin(np.abs(stored - at))])
         spacing = float(np.min(np.diff(stored)))
         return nearest if abs(nearest - at) < CLICK_TOLERANCE * spacing else at
 
-    def _values(self, tab: str, name: str) -> Array:
+    def _control_values(self, tab: str, name: str) -> Array:
         """Values of the parameter or quantity `name` at all points of the file, (points,), in the unit of the
         control on the tab `tab`.
         """
@@ -101,7 +104,7 @@ class StoredResults:
         values: Array = everywhere.values.ravel() * SCALES[tab][name].factor
         return values
 
-    def _points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
+    def _matching_points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
         """Indices of the points of the file that have the parameters of `state`; the parameters in `free` may
         have any value.
         """
@@ -109,13 +112,13 @@ class StoredResults:
         for name, text in state.values.items():
             if name not in free:
                 value = SCALES[state.tab][name].value(text)
-                own = self._values(state.tab, name)
+                own = self._control_values(state.tab, name)
                 same &= np.array(
                     [value is not None and _matches_control(value, each) for each in own], dtype=bool
                 )
         return np.flatnonzero(same)
 
-    def _at(self, numbers: NDArray[np.integer]) -> Dataset:
+    def _data_at(self, numbers: NDArray[np.integer]) -> Dataset:
         """Data at the points with the indices `numbers`, with the dimension `POINT_DIMENSION` for the
         points.
         """
@@ -126,11 +129,13 @@ class StoredResults:
         )
 
     def _cycle(self, state: PageState) -> AnswerVariables | None:
-        """Stored cycle of the rod of `state`; None if the file does not store its shapes."""
-        numbers = self._points(state)
+        """Stored cycle of the rod of `state`; if the file says that this rod has no cycle, the straight rod,
+        but only for uniform rods of linear material. None if the point is missing, or the file has no shapes.
+        """
+        numbers = self._matching_points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
-        point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
+        point = self._data_at(numbers[:1]).isel({POINT_DIMENSION: 0})
         status = str(flag_words(point["status"]))
         F = float(point["F"])
         k1 = float(point["k1"])
@@ -150,36 +155,36 @@ class StoredResults:
         """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two such
         points.
         """
-        numbers = self._points(state, (state.load,))
+        numbers = self._matching_points(state, (state.load,))
         if len(numbers) < 2:
             return None
-        line = self._at(numbers)
+        line = self._data_at(numbers)
         y = line["tip_y_max"].values
         words = flag_words(line["status"])
         y = np.where(words == "straight", 0.0, y)
         known = np.isfinite(y)
         stable = np.where(words[known] == "unstable", 0, 1)
         cycles = {"F": line["F"].values[known], "y": y[known], "stable": stable}
-        return {"pieces": [], "special": [], "cycles": cycles, **self._answer_variables_at()}
+        return {"pieces": [], "special": [], "cycles": cycles, **self._source_variables()}
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
-        """Stored branches of the rod of `state` along the force; None if the file has no branches of this
-        rod.
+        """Stored branches of the rod of `state` along the force; None if the file has no computed branches of
+        this rod.
         """
-        numbers = self._points(state, (state.load,))
+        numbers = self._matching_points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
         rod = int(numbers[0])
-        point = self._at(numbers[:1]).isel({POINT_DIMENSION: 0})
+        point = self._data_at(numbers[:1]).isel({POINT_DIMENSION: 0})
         if flag_words(point["status"]) == "missing":
             return None
         stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return (
             drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), stop)
-            | self._answer_variables_at()
+            | self._source_variables()
         )
 
-    def _answer_variables_at(self) -> AnswerVariables:
+    def _source_variables(self) -> AnswerVariables:
         return {"status": "ok", "sentence": "", "source": f"stored in {self.path.name}"}
 
 

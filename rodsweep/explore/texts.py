@@ -29,7 +29,7 @@ class SolvingSign(PageText):
     is_stoppable = Bool(default=False)
 
 
-def show_texts(document: Document, texts: Sequence[PageText]) -> None:
+def add_texts(document: Document, texts: Sequence[PageText]) -> None:
     """Adds texts to a Bokeh document, with a browser script that displays every change."""
     for text in texts:
         document.add_root(text)

@@ -31,7 +31,7 @@ ParameterRange = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch of cycles. The fields are the variables `special_...` of the result file."""
+    """Special point of a branch: variables `special_at` etc. of the file; `kind` and `reason` are words."""
 
     kind: str
     at: float
@@ -61,12 +61,13 @@ class StoredBranch:
     cycles: NDArray[np.bool_]
     """Mask of the vertices that are stored cycles, (n,)."""
     special: tuple[StoredSpecialPoint, ...]
+    """Special points of the branch, in order along the branch."""
 
     @property
     def stable_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the branch has a stable cycle."""
         pieces = np.flatnonzero(self.stable == 1)
-        return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
+        return union_of_ranges((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
 
     @property
     def errors(self) -> dict[float, float]:
@@ -79,8 +80,7 @@ class StoredBranch:
         return self.special[-1].reason not in STOP_REASONS and bool((self.stable >= 0).all())
 
     def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) up to the first
-        fold.
+        """For each Hopf point at an end of the branch: (|at/at_H - 1|, y/|a|, stability) to the first fold.
 
         at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are
         skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.
@@ -120,7 +120,7 @@ class RodBranches:
     def __init__(self, view: View, rod: int = 0):
         self.view = view
         self.rod = rod
-        self._v = view.of_point(rod)
+        self._v = view.point_values(rod)
         count = max(int(self._v["branch_count"]), 0)
         listed = self._v["special_branch"][self._v["special_kind"] > 0]
         # If the list is full, special points of the last listed branch and of later branches may be missing.
@@ -137,18 +137,18 @@ class RodBranches:
     @property
     def stable_cycles(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the rod has a stable cycle."""
-        return union(piece for curve in self.curves for piece in curve.stable_ranges)
+        return union_of_ranges(piece for curve in self.curves for piece in curve.stable_ranges)
 
     @property
     def two_cycles(self) -> list[ParameterRange]:
         """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
-        return union(piece for one, other in pairs for piece in intersection(one, other))
+        return union_of_ranges(piece for one, other in pairs for piece in intersection_of_ranges(one, other))
 
     @property
     def coexistence(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        return intersection(self.stable_cycles, self.straight_ranges(branch_ends(self.view))[0])
+        return intersection_of_ranges(self.stable_cycles, self.straight_ranges(branch_ends(self.view))[0])
 
     @property
     def coexistence_is_decided(self) -> bool:
@@ -163,8 +163,8 @@ class RodBranches:
         Both lists are empty if special points of some branch are not stored.
         """
         pieces = [] if self.hidden else self.straight_pieces(ends)
-        stable, unstable = (union((low, high) for low, high, s in pieces if s == kind) for kind in (1, 0))
-        return stable, unstable
+        stable, unstable = ([(a, b) for a, b, s in pieces if s == kind] for kind in (1, 0))
+        return union_of_ranges(stable), union_of_ranges(unstable)
 
     def straight_pieces(self, ends: ParameterRange) -> list[tuple[float, float, int]]:
         """(low, high, stability) between Hopf points within `ends`: 1 stable, 0 unstable, -1 unknown."""
@@ -233,7 +233,7 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
     return np.array(stable, dtype=int)
 
 
-def union(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
+def union_of_ranges(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
     """Union of ranges, in increasing order. Ranges that overlap or touch are joined."""
     found: list[ParameterRange] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
@@ -244,7 +244,7 @@ def union(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
     return found
 
 
-def intersection(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
+def intersection_of_ranges(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
     """Intersection of two unions of ranges; ranges of zero length are left out."""
     common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
     return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]

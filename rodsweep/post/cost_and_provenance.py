@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..results.file.provenance import RANK_SHARES, blas_kernels_in
+from ..results.file.provenance import RANK_STATISTICS, blas_kernels_in
 from ..results.file.view import View
 from ..wording import counted, duration, plural
 
@@ -51,9 +51,9 @@ def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
     """Lines about the last run: ranks, hosts, points, shard, reason of a stop, and fraction of the time spent
     solving; empty if not stored. a: attributes of the result file. noun: noun for a point.
     """
-    if RANK_SHARES[0] not in a:
+    if RANK_STATISTICS[0] not in a:
         return []
-    points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)
+    points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_STATISTICS)
     share = 100 * busy / np.maximum(busy + idle, 1e-9)
     least = int(share.argmin())
     ranks = counted(int(a["ranks"]), "rank")

@@ -56,7 +56,7 @@ def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> Non
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(f"{c.name} [{c.unit}]" if units and c.unit != "1" else c.name for c in table.columns)
     for start in range(0, table.rows, EXPORT_BATCH_ROWS):
-        texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).text() for column in table.columns]
+        texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).texts() for column in table.columns]
         lines.writerows(zip(*texts, strict=True))
 
 
@@ -67,6 +67,6 @@ def _written_table_sentence(table: Table, view: View) -> str:
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
         text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"
-    if table.others:
-        text += f"; --table takes {joined_names(table.others, 'or')} instead"
+    if table.other_tables:
+        text += f"; --table takes {joined_names(table.other_tables, 'or')} instead"
     return text

@@ -43,12 +43,12 @@ class LocatedChange:
     onset."""
 
     @property
-    def is_hopf(self) -> bool:
+    def changes_stability(self) -> bool:
         """Whether the stability of the straight rod changes at the threshold; False for an onset of
         oscillation."""
         return self.kind != "onset"
 
-    def agrees(self, other: "LocatedChange") -> bool:
+    def equals_within_errors(self, other: "LocatedChange") -> bool:
         """Whether two located thresholds have equal kinds, and positions that are equal within the errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
@@ -114,11 +114,11 @@ class StoredChanges:
                 continue
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
-    def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
+    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
         """Thresholds from the start of the search to the largest parameter value of a line of points."""
-        return sorted({*self.thresholds_on(line), *self._stored(line, -inf)}, key=sort_position)
+        return sorted({*self.thresholds_on(line), *self._stored_between(line, -inf)}, key=sort_position)
 
-    def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
+    def _stored_between(self, line: ParameterLine, low: float) -> list[LocatedChange]:
         """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
         rod = tuple(line.parameters[other] for other in self.other_parameters)
         high = line.x.max(initial=-inf)
@@ -132,13 +132,13 @@ class StoredChanges:
         """
         if not len(line.x):
             return []
-        stored = self._stored(line, line.x.min())
+        stored = self._stored_between(line, line.x.min())
         found: list[LocatedChange | BracketedChange] = [*stored]
-        changes = [point for point in stored if point.is_hopf]
-        known = np.flatnonzero(np.isfinite(self.growth_rates[line.at]))
+        changes = [point for point in stored if point.changes_stability]
+        known = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
         x = line.x[ordered]
-        grows = self.growth_rates[line.at[ordered]] > 0
+        grows = self.growth_rates[line.indices[ordered]] > 0
         for i in np.flatnonzero(grows[1:] != grows[:-1]):
             low = float(x[i])
             high = float(x[i + 1])

@@ -2,7 +2,7 @@
 
 from ..model.parameters import CRUSHING_PARAMETERS
 from ..results.file.view import View
-from ..results.layouts.rods import has_covering
+from ..results.layouts.rods import has_standard_rods
 from .branch_curves import ParameterRange, branch_ends, followed_parameter
 
 
@@ -12,7 +12,7 @@ def uncrushed_range(view: View, rod: int) -> ParameterRange:
     index among the points of the file.
     """
     low, high = branch_ends(view)
-    if not has_covering(view.config):
+    if not has_standard_rods(view.config):
         return low, high
     force, stiffness = CRUSHING_PARAMETERS
     columns = {name: float(values[rod]) for name, values in view.point_columns.items()}

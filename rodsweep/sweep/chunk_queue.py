@@ -16,13 +16,13 @@ from .points.ranges import IndexRange, index_count
 CHUNK_SECONDS = 0.1
 """Planned solve time of a chunk, in s: long compared with the time of a message, short compared with a
 run."""
-CHUNK_SECONDS_A_RANK = 1e-3
+CHUNK_SECONDS_PER_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
-GIVE_BACK_AFTER = 3.0
+MAX_CHUNK_TIME_RATIO = 3.0
 """Time after which a rank returns the unsolved items of a chunk to the queue, divided by the planned time of
 the chunk."""
-LARGEST_CHUNK = 1 << 16
+MAX_CHUNK_ITEMS = 1 << 16
 """Maximum number of items in a chunk."""
 MIN_ITEMS_AHEAD = 4
 """A rank gets its next chunk in advance only if the queue has at least this number of items per rank."""
@@ -32,24 +32,24 @@ NO_WORK_LEFT: IndexRange = (0, 0)
 
 def chunk_seconds(ranks: int) -> float:
     """Planned time of a chunk, in s, in a run with `ranks` ranks."""
-    return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_A_RANK)
+    return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_PER_RANK)
 
 
 @dataclass(frozen=True, slots=True)
 class RankReport:
     """Report of a rank on its last chunk, sent with the request for the next chunk."""
 
-    done: int = 0
+    finished_items: int = 0
     """Number of items finished since the last report."""
     seconds: float = 0.0
     """Time spent since the last report, in s."""
-    returned: IndexRange = NO_WORK_LEFT
+    returned_items: IndexRange = NO_WORK_LEFT
     """Range of the items of the last chunk that the rank did not solve."""
-    points: int = 0
+    stored_points: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
     is_in_advance: bool = False
     """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
-    stop: str = ""
+    stop_signal: str = ""
     """Name of the stop signal that the rank received, or empty. Items returned after a stop signal are left
     for another run."""
     results: dict[int, Any] = field(default_factory=dict)
@@ -68,27 +68,29 @@ class ChunkQueue:
         self.ranks = ranks
         self.outstanding: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
-        self.points = 0
+        self.stored_points = 0
         """Total number of points that the ranks have reported as stored."""
         self.seconds_per_item: dict[int, float] = {}
         """Latest time per item, in s, by rank."""
-        self.stopped = False
+        self.is_stopped = False
+        """Whether a stop request has emptied the queue."""
         self.change = threading.Condition()
+        """Lock of the queue; notified when items or reports arrive."""
 
     def add_report(self, rank: int, report: RankReport) -> None:
         """Updates the queue from a rank's report on finished and returned items."""
         with self.change:
             if self.outstanding[rank]:
                 self.outstanding[rank] -= 1
-            self.points += report.points
-            if report.done:
-                self.seconds_per_item[rank] = report.seconds / report.done
-            first, end = report.returned
-            if end > first and not self.stopped:
+            self.stored_points += report.stored_points
+            if report.finished_items:
+                self.seconds_per_item[rank] = report.seconds / report.finished_items
+            first, end = report.returned_items
+            if end > first and not self.is_stopped:
                 self.seconds_per_item[rank] = (
                     report.seconds
                 )  # pessimistic, so that its next chunk is one item
-                self.unsolved.appendleft(report.returned)
+                self.unsolved.appendleft(report.returned_items)
                 self.items_left += end - first
             self.change.notify_all()
 
@@ -97,7 +99,7 @@ class ChunkQueue:
         with self.change:
             if self.unsolved:
                 return self._pop_chunk(rank)
-            return None if self.outstanding.total() and not self.stopped else NO_WORK_LEFT
+            return None if self.outstanding.total() and not self.is_stopped else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
@@ -115,7 +117,7 @@ class ChunkQueue:
         pace = self.seconds_per_item.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
         first, last = self.unsolved.popleft()
-        end = min(last, first + max(1, min(size, share, LARGEST_CHUNK)))
+        end = min(last, first + max(1, min(size, share, MAX_CHUNK_ITEMS)))
         if end < last:
             self.unsolved.appendleft((end, last))
         self.items_left -= end - first
@@ -125,7 +127,7 @@ class ChunkQueue:
     def stop(self) -> None:
         """Empties the queue after a stop request; a later run solves the items."""
         with self.change:
-            self.stopped = True
+            self.is_stopped = True
             self.unsolved.clear()
             self.change.notify_all()
 
@@ -163,7 +165,7 @@ class DependentItemQueue(ChunkQueue):
     def add_report(self, rank: int, report: RankReport) -> None:
         """Adds the results in a rank's report; an item without a result can be chosen again."""
         with self.change:
-            self.points += report.points
+            self.stored_points += report.stored_points
             self.results |= report.results
             self._items_to_solve = None
             self.in_progress.pop(rank, None)
@@ -174,7 +176,7 @@ class DependentItemQueue(ChunkQueue):
         wait.
         """
         with self.change:
-            if self.stopped:
+            if self.is_stopped:
                 return NO_WORK_LEFT
             ready = self.ready_items
             if ready:

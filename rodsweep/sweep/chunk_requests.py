@@ -55,16 +55,19 @@ class FirstRankRequests:
         self.team = team
         self.queue = queue
         self.stop = stop
-        self.show = show
+        self.show_position = show
         self.waiting_ranks: deque[int] = deque()
+        """Ranks that wait for a chunk, in the order of their requests."""
         self.answered_in_advance: set[int] = set()
         """Ranks whose next request has been answered in advance."""
         self.working_ranks = set(range(1, team.size))
-        self.status = team.MPI.Status()
+        """Other ranks that have not been told that no work is left."""
+        self.mpi_status = team.MPI.Status()
         self.positions: dict[int, SolvePosition] = {}
         """Latest reported progress within a long point, by rank."""
-        self.serving = threading.Lock()
-        self.served = 0.0
+        self.serving_lock = threading.Lock()
+        self.last_served = 0.0
+        """Time of the last poll for messages between two points, on the monotonic clock, in s."""
         self.thread: threading.Thread | None = None
         if team.size > 1:
             # A daemon, so that an exception on this rank does not wait for the thread.
@@ -76,17 +79,17 @@ class FirstRankRequests:
 
         Waits until a chunk is available or no work is left.
         """
-        with self.serving:
+        with self.serving_lock:
             self._pass_on_stop()
         self.positions.pop(0, None)
         self.queue.add_report(0, report)
-        self.between_points()
+        self.poll_messages()
         while (chunk := self.queue.next_chunk(0)) is None:
             with self.queue.change:
                 self.queue.change.wait(QUEUE_WAIT_SECONDS)
-            self.between_points()
+            self.poll_messages()
             for position in list(self.positions.values())[:1]:
-                self.show(position.words, self._begun_points())
+                self.show_position(position.words, self._sum_of_fractions())
         return chunk
 
     def close(self) -> None:
@@ -99,27 +102,28 @@ class FirstRankRequests:
     def report_position(self, position: SolvePosition) -> None:
         """Displays the progress of the first rank within a long point."""
         self.positions[0] = position
-        self.show(position.words, self._begun_points())
+        self.show_position(position.words, self._sum_of_fractions())
 
-    def _begun_points(self) -> float:
+    def _sum_of_fractions(self) -> float:
         """Sum of the fractions done of all unfinished points on all ranks."""
-        return sum(position.share or 0.0 for position in list(self.positions.values()))
+        return sum(position.completed_fraction or 0.0 for position in list(self.positions.values()))
 
-    def between_points(self) -> None:
-        """Answers requests of other ranks; called on the first rank between two points.
+    def poll_messages(self) -> None:
+        """Answers requests of other ranks, or without other ranks checks for a stop request; called on the
+        first rank between two points.
 
         During a long point the thread answers. The thread is not sufficient, because a solve inside PETSc
         holds Python's global interpreter lock, and the thread might rarely get the lock.
         """
         if self.thread is not None:
             self._serve()
-            self.served = time.monotonic()
+            self.last_served = time.monotonic()
         else:
             self._pass_on_stop()
 
     def _pass_on_stop(self) -> None:
         """After a stop request to the first rank, ends the queue and notifies all working ranks, once."""
-        if self.stop and not self.queue.stopped:
+        if self.stop and not self.queue.is_stopped:
             self.queue.stop()
             for rank in self.working_ranks:
                 self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
@@ -128,13 +132,13 @@ class FirstRankRequests:
         """Handles all waiting messages: stop requests, progress, and requests for chunks."""
         comm = self.team.comm
         MPI = self.team.MPI
-        with self.serving:
-            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
-                self.stop.adopt(comm.recv(source=self.status.Get_source(), tag=STOP_TAG))
+        with self.serving_lock:
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.mpi_status):
+                self.stop.adopt(comm.recv(source=self.mpi_status.Get_source(), tag=STOP_TAG))
             self._pass_on_stop()
             self._receive_positions()
-            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
-                rank = self.status.Get_source()
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.mpi_status):
+                rank = self.mpi_status.Get_source()
                 self._handle_report(rank, comm.recv(source=rank, tag=REQUEST_TAG))
             while self.waiting_ranks and (chunk := self.queue.next_chunk(self.waiting_ranks[0])) is not None:
                 rank = self.waiting_ranks.popleft()
@@ -146,8 +150,8 @@ class FirstRankRequests:
         """Receives all waiting reports of progress within long points."""
         comm = self.team.comm
         MPI = self.team.MPI
-        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.status):
-            rank = self.status.Get_source()
+        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.mpi_status):
+            rank = self.mpi_status.Get_source()
             self.positions[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _handle_report(self, rank: int, report: RankReport) -> None:
@@ -162,8 +166,8 @@ class FirstRankRequests:
                 self.team.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 self.answered_in_advance.add(rank)
             return
-        if report.stop:  # the report may arrive before the rank's message with STOP_TAG
-            self.stop.adopt(report.stop)
+        if report.stop_signal:  # the report may arrive before the rank's message with STOP_TAG
+            self.stop.adopt(report.stop_signal)
             self._pass_on_stop()
         self.positions.pop(rank, None)
         self.queue.add_report(rank, report)
@@ -174,10 +178,10 @@ class FirstRankRequests:
 
     def _serve_until_over(self) -> None:
         """Body of the thread: answers messages of the other ranks until all of them have finished."""
-        with self.team.aborting_together():
+        with self.team.abort_all_ranks_on_error():
             while self.working_ranks:
                 self._serve()
-                answering = time.monotonic() - self.served < RELIEVED_POLL_SECONDS
+                answering = time.monotonic() - self.last_served < RELIEVED_POLL_SECONDS
                 time.sleep(RELIEVED_POLL_SECONDS if answering else POLL_SECONDS)
 
 
@@ -198,7 +202,7 @@ class OtherRankRequests:
         # A blocking receive would spin and take the processor from the ranks that compute.
         pause = FIRST_CHUNK_POLL_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
-            self.between_points()
+            self.poll_messages()
             time.sleep(pause)
             pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
@@ -210,7 +214,7 @@ class OtherRankRequests:
         """Reports the progress of this rank within a long point to the first rank."""
         self.comm.send(position, dest=0, tag=PROGRESS_TAG)
 
-    def between_points(self) -> None:
+    def poll_messages(self) -> None:
         """Exchanges at most one stop request with the first rank: sends the request of this rank, or receives
         the request of the first rank.
         """

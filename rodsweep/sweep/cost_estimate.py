@@ -111,15 +111,15 @@ class Estimate:
 
     seconds: float
     """Time of the whole sweep on one rank, in s."""
-    memory: int = BASE_MEMORY
+    memory_bytes: int = BASE_MEMORY
     """Memory of a rank, in bytes."""
     unknowns: tuple[int, int] | None = None
     """Smallest and largest number of unknowns of the sampled points' meshes; None for a task without mesh."""
-    too_large: int = 0
+    too_large_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
 
 
-def estimate_lines(lines: int, certify: bool, of_arms: bool) -> Estimate:
+def estimate_searches(lines: int, certify: bool, of_arms: bool) -> Estimate:
     """Estimated cost of `lines` searches for crossings, each of one rod along one parameter.
 
     certify: whether each search is certified. of_arms: whether any arm is not uniform.
@@ -134,7 +134,7 @@ def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, crit
     certify: whether each row is certified. of_arms: whether any arm is not uniform. curves, criticality:
     whether boundary curves and their criticality are computed; the cost for uniform rods is neglected.
     """
-    lines = estimate_lines(rows, certify, of_arms)
+    lines = estimate_searches(rows, certify, of_arms)
     more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
     return replace(lines, seconds=lines.seconds + more * of_arms)
 

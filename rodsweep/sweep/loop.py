@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..watch import SolveStopped, reporting_to
-from .chunk_queue import GIVE_BACK_AFTER, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
+from .chunk_queue import MAX_CHUNK_TIME_RATIO, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from .chunk_requests import FirstRankRequests, OtherRankRequests
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
@@ -48,13 +48,14 @@ class ProgressSink(Protocol):
 class RankWork:
     """Statistics of a rank after the sweep.
 
-    points: number of solved points. busy, idle: time spent on solving and on waiting, in s. ended: whether a
-    stop request interrupted a solve; a later run repeats this solve.
+    solved_points: number of points that this rank solved. busy_seconds, idle_seconds: time spent on solving
+    and on waiting, in s. was_interrupted: whether a stop request interrupted a solve; a later run repeats
+    this solve.
     """
 
-    points: int
-    busy: float
-    idle: float
+    solved_points: int
+    busy_seconds: float
+    idle_seconds: float
     was_interrupted: bool = False
 
 
@@ -126,11 +127,11 @@ class _RankLoop:
             spent = time.monotonic() - began
             busy += spent
             report = RankReport(
-                done=at - chunk[0],
+                finished_items=at - chunk[0],
                 seconds=spent,
-                returned=(at, chunk[1]),
-                points=self.points - before,
-                stop=self.stop.name,
+                returned_items=(at, chunk[1]),
+                stored_points=self.points - before,
+                stop_signal=self.stop.name,
                 results=self.callbacks.new_results(),
             )
             chunk = self.requests.next_chunk(report)
@@ -144,7 +145,7 @@ class _RankLoop:
 
         Later items stay unsolved after a stop request, or if the chunk takes too long.
         """
-        patience = time.monotonic() + GIVE_BACK_AFTER * chunk_seconds(self.team.size)
+        patience = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.team.size)
         at = chunk[0]
         before = self.points
         while at < chunk[1] and not self.stop:
@@ -167,6 +168,6 @@ class _RankLoop:
         for index, result in self.callbacks.solve(item):
             self.callbacks.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
-            self.requests.between_points()
+            self.requests.poll_messages()
             if isinstance(self.requests, FirstRankRequests):
-                self.progress(self.requests.queue.points + self.points - before)
+                self.progress(self.requests.queue.stored_points + self.points - before)

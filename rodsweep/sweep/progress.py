@@ -10,7 +10,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from .remaining_time import Pace, duration_text, rate_in_words
+from .remaining_time import RemainingTimeEstimator, duration_text, rate_in_words
 
 QUIET_SECONDS = 1.0
 """Seconds before progress is shown for the first time; a shorter sweep shows no progress."""
@@ -64,8 +64,9 @@ class ProgressReporter:
         """
         self.total = total
         self.noun = noun
-        self.pace = None if total is None else Pace(total)
-        self.began = self.next = 0.0
+        self.remaining_time = None if total is None else RemainingTimeEstimator(total)
+        self.began = self.next_display = 0.0
+        """Time, on the monotonic clock, before which nothing is displayed."""
         self.done = 0
         self.begun = 0.0
         self.where = ""
@@ -77,7 +78,7 @@ class ProgressReporter:
         """Records the number `done` of finished points, and displays it if due; 0 starts the clock."""
         if not done:
             self.began = time.monotonic()
-            self.next = self.began + QUIET_SECONDS
+            self.next_display = self.began + QUIET_SECONDS
         self.done = done
         self.begun = 0.0
         self.where = ""
@@ -95,21 +96,25 @@ class ProgressReporter:
     def _show(self) -> None:
         """Draws the bar or prints a line, if an update is due."""
         now = time.monotonic()
-        if not self.began or now < self.next:
+        if not self.began or now < self.next_display:
             return
         passed = now - self.began
         rate = rate_in_words(self.done, passed) if self.total else ""
-        seconds = self.pace.remaining(self.done, passed, self.begun) if self.pace else None
+        seconds = (
+            self.remaining_time.remaining_seconds(self.done, passed, self.begun)
+            if self.remaining_time
+            else None
+        )
         left = "" if seconds is None else f"about {duration_text(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:
             self.bar.start()
-            self.next = now + BAR_SECONDS
+            self.next_display = now + BAR_SECONDS
             fields: dict[str, Any] = {"count": count, "rate": rate, "left": left, "where": self.where}
             self.bar.update(self.task, completed=self.done + self.begun, **fields)
             self.bar.refresh()
             return
-        self.next = now + LINE_SECONDS
+        self.next_display = now + LINE_SECONDS
         overall = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, left)))
         print("; ".join(filter(None, (overall, self.where))), file=sys.stderr, flush=True)
 

@@ -22,7 +22,7 @@ RECORD_RATIO = 1.02
 """Ratio of the numbers of finished points in two successive stored records: about 35 records per doubling."""
 
 
-class Pace:
+class RemainingTimeEstimator:
     """Estimator of the remaining time of a sweep of `total` points; all times are in s since the start."""
 
     def __init__(self, total: int):
@@ -32,7 +32,7 @@ class Pace:
         self.reported: tuple[float, float] | None = None
         """(time of the last report, remaining time reported then)."""
 
-    def remaining(self, done: int, now: float, begun: float = 0.0) -> float | None:
+    def remaining_seconds(self, done: int, now: float, begun: float = 0.0) -> float | None:
         """Remaining time, in s, when `done` points are finished at the time `now`.
 
         begun: sum of the fractions done of unfinished points. None if too little work is done for an
@@ -65,7 +65,7 @@ class Pace:
 
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
-        includes the wait since the latest record. Parameters as in `remaining`.
+        includes the wait since the latest record. Parameters as in `remaining_seconds`.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
         None if their sum is below MIN_FRACTION_DONE.

@@ -45,7 +45,7 @@ class StopRequest:
         return bool(self.name)
 
     @property
-    def is_due(self) -> bool:
+    def must_abandon_point(self) -> bool:
         """Whether GRACE_SECONDS have passed since the request: the current point must be abandoned."""
         if not self.name:
             return False
@@ -81,23 +81,24 @@ class StopRequest:
 class RankCommunication(Protocol):
     """Communication of a rank with other ranks during a solve and between points."""
 
-    def between_points(self) -> None: ...
+    def poll_messages(self) -> None: ...
 
     def report_position(self, position: SolvePosition) -> None: ...
 
 
 class SingleRankCommunication:
-    """`RankCommunication` of a run with a single rank; `shown` receives the progress of a long solve."""
+    """`RankCommunication` of a run with a single rank; `show_position` receives the progress of a long
+    solve."""
 
     def __init__(self, shown: Callable[[SolvePosition], object] | None = None):
-        self.shown = shown
+        self.show_position = shown
 
-    def between_points(self) -> None: ...
+    def poll_messages(self) -> None: ...
 
     def report_position(self, position: SolvePosition) -> None:
-        """Passes the progress within a long point to `shown`, if given."""
-        if self.shown:
-            self.shown(position)
+        """Passes the progress within a long point to `show_position`, if given."""
+        if self.show_position:
+            self.show_position(position)
 
 
 class RankListener:
@@ -125,10 +126,12 @@ class RankListener:
         if now >= self.next_report and (here := make_position()).words:
             self.next_report = now + POSITION_SECONDS
             self.communication.report_position(
-                SolvePosition(": ".join(filter(None, (self.item_label(), here.words))), here.share)
+                SolvePosition(
+                    ": ".join(filter(None, (self.item_label(), here.words))), here.completed_fraction
+                )
             )
         if now >= self.next_poll:
             self.next_poll = now + POLL_SECONDS
-            self.communication.between_points()
-            if self.stop.is_due:
+            self.communication.poll_messages()
+            if self.stop.must_abandon_point:
                 raise SolveStopped

@@ -40,7 +40,7 @@ class Team:
         """Whether this is the first rank, which prints, hands out points and writes the result file."""
         return self.rank == 0
 
-    def on_first(self, work: Callable[[], T]) -> T:
+    def call_on_first_rank(self, work: Callable[[], T]) -> T:
         """Calls `work` on the first rank only. Every rank returns the result, or raises the `Refusal` that
         `work` raised.
         """
@@ -53,7 +53,7 @@ class Team:
         self.wait_for_all()
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
-            raise refusal.on_all_ranks()
+            raise refusal.marked_collective()
         return value
 
     def wait_for_all(self) -> None:
@@ -75,25 +75,25 @@ class Team:
             refusal = error
         refusals = [r for r in self.comm.allgather(refusal) if r is not None]
         if refusals:
-            raise refusals[0].on_all_ranks()
+            raise refusals[0].marked_collective()
 
     def gather(self, value: T) -> list[T] | None:
         """List of the `value` of every rank, in order of ranks, on the first rank; None on other ranks."""
         self.wait_for_all()
         return self.comm.gather(value)
 
-    def exchange(self, value: T) -> list[T]:
+    def gather_on_all_ranks(self, value: T) -> list[T]:
         """List of the `value` of every rank, in order of ranks, on every rank."""
         self.wait_for_all()
         return self.comm.allgather(value)
 
-    def in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
+    def map_in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
         """Results of `work` for all items, in order, on every rank; the items are divided among the ranks."""
-        parts = self.exchange([work(item) for item in items[self.rank :: self.size]])
+        parts = self.gather_on_all_ranks([work(item) for item in items[self.rank :: self.size]])
         return [parts[i % self.size][i // self.size] for i in range(len(items))]
 
     @contextmanager
-    def aborting_together(self) -> Iterator[None]:
+    def abort_all_ranks_on_error(self) -> Iterator[None]:
         """Context in which an exception on any rank aborts all ranks, with the rank's message and exit
         status.
 

@@ -11,7 +11,7 @@ from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY_VARIABLES, SHAPE_VARIABLES, TIP_VARIABLES
-from .running.job import Job, job_of
+from .running.job import Job, job_of_config
 
 SHAPE_COUNT = 48
 """Number of shapes per period; an animation needs about 50 frames."""
@@ -85,4 +85,4 @@ def _job_of_point(view: View, number: int) -> Job:
         "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
-    return job_of(Path(view.path.name), validated_config(tree), tree)
+    return job_of_config(Path(view.path.name), validated_config(tree), tree)

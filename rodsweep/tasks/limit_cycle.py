@@ -54,8 +54,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            require_in_range(K2_WITH_TAU1, "k2", self.points.of_rods["k2"], "", why)
-            require_in_range(GAMMA3_WITH_TAU1, "gamma3", self.points.of_rods["gamma3"], "", why)
+            require_in_range(K2_WITH_TAU1, "k2", self.points.rod_values["k2"], "", why)
+            require_in_range(GAMMA3_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:
@@ -65,7 +65,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
-        axis = self.points.varying_parameters.index(self.config.along)
+        axis = self.points.varying_parameters.index(self.config.chain_parameter)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
@@ -79,12 +79,12 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Hopf points of the straight rod on the lines of points."""
         lines = hopf_lines_of(self.points)
         if lines:
             require_solvers()
-        return hopf_variables(self.points.names, lines, in_order(lines, HopfLine.search))
+        return hopf_variables(self.points.names, lines, in_order(lines, HopfLine.hopf_points))
 
     def headline(self) -> str:
         options = self.config.limit_cycle
@@ -96,13 +96,13 @@ class LimitCycleTask(Task):
             return points_clause(self.points, f"started from {start}")
         chained = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
-            f"{points_text(self.points)} in {chained}, {options.direction} in {self.config.along}: each "
-            "starts from its neighbour's cycle; the first point, and a point whose neighbour has no cycle, "
-            f"starts from {start}; at most {counted(chains.count, 'rank')} can share the work"
+            f"{points_text(self.points)} in {chained}, {options.direction} in {self.config.chain_parameter}: "
+            "each starts from its neighbour's cycle; the first point, and a point whose neighbour has no "
+            f"cycle, starts from {start}; at most {counted(chains.count, 'rank')} can share the work"
         )
 
-    def arms(self) -> str:
-        return arms_line(self.config, self.points.of_rods, self._first_mesh)
+    def arms_line(self) -> str:
+        return arms_line(self.config, self.points.rod_values, self._first_mesh)
 
     def _first_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
@@ -126,25 +126,27 @@ class LimitCycleTask(Task):
 
     def check_rows(self) -> list[CheckRow]:
         options = self.config.limit_cycle
-        gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
+        gamma1 = np.unique(self.points.rod_values["gamma1"])[:5]
         marched = options.method == "integration"
         return [
-            *rod_check_rows(self.points.of_rods),
-            *material_check_rows(self.config, self.points.of_rods),
+            *rod_check_rows(self.points.rod_values),
+            *material_check_rows(self.config, self.points.rod_values),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
             ("Floquet multipliers", not marched, f"limit_cycle.method: {options.method}"),
-            self._stored("tip and energy over a cycle", "samples", TIP_VARIABLES + ENERGY_VARIABLES),
-            self._stored("shapes over a cycle", "shapes", SHAPE_VARIABLES),
+            self._stored_values_row(
+                "tip and energy over a cycle", "samples", TIP_VARIABLES + ENERGY_VARIABLES
+            ),
+            self._stored_values_row("shapes over a cycle", "shapes", SHAPE_VARIABLES),
             ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
             if marched
-            else self._stored("tip from the start to the cycle", "transient", TRANSIENT_VARIABLES),
+            else self._stored_values_row("tip from the start to the cycle", "transient", TRANSIENT_VARIABLES),
             ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
-    def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
+    def _stored_values_row(self, what: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
         """Row of `check` on variables that are stored only on request, with number and size of the stored
         values.
 
@@ -172,9 +174,9 @@ class LimitCycleTask(Task):
         from ..solve.cycle.reference_rod import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        request = self.request()
+        request = self.cycle_request()
         chains = self.chains
-        along = self.config.along if chains else None
+        along = self.config.chain_parameter if chains else None
         workspace = NewtonWorkspace()
 
         def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
@@ -202,7 +204,7 @@ class LimitCycleTask(Task):
             solve=lambda index: solve_by_integration(self.points.rod(index), request),
         )
 
-    def request(self) -> "CycleRequest":
+    def cycle_request(self) -> "CycleRequest":
         """The settings with which `solve_cycle` solves the cycle at every point."""
         from ..solve.cycle.limit_cycle import CycleRequest
 

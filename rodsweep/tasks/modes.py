@@ -16,7 +16,7 @@ from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
-from .hopf.force_changes import force_changes
+from .hopf.force_changes import force_change_variables
 from .parts import CertifiedTask, points_text
 from .protocol import CheckRow, Solver
 
@@ -37,11 +37,11 @@ class ModesTask(CertifiedTask):
         """Material coordinates u of the nodes at which modes are stored, (nodes,), by dimension."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
-    def afterwards(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
+    def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        as in `Task.afterwards`.
+        as in `Task.variables_from_points`.
         """
-        return force_changes(self.points, values) if self.config.standard else ()
+        return force_change_variables(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
         options = self.config.modes

@@ -47,9 +47,9 @@ class CertifiedTask(Task):
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
         arrays of any shape.
         """
-        return self.points.of_rods | self.searched_limits() | self.coordinates()
+        return self.points.rod_values | self.searched_limits() | self.coordinates()
 
-    def arms(self) -> str:
+    def arms_line(self) -> str:
         return arms_line(self.config, self.parameter_values, self.first_mesh)
 
     def first_mesh(self) -> Elements | None:
@@ -81,16 +81,16 @@ class CertifiedTask(Task):
         proof = "winding number of D"
         if self.count_location == "line" and not self.config.standard:
             proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
-        if self.count_location == "point" and self._varies:
+        if self.count_location == "point" and self._has_varying_arm:
             proof += ", estimated in part"
         return True, proof
 
     @property
-    def _varies(self) -> bool:
+    def _has_varying_arm(self) -> bool:
         """Whether the material or the cross-section of some arm varies along its length. The characteristic
         determinant D then has no closed form.
         """
-        tapers = self.points.by_name.get("taper", np.ones(1))
+        tapers = self.points.columns_by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def check_rows(self) -> list[CheckRow]:
@@ -117,6 +117,7 @@ class NonlinearTask(CertifiedTask):
         True,
         "parameters.gamma1; it changes cycles, but no Hopf point",
     )
+    """Row of `check` on the axial drag."""
 
 
 def crushing_clause(config: Config) -> str:

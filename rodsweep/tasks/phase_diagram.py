@@ -29,17 +29,19 @@ class PhaseDiagramTask(CertifiedTask):
     count_location: ClassVar[str] = "line"
 
     @property
-    def line(self) -> np.ndarray:
+    def line_values(self) -> np.ndarray:
         """Values of the parameter that varies along every row, (values,)."""
-        return self.config.parameters.axes[self.config.plane[0]].array()
+        return self.config.parameters.axes[self.config.plane_parameters[0]].array()
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Values of the parameter that varies along every row, (values,), by its name."""
-        return {self.config.plane[0]: self.line}
+        return {self.config.plane_parameters[0]: self.line_values}
 
     def headline(self) -> str:
-        line, row = self.config.plane
-        return f"{self.points.count} rows, one for each {row}, of {len(self.line)} values of {line} each"
+        line, row = self.config.plane_parameters
+        return (
+            f"{self.points.count} rows, one for each {row}, of {len(self.line_values)} values of {line} each"
+        )
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.phase_diagram
@@ -72,7 +74,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def searched_limits(self) -> dict[str, np.ndarray]:
         """First and last value of the parameter that varies along the rows, (2,), by its name."""
-        return {self.config.plane[0]: self.line[[0, -1]]}
+        return {self.config.plane_parameters[0]: self.line_values[[0, -1]]}
 
     def check_rows(self) -> list[CheckRow]:
         """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
@@ -91,8 +93,10 @@ class PhaseDiagramTask(CertifiedTask):
         lines = estimate_diagram(self.points.count, *asked)
         if not options.cycles:
             return lines
-        reach = (float(self.line[0]), float(self.line[-1]))
-        branches = estimate_branches(self.points, self.config.plane[0], reach, options.cycle_accuracy)
+        reach = (float(self.line_values[0]), float(self.line_values[-1]))
+        branches = estimate_branches(
+            self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy
+        )
         return replace(lines, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
@@ -107,7 +111,7 @@ class PhaseDiagramTask(CertifiedTask):
         of_rows = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_row(self.rod(index), request),
+            solve=lambda index: solve_row(self.rod_of_row(index), request),
             record=lambda index, result: row_values(result, request.name, request.crossings),
             joint_variables=curves if options.curves else None,
         )
@@ -117,7 +121,7 @@ class PhaseDiagramTask(CertifiedTask):
         from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
 
         def solve(index: int) -> CoexistenceRow:
-            row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
+            row = solve_coexistence(self.rod_of_row(index), request, MAX_CYCLE_SPECIAL, workspace)
             return curves.cache_row(index, row)
 
         return replace(
@@ -130,7 +134,7 @@ class PhaseDiagramTask(CertifiedTask):
             ),
         )
 
-    def rod(self, index: int) -> Rod:
+    def rod_of_row(self, index: int) -> Rod:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
         along the row. index: flat index of the row.
         """
@@ -142,8 +146,8 @@ class PhaseDiagramTask(CertifiedTask):
 
         options = self.config.phase_diagram
         return RowRequest(
-            name=self.config.plane[0],
-            values=self.line,
+            name=self.config.plane_parameters[0],
+            values=self.line_values,
             accuracy=self.config.accuracy,
             certify=options.certify,
             crossings=options.crossings,

@@ -144,13 +144,13 @@ class Task(ABC):
         """
         return {}
 
-    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
         among the ranks. By default empty.
         """
         return ()
 
-    def afterwards(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
+    def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Variables of the file computed from the results of all points; called on the first rank only.
 
         values: variables of the points by name, shape (points, own dimensions), readable by slices. By
@@ -162,7 +162,7 @@ class Task(ABC):
     def headline(self) -> str:
         """Line of `check` with the number of points and the computation at each point."""
 
-    def arms(self) -> str:
+    def arms_line(self) -> str:
         """Line of `check` on the shape, the law and the initial mesh of arms that are not uniform or not of
         linear material.
 

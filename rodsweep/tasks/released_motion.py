@@ -48,7 +48,7 @@ class ReleasedMotion:
 
 @exclusive_solve
 def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
-    """Shape (x, y) in L, (2, NODES), of the only rod of a job.
+    """Shape (x, y) in L, (2, NODE_COUNT), of the only rod of a job.
 
     tip: position (x, y) in L at which the tip is held; None for the straight rod.
     """
@@ -76,7 +76,9 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
     assert isinstance(task, LimitCycleTask)
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
-        cycle = solve_cycle(job.points.rod(0), replace(task.request(), tip=tip, frames=FRAMES_PER_RETURN))
+        cycle = solve_cycle(
+            job.points.rod(0), replace(task.cycle_request(), tip=tip, frames=FRAMES_PER_RETURN)
+        )
     if cycle.motion_shapes is None:
         return None
     x, y = cycle.motion_shapes.shapes

@@ -16,7 +16,7 @@ from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
-from .running.job import Job, job_of
+from .running.job import Job, job_of_config
 
 CYCLE_FRACTIONS = (0.1, 0.5, 0.9)
 """Forces of the three cycles, as fractions of the total length of all ranges of F with a stable cycle."""
@@ -44,7 +44,7 @@ class PortraitRequest:
     F_max: float = F_MAX
     accuracy: float | None = None
 
-    def job(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
+    def job_of_task(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
         """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
         vary the force.
         """
@@ -56,7 +56,7 @@ class PortraitRequest:
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
         tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
         tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
-        return job_of(Path(task), validated_config(tree), tree)
+        return job_of_config(Path(task), validated_config(tree), tree)
 
 
 def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodResults:
@@ -66,12 +66,12 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
     has the reason. Raises InputError if the parameters describe no rod.
     """
     F_max = {"F_max": request.F_max}
-    views = {"thresholds": solve(request.job("thresholds", F_max))}
+    views = {"thresholds": solve(request.job_of_task("thresholds", F_max))}
     missing: dict[str, str] = {}
 
     def solved(task: str, options: Mapping[str, Any], F: float | None = None) -> View | None:
         try:
-            return solve(request.job(task, options, F))
+            return solve(request.job_of_task(task, options, F))
         except InputError as error:
             missing.setdefault(task, str(error))
             return None
@@ -81,7 +81,7 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
             views[task] = view
     modes = {
         kind: (F, view)
-        for kind, F in mode_forces(views["thresholds"]).items()
+        for kind, F in first_threshold_forces(views["thresholds"]).items()
         if (view := solved("modes", {}, F)) is not None
     }
     ranges = RodBranches(views["branch"]).stable_cycles if "branch" in views else []
@@ -115,7 +115,7 @@ def _cycle_at_force(solved: Callable[[str, Mapping[str, Any], float], View | Non
     return found
 
 
-def mode_forces(thresholds: View) -> dict[str, float]:
+def first_threshold_forces(thresholds: View) -> dict[str, float]:
     """Force of the first threshold of each kind in MODE_THRESHOLD_KINDS, at which the leading mode is
     drawn.
     """

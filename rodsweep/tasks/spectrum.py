@@ -20,14 +20,14 @@ from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import (
     EACH_FOLLOWED_POINT,
     MODE_VARIABLES,
-    longitudinal,
     longitudinal_parameters,
+    longitudinal_variables,
 )
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
-from .hopf.force_changes import force_changes
+from .hopf.force_changes import force_change_variables
 from .parts import CertifiedTask, points_text
 from .protocol import CheckRow, OrderedMap, Solver, solve_on_one_rank
 
@@ -45,7 +45,7 @@ class SpectrumTask(CertifiedTask):
     count_location: ClassVar[str] = "point"
 
     def __post_init__(self) -> None:
-        if self.config.spectrum.longitudinal and np.isinf(self.points.by_name["k1"]).any():
+        if self.config.spectrum.longitudinal and np.isinf(self.points.columns_by_name["k1"]).any():
             raise InputError(
                 "spectrum.longitudinal: true needs finite parameters.k1, because a rod with k1 = inf cannot "
                 "stretch; remove inf from k1, or spectrum.longitudinal"
@@ -68,9 +68,10 @@ class SpectrumTask(CertifiedTask):
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
-        """Longitudinal growth rates, if requested, along the parameters on which these rates depend. Empty if
-        not requested.
+    def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+        """Longitudinal growth rates, along the parameters on which these rates depend; for arms that are not
+        uniform or not of linear material, also their relative errors. Empty if longitudinal modes are not
+        requested.
         """
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
@@ -78,36 +79,37 @@ class SpectrumTask(CertifiedTask):
         along, shape, columns = self._longitudinal_points()
         modes = self.config.spectrum.modes
         standard = self.config.standard
-        variables = longitudinal(gamma1, *along, in_closed_form=standard)
+        variables = longitudinal_variables(gamma1, *along, in_closed_form=standard)
         if standard:
             rates = [longitudinal_rates(float(k1), gamma1, modes) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*shape, modes))),)
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
         rods = [dict(zip(columns, each, strict=True)) | {"gamma1": gamma1} for each in values]
-        found = np.array(in_order(rods, lambda rod: longitudinal_of_arm(rod, self.config.build, modes)))
+        found = np.array(in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.build, modes)))
         return tuple((variable, found[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
-        """(dimensions, shape, columns) of the points at which longitudinal rates differ.
+        """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ.
 
-        columns: values of the parameters on which the rates depend, by name, flattened to (points,).
+        dimensions: names of the dimensions of these points. shape: their lengths. columns: values of the
+        parameters on which the rates depend, by name, flattened to (points,).
         """
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
         depends_on = longitudinal_parameters(self.config.standard, linear)
-        names = [name for name in depends_on if name in points.by_name]
-        columns = {name: points.by_name[name] for name in names}
+        names = [name for name in depends_on if name in points.columns_by_name]
+        columns = {name: points.columns_by_name[name] for name in names}
         if points.arm_axes or not points.is_grid:
             along = tuple(points.arm_axes) or ("point",)
             return along, points.shape, {name: column.ravel() for name, column in columns.items()}
         grid = np.meshgrid(*columns.values(), indexing="ij")
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
-    def afterwards(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
+    def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        as in `Task.afterwards`.
+        as in `Task.variables_from_points`.
         """
-        return force_changes(self.points, values) if self.config.standard else ()
+        return force_change_variables(self.points, values) if self.config.standard else ()
 
     def headline(self) -> str:
         return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
@@ -165,10 +167,12 @@ class SpectrumTask(CertifiedTask):
             warm_up=warm_up_following if stretches else warm_up,
             solve=lambda index: solve(self.points.rod(index), request),
             record=lambda index, result: spectrum_values(result),
-            stretched=(stretches, lambda indices: self._together(indices, request)) if stretches else None,
+            stretched=(stretches, lambda indices: self._solve_stretch(indices, request))
+            if stretches
+            else None,
         )
 
-    def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
+    def _solve_stretch(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
         """Results for the points of a stretch to which eigenvalues are followed. indices: flat indices,
         (n,).
         """
@@ -183,7 +187,7 @@ class SpectrumTask(CertifiedTask):
         return StretchResult(spectrum_values(found.spectra), found.is_solved)
 
 
-def longitudinal_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
+def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
     """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm.
 
     values: parameters by name.

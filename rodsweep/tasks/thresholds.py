@@ -10,7 +10,7 @@ import numpy as np
 from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_searches
 from .parts import CertifiedTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
@@ -49,7 +49,7 @@ class ThresholdsTask(CertifiedTask):
 
     def cost(self) -> Estimate:
         of_arms = not self.config.standard
-        return estimate_lines(self.points.count, self.config.thresholds.certify, of_arms)
+        return estimate_searches(self.points.count, self.config.thresholds.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up

@@ -8,10 +8,10 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
 from .checks import Check, checks_of
 from .load import Load
-from .planes import planes_of, with_load
+from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
 from .table import NumberRow, number_rows
-from .text_wrapping import folded
+from .text_wrapping import wrapped_text
 from .validity import Assessment
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
@@ -22,7 +22,7 @@ VALUE_COLUMN = 18
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmReport:
-    """Report on an arm: text for a terminal by `lines` and `str`, HTML in a notebook."""
+    """Report on an arm: text for a terminal by `styled_paragraphs` and `str`, HTML in a notebook."""
 
     validity: Validity
     """Whether the model applies to the arm, at the flutter threshold and under the load."""
@@ -31,31 +31,32 @@ class ArmReport:
     verdict: tuple[str, ...]
     """Sentences of the verdict; the first is the headline."""
     rows: tuple[NumberRow, ...]
+    """Rows of the table of numbers."""
     checks: tuple[Check, ...]
     """Checks of neglected effects that are not among `warnings`."""
 
     def __str__(self) -> str:
-        return "\n".join(line for line, _ in self.lines())
+        return "\n".join(line for line, _ in self.styled_paragraphs())
 
     __repr__ = __str__
 
-    def lines(self) -> Iterator[tuple[str, str]]:
+    def styled_paragraphs(self) -> Iterator[tuple[str, str]]:
         """Yields (text, style) of each paragraph, wrapped at 80 columns; style: "warning",
         "headline" or "".
         """
         for check in self.warnings:
-            yield folded(check.text), "warning"
+            yield wrapped_text(check.text), "warning"
         for number, sentence in enumerate(self.verdict):
-            yield folded(sentence), "" if number else "headline"
+            yield wrapped_text(sentence), "" if number else "headline"
         yield "", ""
         for name, value, formula, source in self.rows:
             place = " " * VALUE_COLUMN
             yield f"{name:{VALUE_COLUMN}}{value}", ""
-            yield folded(f"{formula}; {source}", place, place + "  "), ""
+            yield wrapped_text(f"{formula}; {source}", place, place + "  "), ""
         yield BRACKETS_NOTE, ""
         yield "", ""
         for check in self.checks:
-            yield folded(check.text), "" if check.is_negligible else "warning"
+            yield wrapped_text(check.text), "" if check.is_negligible else "warning"
 
     def _repr_html_(self) -> str:
         warnings = "".join(f"<p>{escape(check.text)}</p>" for check in self.warnings)
@@ -72,18 +73,18 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     """Solves for the thresholds of an arm and returns the report. Raises InputError if the load is given
     relative to the flutter load and the arm does not flutter.
     """
-    planes = with_load(planes_of(arm))
+    planes = with_absolute_load(planes_of(arm))
     first = planes.first
-    assessment = Assessment(first.arm, first.flutter_range)
+    assessment = Assessment(first.arm, first.thresholds)
     checks = checks_of(assessment)
-    applies = assessment.of_verdict < Validity.does_not_apply
+    applies = assessment.validity_of_verdict < Validity.does_not_apply
     above = tuple(check for check in checks if applies and check.doubts_the_verdict)
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
         load = str(getattr(arm, str(arm.load))).strip()
         others.insert(0, f"{Load(first.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(
-        validity=assessment.of_verdict,
+        validity=assessment.validity_of_verdict,
         warnings=above,
         verdict=(headline, *others),
         rows=tuple(number_rows(first)),

@@ -29,12 +29,12 @@ USUAL_POISSON = (0.3, 0.5)
 class Check:
     """Check of one neglected effect or one assumption of the model.
 
-    validity: whether the model applies despite the effect.
+    validity: whether the model applies despite the effect. sentence: result, without the warning's prefix.
     """
 
     validity: Validity
     sentence: str
-    of_verdict: bool = False
+    concerns_verdict: bool = False
     """Whether the effect can change the verdict. False for effects only on beating of large amplitude, or
     only on the width of the range of drag."""
 
@@ -43,7 +43,7 @@ class Check:
         """Whether the check makes the verdict doubtful. False for an effect beyond the limit of the model,
         because the verdict itself then says that the model does not apply.
         """
-        return self.of_verdict and self.validity == Validity.doubtful
+        return self.concerns_verdict and self.validity == Validity.doubtful
 
     @property
     def is_negligible(self) -> bool:
@@ -61,17 +61,17 @@ def checks_of(assessment: "Assessment") -> list[Check]:
     arm = assessment.arm
     effects = {effect.name: effect for effect in assessment.at_flutter}
     return [
-        slenderness(arm),
-        compression(assessment, effects["compression"]),
+        slenderness_check(arm),
+        compression_check(assessment, effects["compression"]),
         *inertia_checks(effects["inertia of the arm"], effects["inertia of the fluid"]),
-        *reynolds_check(effects["Reynolds number"]),
+        *reynolds_checks(effects["Reynolds number"]),
         *wall_checks(effects.get("flattening of the wall")),
         weight_check(effects.get("weight"), arm),
         poisson_check(arm),
     ]
 
 
-def slenderness(arm: SlenderArm) -> Check:
+def slenderness_check(arm: SlenderArm) -> Check:
     """Check of the ratio of the arm's length to its radius against MIN_SLENDERNESS."""
     ratio = arm.si.length / arm.shape.drag_radius
     fine = ratio >= MIN_SLENDERNESS
@@ -83,32 +83,32 @@ def slenderness(arm: SlenderArm) -> Check:
     return Check(_doubtful_or_fine(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
 
-def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
+def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     """Check of F/k1, the compressive strain of the straight arm at its weakest section, at flutter and under
     the load.
     """
     if assessment.arm.law != LINEAR.law:
-        return _compression_of_rubber(assessment)
+        return _rubber_compression_check(assessment)
     says = []
     effects = [at_flutter, *assessment.under_load]
     if assessment.under_load:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
-        says.append(f"the load {verb} the arm by {_percent(assessment.under_load[0])}")
+        says.append(f"the load {verb} the arm by {_percent_text(assessment.under_load[0])}")
     if not isnan(at_flutter.value):
-        says.append(f"the flutter load shortens {'it' if says else 'the arm'} by {_percent(at_flutter)}")
-    validity = max(map(_validity, effects))
+        says.append(f"the flutter load shortens {'it' if says else 'the arm'} by {_percent_text(at_flutter)}")
+    validity = max(map(_validity_of_effect, effects))
     largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
     ending = (
         "a linear law of the material is accurate",
-        f"rubber is some {_one_digit(100 * rubber_stiffening(largest))} % stiffer at this compression",
+        f"rubber is some {_one_digit_text(100 * rubber_stiffening(largest))} % stiffer at this compression",
         "real materials are no longer linear at this compression",
     )[validity]
     shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
     where = " at the weakest section" if assessment.arm.shape.varies else ""
-    return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", of_verdict=True)
+    return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", concerns_verdict=True)
 
 
-def _compression_of_rubber(assessment: "Assessment") -> Check:
+def _rubber_compression_check(assessment: "Assessment") -> Check:
     """Check of the compressive strain of a rubber arm. The check always passes, because the law of rubber is
     valid for large strains.
     """
@@ -116,10 +116,10 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
     says = []
     flutter = assessment.force_at_flutter
     if arm.load is not None:
-        says.append(f"the load shortens the arm by {100 * _shortening(arm, arm.F):.2g} %")
+        says.append(f"the load shortens the arm by {100 * _weakest_section_shortening(arm, arm.F):.2g} %")
     if flutter is not None:
         shortens = "the flutter load shortens it" if says else "the flutter load shortens the arm"
-        says.append(f"{shortens} by {100 * _shortening(arm, flutter):.2g} %")
+        says.append(f"{shortens} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
     shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
     where = " at the weakest section" if arm.shape.varies else ""
     return Check(
@@ -127,7 +127,7 @@ def _compression_of_rubber(assessment: "Assessment") -> Check:
     )
 
 
-def _shortening(arm: SlenderArm, F: float) -> float:
+def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
     smallest = min(each.young * each.section.area for each in arm.shape.stations)
     largest = arm.shape.base.young * arm.cross_section.area
@@ -141,7 +141,7 @@ def rubber_stiffening(strain: float) -> float:
     return float(2 * ((1 - strain) ** -3 - 1) / 3)
 
 
-def _one_digit(value: float) -> str:
+def _one_digit_text(value: float) -> str:
     """The positive number `value` as text with one significant digit; without an exponent of ten from 1e-4
     to 1e5."""
     return f"{float(f'{value:.1g}'):g}"
@@ -153,27 +153,27 @@ def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     """
     if isnan(of_arm.value):
         return []
-    validity = max(map(_validity, (of_arm, of_fluid)))
+    validity = max(map(_validity_of_effect, (of_arm, of_fluid)))
     lowered = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
     ending = (
         "neither matters",
-        f"they lower the threshold of flutter by some {_one_digit(lowered)} %",
+        f"they lower the threshold of flutter by some {_one_digit_text(lowered)} %",
         f"the model neglects both and applies only up to {of_arm.limit:g}",
     )[validity]
     sentence = (
         f"Inertia: at flutter mass times rate over drag is {float(of_arm.value):.2g} for the arm and "
         f"{float(of_fluid.value):.2g} for the fluid beside it; {ending}."
     )
-    return [Check(validity, sentence, of_verdict=True)]
+    return [Check(validity, sentence, concerns_verdict=True)]
 
 
-def reynolds_check(number: Effect) -> list[Check]:
+def reynolds_checks(number: Effect) -> list[Check]:
     """Check of the Reynolds number of beating with amplitude L/2 at the frequency of flutter; an empty list
     if the arm does not flutter. number: the effect "Reynolds number".
     """
     if isnan(number.value):
         return []
-    validity = _validity(number)
+    validity = _validity_of_effect(number)
     ending = (
         "the drag law of slow flow applies",
         "at wide beating the drag is somewhat larger than in the model",
@@ -196,7 +196,7 @@ def wall_check(effect: Effect) -> Check:
     """
     lost = float(effect.value)
     loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
-    validity = _validity(effect)
+    validity = _validity_of_effect(effect)
     ending = (
         "negligible",
         "the model neglects this",
@@ -214,7 +214,7 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
         says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
         return Check(Validity.applies, says)
     share = float(effect.value)
-    validity = _validity(effect)
+    validity = _validity_of_effect(effect)
     sag = SAG_AT_SELF_BUCKLING * share
     level = (
         f"a level arm sags by {sag:.2g} of its length" if sag < MAX_STATED_SAG else "a level arm hangs down"
@@ -226,7 +226,7 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     )[validity]
     upright = f"weight less buoyancy is {share:.2g} of the weight that buckles an upright arm"
     sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
-    return Check(validity, f"Weight: {upright}{sags}; {ending}.", of_verdict=True)
+    return Check(validity, f"Weight: {upright}{sags}; {ending}.", concerns_verdict=True)
 
 
 def poisson_check(arm: SlenderArm) -> Check:
@@ -238,7 +238,7 @@ def poisson_check(arm: SlenderArm) -> Check:
     )
 
 
-def _validity(effect: Effect) -> Validity:
+def _validity_of_effect(effect: Effect) -> Validity:
     return Validity(int(effect.validity))
 
 
@@ -246,5 +246,5 @@ def _doubtful_or_fine(doubtful: bool) -> Validity:
     return Validity.doubtful if doubtful else Validity.applies
 
 
-def _percent(effect: Effect) -> str:
+def _percent_text(effect: Effect) -> str:
     return f"{100 * float(effect.value):.2g} %"

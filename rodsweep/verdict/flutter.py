@@ -27,15 +27,16 @@ KINDS_OF_VERDICT = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FlutterForces:
+class ThresholdsWithDrag:
     """Thresholds of an arm for one drag. Forces are in k3/L^2, frequencies in Hz."""
 
     tau2: float
     """Viscous time scale of the arm, in s."""
     thresholds: Thresholds
+    """Result of the search for thresholds along the force."""
 
     @property
-    def usable(self) -> bool:
+    def is_usable(self) -> bool:
         """Whether the thresholds found are those of the arm, though perhaps not proved complete."""
         return self.thresholds.status in (
             ThresholdStatus.ok,
@@ -57,36 +58,36 @@ class FlutterForces:
             return ""
         return found.message or "the list of thresholds is not proved complete"
 
-    def first(self, kind: ChangeKind) -> Crossing | None:
+    def first_threshold(self, kind: ChangeKind) -> Crossing | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 
-    def frequency(self, kind: ChangeKind) -> float | None:
+    def first_frequency(self, kind: ChangeKind) -> float | None:
         """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
-        found = self.first(kind)
+        found = self.first_threshold(kind)
         return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
 
-    def force(self, kind: ChangeKind) -> float | None:
+    def first_force(self, kind: ChangeKind) -> float | None:
         """Force, in k3/L^2, at the first threshold of the given kind; None if no threshold has this kind."""
-        found = self.first(kind)
+        found = self.first_threshold(kind)
         return None if found is None else found.at
 
     @property
-    def second_flutter(self) -> float | None:
+    def second_flutter_force(self) -> float | None:
         """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if it does
         not."""
-        back = self.force(ChangeKind.restabilization)
+        back = self.first_force(ChangeKind.restabilization)
         later = (c.at for c in self.thresholds.crossings if c.kind == ChangeKind.hopf)
         return None if back is None else next((F for F in later if back < F), None)
 
-    def unstable_at(self, F: float) -> bool:
+    def is_unstable_at(self, F: float) -> bool:
         """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
         stability at this end is returned.
         """
         before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
         return bool(before) and before[-1] != 0
 
-    def up_to(self, end: float) -> "FlutterForces":
+    def up_to(self, end: float) -> "ThresholdsWithDrag":
         """A copy without the thresholds at forces larger than `end`."""
         found = self.thresholds
         crossings = tuple(c for c in found.crossings if c.at <= end)
@@ -96,9 +97,9 @@ class FlutterForces:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Smallest and largest value of a quantity over the drags of an arm.
+    """Range of a quantity over the drags of an arm; drags for which the quantity does not exist are left out.
 
-    for_every_drag: whether the quantity exists for every drag.
+    low, high: smallest and largest value. for_every_drag: whether the quantity exists for every drag.
     """
 
     low: float
@@ -107,50 +108,51 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
-class FlutterRange:
-    """Thresholds of an arm for every drag of its range. The most likely drag comes first."""
+class ThresholdsOverDrags:
+    """Thresholds of an arm for every drag of its range."""
 
-    forces: tuple[FlutterForces, ...]
+    by_drag: tuple[ThresholdsWithDrag, ...]
+    """Thresholds for each drag, the most likely drag first."""
 
     @property
     def failures(self) -> list[str]:
         """Distinct error messages of failed searches. A search that stopped before the requested force did
         not fail.
         """
-        failed = [f.thresholds for f in self.forces if not f.usable]
+        failed = [f.thresholds for f in self.by_drag if not f.is_usable]
         return sorted({t.message or t.status.sentence for t in failed})
 
     @property
     def doubts(self) -> list[str]:
         """Distinct reasons for which thresholds, for some drags, are uncertain."""
-        return sorted({f.doubt for f in self.forces if f.usable} - {""})
+        return sorted({f.doubt for f in self.by_drag if f.is_usable} - {""})
 
     @property
     def end(self) -> float:
         """Largest force of the search, in k3/L^2; the same for all drags."""
-        return self.forces[0].thresholds.end
+        return self.by_drag[0].thresholds.end
 
-    def force(self, kind: ChangeKind) -> Span | None:
+    def first_forces(self, kind: ChangeKind) -> Span | None:
         """Range, over the drags, of the force at the first threshold of the given kind, in k3/L^2; None if no
         drag has such a threshold.
         """
-        return span_of([f.force(kind) for f in self.forces])
+        return span_of([f.first_force(kind) for f in self.by_drag])
 
     @property
-    def second_flutter(self) -> Span | None:
+    def second_flutter_forces(self) -> Span | None:
         """Range, over the drags, of the force at which the arm flutters again, in k3/L^2; None if it does not
         for any drag."""
-        return span_of([f.second_flutter for f in self.forces])
+        return span_of([f.second_flutter_force for f in self.by_drag])
 
-    def frequency(self, kind: ChangeKind) -> Span | None:
+    def first_frequencies(self, kind: ChangeKind) -> Span | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
         drag has such a threshold.
         """
-        return span_of([f.frequency(kind) for f in self.forces])
+        return span_of([f.first_frequency(kind) for f in self.by_drag])
 
-    def unstable_at(self, F: float) -> list[bool]:
+    def is_unstable_by_drag(self, F: float) -> list[bool]:
         """For each drag: whether the straight arm is unstable at the force F."""
-        return [f.unstable_at(F) for f in self.forces]
+        return [f.is_unstable_at(F) for f in self.by_drag]
 
 
 def span_of(values: list[float | None]) -> Span | None:
@@ -159,14 +161,14 @@ def span_of(values: list[float | None]) -> Span | None:
     return Span(min(known), max(known), len(known) == len(values)) if known else None
 
 
-def flutter_forces(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> FlutterForces:
+def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> ThresholdsWithDrag:
     """All thresholds of the straight arm with the given drag, at forces from 0 to `end`."""
     thresholds = solve_thresholds(rod_with_drag(arm, drag), replace(SEARCH_REQUEST, F_max=end))
-    return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
+    return ThresholdsWithDrag(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
 @exclusive_solve
-def flutter_range(arm: SlenderArm) -> FlutterRange:
+def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
     """All thresholds of the straight arm for each drag, up to a force common to all drags.
 
     The search with the most likely drag sets this force. If a search stops at a smaller force, this smaller
@@ -174,20 +176,21 @@ def flutter_range(arm: SlenderArm) -> FlutterRange:
     """
     likeliest, *others = arm.drags
     end, first = _first_search(arm, likeliest)
-    found = (first, *(flutter_forces(arm, drag, end) for drag in others))
+    found = (first, *(thresholds_with_drag(arm, drag, end) for drag in others))
     common = min(forces.thresholds.end for forces in found)
-    return FlutterRange(tuple(forces.up_to(common) for forces in found))
+    return ThresholdsOverDrags(tuple(forces.up_to(common) for forces in found))
 
 
-def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, FlutterForces]:
-    """Returns (end, forces): the largest force requested, and the thresholds up to this force. For an arm
-    that is not uniform or not of linear material, `end` exceeds the first flutter force and the load by at
-    least the factor MIN_SEARCH_RATIO, if possible.
+def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
+    """Returns (end, found): the largest force requested, and the thresholds up to this force. `end` is
+    SEARCH_END; for an arm that is not uniform or not of linear material, the first of SEARCH_ENDS_OF_VARIED
+    that exceeds the first flutter force and a known load by at least the factor MIN_SEARCH_RATIO, or before
+    which the search ended, else the last.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
-        found = flutter_forces(arm, drag, end)
-        flutter = found.force(ChangeKind.hopf)
+        found = thresholds_with_drag(arm, drag, end)
+        flutter = found.first_force(ChangeKind.hopf)
         reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
         if MIN_SEARCH_RATIO * reached <= end or found.thresholds.end < end:
             break

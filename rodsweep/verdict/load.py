@@ -47,6 +47,7 @@ class Load:
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
+        """Key of the load, "pressure" or "force"; "pressure" if the user gave no load."""
         given = getattr(arm, self.name)
         si = UNITS[self.name][0]
         self.unit = (
@@ -54,6 +55,8 @@ class Load:
             if given is not None
             else with_si_prefix(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
+        """Unit in which loads are printed: the user's unit, or a prefixed SI unit if the user gave no load.
+        """
         self.typed_text = (
             "" if given is None else _shortened_load(given, float(getattr(arm.si, self.name)), si)
         )
@@ -62,12 +65,12 @@ class Load:
         self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
-    def of(self, forces: Span) -> str:
+    def range_of_forces_text(self, forces: Span) -> str:
         """A range of forces in k3/L^2, as text in the unit of the load."""
         low, high = (F * self.load_at_unit_force for F in (forces.low, forces.high))
         return f"{range_text(low, high)} {self.unit}"
 
-    def at_most(self, F: float) -> str:
+    def rounded_down_text(self, F: float) -> str:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
         value = F * self.load_at_unit_force
         unit = 10.0 ** (floor(log10(value)) - 2)
@@ -75,8 +78,8 @@ class Load:
 
 
 def _shortened_load(given: object, value: float, si: str) -> str:
-    """The load `typed_text` as the user typed it, rounded to four digits if its number is long. A load given
-    as a number is written in the SI unit `si`, in which it is `value`.
+    """The load `given` as text: as the user typed it, or rounded to four digits if its number is long. A load
+    given as a number is written in the SI unit `si`, in which it is `value`.
     """
     if not isinstance(given, str):
         return f"{value:.4g} {si}"

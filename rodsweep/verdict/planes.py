@@ -9,7 +9,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import with_si_prefix
 from ..solve.changes.unstable_modes import ChangeKind
-from .flutter import FlutterRange, flutter_range
+from .flutter import ThresholdsOverDrags, thresholds_over_drags
 from .relative import with_exchanged_sides
 
 A = TypeVar("A", bound=SlenderArm)
@@ -22,28 +22,31 @@ class PlaneOfMotion:
     arm: SlenderArm
     """The arm, with its cross-section turned so that the height of the section lies in the plane of
     motion."""
-    flutter_range: FlutterRange
+    thresholds: ThresholdsOverDrags
+    """Thresholds for bending in this plane."""
     name: str = ""
     """Name of the plane, such as "the plane of its height"; empty if all planes of motion are equivalent."""
 
     @property
     def flutter_load_by_drag(self) -> list[float]:
         """Force of the first flutter, in N, for each drag; inf for a drag without flutter."""
-        forces = [each.force(ChangeKind.hopf) for each in self.flutter_range.forces]
+        forces = [each.first_force(ChangeKind.hopf) for each in self.thresholds.by_drag]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
 @dataclass(frozen=True, slots=True)
 class Planes:
-    """Planes of motion of an arm. `first` is the plane with the smaller flutter load for the most likely
-    drag.
+    """Planes in which an arm can bend.
+
+    first: plane with the smaller flutter load for the most likely drag. second: the other plane; None if all
+    planes are equivalent.
     """
 
     first: PlaneOfMotion
     second: PlaneOfMotion | None = None
 
     @property
-    def always_first(self) -> bool:
+    def is_first_for_every_drag(self) -> bool:
         """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`; True
         without a second plane.
         """
@@ -58,16 +61,16 @@ def planes_of(arm: SlenderArm) -> Planes:
     sections.
     """
     if arm.is_equally_stiff:
-        return Planes(PlaneOfMotion(arm, flutter_range(arm)))
+        return Planes(PlaneOfMotion(arm, thresholds_over_drags(arm)))
     other = with_exchanged_sides(arm)
-    own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
-    across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
+    own = PlaneOfMotion(arm, thresholds_over_drags(arm), "the plane of its height")
+    across = PlaneOfMotion(other, thresholds_over_drags(other), "the plane of its width")
     if across.flutter_load_by_drag[0] < own.flutter_load_by_drag[0]:
         return Planes(across, own)
     return Planes(own, across)
 
 
-def with_load(planes: Planes) -> Planes:
+def with_absolute_load(planes: Planes) -> Planes:
     """The planes with a load relative to the flutter load replaced by the load in a physical unit.
 
     The flutter load is the smallest over all planes, for the most likely drag. Raises InputError if the arm
@@ -78,10 +81,10 @@ def with_load(planes: Planes) -> Planes:
     load = first.arm.load
     if share is None or load is None:
         return planes
-    force = first.flutter_range.forces[0].force(ChangeKind.hopf)
+    force = first.thresholds.by_drag[0].first_force(ChangeKind.hopf)
     scale = first.arm.load_scale
     if force is None:
-        end = f"{float(f'{first.flutter_range.end * scale:.3g}'):g} {UNITS[load][0]}"
+        end = f"{float(f'{first.thresholds.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
             f"not flutter up to {end}; give an absolute load"
@@ -92,11 +95,11 @@ def with_load(planes: Planes) -> Planes:
     return Planes(replace(first, arm=replace(first.arm, **given)), second)
 
 
-def with_known_load(arm: A) -> A:
+def arm_with_absolute_load(arm: A) -> A:
     """The arm with its load in a physical unit. Solves for the flutter load if the load is relative to the
     flutter load.
     """
     load = arm.load
     if load is None or arm.share_of_flutter is None:
         return arm
-    return replace(arm, **{load: getattr(with_load(planes_of(arm)).first.arm, load)})
+    return replace(arm, **{load: getattr(with_absolute_load(planes_of(arm)).first.arm, load)})

@@ -84,7 +84,7 @@ def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Ro
     return Rod(F=0.0, **own, build=build or arm.build_with_drag(drag))
 
 
-def first_flutter(arm: SlenderArm) -> float:
+def first_flutter_force(arm: SlenderArm) -> float:
     """Smallest flutter force of an arm over its planes of motion, in k3/L^2 of the arm; inf if the arm does
     not flutter. Raises FlutterSearchFailed if the search fails.
     """
@@ -99,7 +99,7 @@ def first_hopf_force(rod: Rod) -> float:
     overflows or cannot exclude a Hopf point at a smaller F.
     """
     path = Path(rod, "F")
-    first_up_to = _first_up_to if rod.standard else _first_of_varied
+    first_up_to = _first_hopf_force_by_boxes if rod.standard else _first_hopf_force_of_varied
     try:
         for end in (FIRST_SEARCH_END, SEARCH_END) if rod.standard else SEARCH_ENDS_OF_VARIED:
             first = first_up_to(path, end_below_crushing(rod, end))
@@ -113,7 +113,7 @@ def first_hopf_force(rod: Rod) -> float:
     return inf
 
 
-def _first_up_to(path: Path, end: float) -> float:
+def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
     """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Covers the zeros
     of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded.
     """
@@ -124,7 +124,7 @@ def _first_up_to(path: Path, end: float) -> float:
             "eigenvalues applies to this rod"
         )
     zeros, left, _ = cover_with_boxes(boxes, path.origin, path.direction)
-    first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
+    first = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
     if any(min(box.p_from, box.p_to) < first for box in left):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
@@ -133,10 +133,10 @@ def _first_up_to(path: Path, end: float) -> float:
     return first
 
 
-def _first_of_varied(path: Path, end: float) -> float:
-    """For arms that are not uniform or not of linear material (others: `_first_up_to`): smallest F up to
-    `end` at which a pair of modes becomes unstable; inf if no pair does. Raises FlutterSearchFailed if the
-    search along F fails or a smaller F is not excluded.
+def _first_hopf_force_of_varied(path: Path, end: float) -> float:
+    """For arms that are not uniform or not of linear material (others: `_first_hopf_force_by_boxes`):
+    smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Raises
+    FlutterSearchFailed if the search along F fails or a smaller F is not excluded.
     """
     from ..solve.changes.along_path import pair_crossings
     from ..solve.point import FAILURES, cause_of
@@ -158,7 +158,7 @@ def _first_of_varied(path: Path, end: float) -> float:
     return first
 
 
-def _grows(path: Path, zero: LocatedZero) -> bool:
+def _becomes_unstable(path: Path, zero: LocatedZero) -> bool:
     """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
     d Re w/dp > 0.
     """

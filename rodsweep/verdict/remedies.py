@@ -21,16 +21,16 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     """One sentence per kind of neglected effect beyond its limit, the effect with the largest ratio to its
     limit first.
     """
-    first, *others = _first_of_each_kind(assessment.effects_with(Validity.does_not_apply))
+    first, *others = _first_effect_of_each_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
-    at = f" at {Load(arm).typed_text}" if assessment.of_thresholds != Validity.does_not_apply else ""
+    at = f" at {Load(arm).typed_text}" if assessment.validity_at_flutter != Validity.does_not_apply else ""
     says = [
-        f"The model does not apply{at}: {first.name} is {as_multiple(first)} what the model allows; {remedy}."
+        f"The model does not apply{at}: {first.name} is {excess_text(first)} what the model allows; {remedy}."
     ]
     for effect in others:
         name = effect.name.capitalize()
         says.append(
-            f"{name} is {as_multiple(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
+            f"{name} is {excess_text(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
         )
     return says
 
@@ -47,7 +47,7 @@ def effect_kind(effect: Effect) -> str:
     return effect.name.split()[0]
 
 
-def as_multiple(effect: Effect) -> str:
+def excess_text(effect: Effect) -> str:
     """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
     FOUR_DIGIT_EXCESS.
     """
@@ -55,7 +55,7 @@ def as_multiple(effect: Effect) -> str:
     return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
 
 
-def _first_of_each_kind(effects: list[Effect]) -> list[Effect]:
+def _first_effect_of_each_kind(effects: list[Effect]) -> list[Effect]:
     """The first effect of each kind. effects: in decreasing order of the ratio to the limit."""
     return list({effect_kind(effect): effect for effect in reversed(effects)}.values())[::-1]
 
@@ -72,7 +72,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
         return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
     if any(effect is each for each in assessment.under_load):
         pulls = "a pull" if arm.F < 0 else "a load"
-        return f"the model needs {pulls} of at most {Load(arm).at_most(abs(arm.F) * share)}"
+        return f"the model needs {pulls} of at most {Load(arm).rounded_down_text(abs(arm.F) * share)}"
     return "the model needs a longer or a thinner arm"
 
 

@@ -6,7 +6,7 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 
 from ..model.arm.neglected import Validity
 from ..solve.changes.unstable_modes import ChangeKind
-from .flutter import FlutterRange, Span
+from .flutter import Span, ThresholdsOverDrags
 from .load import Load, percent_range_text, range_text
 from .planes import PlaneOfMotion, Planes
 from .remedies import effect_kinds_in_words, not_applicable_sentences
@@ -14,17 +14,15 @@ from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """Sentences of the verdict on an arm, over the range of drag: whether the model applies, flutter in the
-    plane with the smaller flutter load, then in the second plane. The second plane is left out if the model
-    applies at flutter but not under the load. If a search in the first plane failed, the list contains only
-    the reason.
+    """Sentences of the verdict on an arm, over the range of drag: whether the model applies, why thresholds
+    are uncertain (if they are), flutter in the plane with the smaller flutter load, then in the second plane.
+    The second plane is left out if the model applies at flutter but not under the load. If a search in the
+    first plane failed, the list contains only the reason.
     """
     plane = planes.first
-    if plane.flutter_range.failures:
+    if plane.thresholds.failures:
         return [
-            "For some drags the thresholds could not be found: "
-            + "; ".join(plane.flutter_range.failures)
-            + "."
+            "For some drags the thresholds could not be found: " + "; ".join(plane.thresholds.failures) + "."
         ]
     headline, *others = _sentences_on_flutter(planes, assessment)
     return [headline, *_doubt_sentences(planes), *others]
@@ -33,7 +31,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 def _doubt_sentences(planes: Planes) -> list[str]:
     """List of one sentence on why the thresholds of some plane of motion are uncertain; empty if they are
     certain."""
-    known = [plane.flutter_range for plane in (planes.first, planes.second) if plane is not None]
+    known = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
     doubts = sorted({doubt for found in known for doubt in found.doubts})
     return [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
 
@@ -43,76 +41,78 @@ def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
     plane = planes.first
     beyond = assessment.effects_with(Validity.does_not_apply)
     if not beyond:
-        return [*_verdict(plane), *_second_plane_sentences(planes, "is")]
+        return [*_valid_arm_sentences(plane), *_second_plane_sentences(planes, "is")]
     headline = not_applicable_sentences(plane.arm, assessment)
-    if assessment.of_thresholds == Validity.does_not_apply:
+    if assessment.validity_at_flutter == Validity.does_not_apply:
         return [
             *headline,
             *_flutter_without_effects(plane, effect_kinds_in_words(beyond)),
             *_second_plane_sentences(planes, "would be"),
         ]
-    flutter = plane.flutter_range.force(ChangeKind.hopf)
+    flutter = plane.thresholds.first_forces(ChangeKind.hopf)
     known = (
         "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
     )
     return [*headline, f"{known} is within the model; {Load(plane.arm).typed_text} is not."]
 
 
-def _verdict(plane: PlaneOfMotion) -> list[str]:
+def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     """Sentences on flutter and return to stability of an arm to which the model applies."""
     arm = plane.arm
-    found = plane.flutter_range
+    found = plane.thresholds
     load = Load(plane.arm)
-    flutter = found.force(ChangeKind.hopf)
-    back = found.force(ChangeKind.restabilization)
+    flutter = found.first_forces(ChangeKind.hopf)
+    back = found.first_forces(ChangeKind.restabilization)
     if flutter is None:
         stays = f": it stays straight at {load.typed_text}" if load.typed_text else ""
         if found.end < arm.F:
             stays = f": whether the arm beats at {load.typed_text} is not known"
         return [f"The arm does not flutter {_search_end_clause(plane, load)}{stays}."]
-    rate = found.frequency(ChangeKind.hopf)
+    rate = found.first_frequencies(ChangeKind.hopf)
     beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
     if arm.load is None:
         says = [f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{beats}."]
     else:
-        says = [_load_against_flutter(plane, flutter, load), f"Above, the straight arm gives way and{beats}."]
+        says = [
+            _load_comparison_sentence(plane, flutter, load),
+            f"Above, the straight arm gives way and{beats}.",
+        ]
     if not flutter.for_every_drag:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
         some = "" if back.for_every_drag else ", for part of the range of drag"
-        says.append(
-            f"The straight arm is stable again above {load.of(back)}{some}{_second_flutter(found, load)}."
-        )
+        where = f"{load.range_of_forces_text(back)}{some}"
+        says.append(f"The straight arm is stable again above {where}{_second_flutter_clause(found, load)}.")
     else:
         says.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
     return says + _oscillation_sentences(found, load)
 
 
-def _second_flutter(found: FlutterRange, load: Load) -> str:
+def _second_flutter_clause(found: ThresholdsOverDrags, load: Load) -> str:
     """Clause on the load at which an arm that is stable again flutters a second time; empty if it does not
     flutter again.
     """
-    second = found.second_flutter
+    second = found.second_flutter_forces
     if second is None:
         return ""
     some = "" if second.for_every_drag else ", for part of the range of drag"
-    return f", and flutters again above {load.of(second)}{some}"
+    return f", and flutters again above {load.range_of_forces_text(second)}{some}"
 
 
 def _flutter_load_text(plane: PlaneOfMotion, flutter: Span) -> str:
     """Range of the flutter load over the drags as text; for a rectangular section, followed by the name of
     the plane of motion.
     """
-    where = Load(plane.arm).of(flutter)
+    where = Load(plane.arm).range_of_forces_text(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
-def _load_against_flutter(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
+def _load_comparison_sentence(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
     """Sentence that compares the arm's load with the range of the flutter load over the drags and says
     whether the arm beats.
     """
     F = plane.arm.F
-    found = plane.flutter_range
+    found = plane.thresholds
     where = _flutter_load_text(plane, flutter)
     if F <= 0:
         return f"Flutter is at {where}; {load.typed_text} does not push, and the arm stays straight."
@@ -120,10 +120,10 @@ def _load_against_flutter(plane: PlaneOfMotion, flutter: Span, load: Load) -> st
         percent = percent_range_text(1 - F / flutter.low, 1 - F / flutter.high)
         return f"{load.typed_text} is {percent} % below flutter, at {where}: the arm stays straight."
     if found.end < F:
-        end = load.of(Span(found.end, found.end))
+        end = load.range_of_forces_text(Span(found.end, found.end))
         unknown = f"whether the arm beats at {load.typed_text} is not known"
         return f"Flutter is at {where}; {unknown}: changes were sought up to {end}."
-    unstable = found.unstable_at(F)
+    unstable = found.is_unstable_by_drag(F)
     if flutter.high < F and not any(unstable):
         return f"{load.typed_text} is beyond flutter, at {where}: the straight arm is stable again."
     if not all(unstable):
@@ -142,10 +142,10 @@ def _excess_text(F: float, flutter: Span) -> str:
 def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
-    found = plane.flutter_range
+    found = plane.thresholds
     load = Load(plane.arm)
-    flutter = found.force(ChangeKind.hopf)
-    rate = found.frequency(ChangeKind.hopf)
+    flutter = found.first_forces(ChangeKind.hopf)
+    rate = found.first_frequencies(ChangeKind.hopf)
     if flutter is None:
         return [f"Without {neglected} the arm would not flutter {_search_end_clause(plane, load)}."]
     beats = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
@@ -168,26 +168,34 @@ def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     second = planes.second
     if second is None:
         return []
-    if second.flutter_range.failures:
+    if second.thresholds.failures:
         return [f"The threshold in {second.name} could not be found."]
-    flutter = second.flutter_range.force(ChangeKind.hopf)
+    flutter = second.thresholds.first_forces(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second.name} there {verb} no flutter {_search_end_clause(second, Load(second.arm))}."]
-    decides = "" if planes.always_first else "; for part of the range of drag, flutter starts in this plane"
-    return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
+    decides = (
+        ""
+        if planes.is_first_for_every_drag
+        else "; for part of the range of drag, flutter starts in this plane"
+    )
+    return [f"In {second.name} flutter {verb} at {Load(second.arm).range_of_forces_text(flutter)}{decides}."]
 
 
 def _search_end_clause(plane: PlaneOfMotion, load: Load) -> str:
     """Clause that states the load at which the search ends, and whether this load crushes the arm."""
-    end = load.of(Span(plane.flutter_range.end, plane.flutter_range.end))
-    if plane.flutter_range.end > 0.999 * plane.arm.crushing_force:
+    end = load.range_of_forces_text(Span(plane.thresholds.end, plane.thresholds.end))
+    if plane.thresholds.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 
 
-def _oscillation_sentences(found: FlutterRange, load: Load) -> list[str]:
+def _oscillation_sentences(found: ThresholdsOverDrags, load: Load) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
     found.
     """
-    onset = found.force(ChangeKind.onset)
-    return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]
+    onset = found.first_forces(ChangeKind.onset)
+    return (
+        []
+        if onset is None
+        else [f"From {load.range_of_forces_text(onset)} on a disturbance swings as it dies away."]
+    )

@@ -88,7 +88,7 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 
-def with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:
+def value_with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:
     """values[0], followed by the range of all values in brackets and by `unit`, as text. values: a quantity
     for each drag, the most likely drag first.
     """
@@ -102,25 +102,25 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
     return [
         NumberRow(
             "drag across",
-            with_drag_range(arm, [d.gamma2 for d in drags], " Pa s"),
+            value_with_drag_range(arm, [d.gamma2 for d in drags], " Pa s"),
             "4 pi eta/(ln(2 L/a) - 1/2)",
             translation,
         ),
         NumberRow(
             "axial drag",
-            with_drag_range(arm, [d.gamma1 for d in drags], " Pa s"),
+            value_with_drag_range(arm, [d.gamma1 for d in drags], " Pa s"),
             "2 pi eta/(ln(2 L/a) - 3/2)",
             translation,
         ),
         NumberRow(
             "rotational drag",
-            with_drag_range(arm, [d.gamma3 for d in drags], " Pa s m^2"),
+            value_with_drag_range(arm, [d.gamma3 for d in drags], " Pa s m^2"),
             "(pi to 4 pi) eta a^2",
             "section turning about a diameter; Powers 2010",
         ),
         NumberRow(
             "tau2",
-            with_drag_range(arm, [arm.tau2_with(d) for d in drags], " s"),
+            value_with_drag_range(arm, [arm.tau2_with(d) for d in drags], " s"),
             "drag across L^4/k3",
             "paper, Sec. VI",
         ),
@@ -128,7 +128,9 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the dimensionless parameters of an arm, named like the keys of a config."""
+    """Rows with the dimensionless parameters of an arm, named like the keys of a config; F only for an arm
+    with a load.
+    """
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [
@@ -136,13 +138,13 @@ def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
         NumberRow("k2", f"{arm.k2:.5g}", "kappa G A L^2/k3, G = E/(2 (1 + nu))", "paper, Sec. III, VI"),
         NumberRow(
             "gamma3",
-            with_drag_range(arm, [arm.gamma3_with(d) for d in drags]),
+            value_with_drag_range(arm, [arm.gamma3_with(d) for d in drags]),
             "rotational drag/(drag across L^2)",
             "paper, Sec. VI",
         ),
         NumberRow(
             "gamma1",
-            with_drag_range(arm, [d.gamma1 / d.gamma2 for d in drags]),
+            value_with_drag_range(arm, [d.gamma1 / d.gamma2 for d in drags]),
             "axial drag/drag across",
             "paper, Sec. VI",
         ),

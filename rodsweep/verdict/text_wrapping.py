@@ -6,7 +6,7 @@ WIDTH = 80
 """Width of a wrapped line, in characters."""
 
 
-def folded(text: str, first: str = "", further: str = "  ") -> str:
+def wrapped_text(text: str, first: str = "", further: str = "  ") -> str:
     """`text` wrapped to lines of at most WIDTH characters. first: indent of the first line. further: indent
     of the following lines.
     """

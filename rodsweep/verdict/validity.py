@@ -20,7 +20,7 @@ from ..model.arm.neglected import (
 from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..solve.changes.unstable_modes import ChangeKind, Crossing
 from ..solve.exclusive import exclusive_solve
-from .flutter import FlutterRange, flutter_forces
+from .flutter import ThresholdsOverDrags, thresholds_with_drag
 
 REMEDY_DIGITS = 2
 """Significant digits of the factors in remedies, which are rounded to the safe side."""
@@ -38,18 +38,18 @@ and 1. The thickness then has two correct digits."""
 @dataclass(frozen=True)
 class Assessment:
     """Neglected effects on an arm, at the flutter threshold and under the load, compared with their limits in
-    the model. found: thresholds of the arm for every drag.
+    the model. thresholds: thresholds of the arm for every drag.
     """
 
     arm: SlenderArm
-    found: FlutterRange
+    thresholds: ThresholdsOverDrags
 
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
-        """Neglected effects at the first flutter force for the most likely drag. The rate of motion is the
-        largest rate over all drags.
+        """Neglected effects at the first flutter force for the most likely drag for which the arm flutters.
+        The rate of motion is the largest rate over all drags.
         """
-        return effects_at_flutter(self.arm, self.found)
+        return effects_at_flutter(self.arm, self.thresholds)
 
     @cached_property
     def under_load(self) -> tuple[Effect, ...]:
@@ -67,7 +67,7 @@ class Assessment:
         """Smallest flutter force, in k3/L^2, for the most likely drag for which the arm flutters; None if the
         arm flutters for no drag.
         """
-        first = first_flutter_of(self.found)
+        first = first_hopf_point(self.thresholds)
         return None if first is None else first.at
 
     @property
@@ -76,12 +76,12 @@ class Assessment:
         return *self.at_flutter, *self.under_load
 
     @property
-    def of_thresholds(self) -> Validity:
+    def validity_at_flutter(self) -> Validity:
         """Validity of the model at the flutter threshold."""
         return Validity(int(worst_validity(self.at_flutter, of_cycles=False)))
 
     @property
-    def of_verdict(self) -> Validity:
+    def validity_of_verdict(self) -> Validity:
         """Validity of the model at the flutter threshold and under the load: the worse of the two."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
@@ -93,18 +93,19 @@ class Assessment:
         return sorted(counted, key=lambda effect: -float(effect.excess))
 
 
-def first_flutter_of(found: FlutterRange) -> Crossing | None:
+def first_hopf_point(found: ThresholdsOverDrags) -> Crossing | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if the arm flutters for no
     drag.
     """
-    return next((each for c in found.forces if (each := c.first(ChangeKind.hopf))), None)
+    return next((each for c in found.by_drag if (each := c.first_threshold(ChangeKind.hopf))), None)
 
 
-def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
-    """Neglected effects at the first flutter in `found`. Inertia, compression and Reynolds number are NaN if
-    the arm does not flutter.
+def effects_at_flutter(arm: SlenderArm, found: ThresholdsOverDrags) -> tuple[Effect, ...]:
+    """Neglected effects at the first flutter in `found`, for the most likely drag for which the arm flutters;
+    the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are NaN if the
+    arm does not flutter.
     """
-    first = first_flutter_of(found)
+    first = first_hopf_point(found)
     if first is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
@@ -133,7 +134,7 @@ def thickness_factor(arm: SlenderArm) -> float:
     factor = 1.0
     for _ in range(MAX_THINNING_ITERATIONS):
         thinner = _with_scaled_section(arm, factor)
-        found = FlutterRange((flutter_forces(thinner, thinner.drags[0]),))
+        found = ThresholdsOverDrags((thresholds_with_drag(thinner, thinner.drags[0]),))
         effects = effects_at_flutter(thinner, found)
         excess = viscosity_factor(effects)
         if MIN_VISCOSITY_RATIO < excess <= 1.0:

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.api.solved import StoredResult
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.tables.contents import TABLE_NAMES
@@ -144,10 +144,10 @@ def test_an_answer_prints_its_numbers_with_their_units():
 
 def test_no_variable_hides_behind_an_attribute_of_answers():
     for task, config in CONFIGS.items():
-        if config.of_several_rods:
+        if config.needs_several_rods:
             continue
         tree = config_tree(task, {name: ROD[name] for name in config.rod_parameters_used({}) if name in ROD})
-        layout = job_from(tree).layout
+        layout = job_of_tree(tree).layout
         names = {variable.name for variable in layout.variables}
         assert names & set(dir(rs.Answer)) == {"status"}
         assert not (names | set(layout.extents)) & {*TABLE_NAMES.values(), "eigenvalues", "branches"}

@@ -20,7 +20,7 @@ from surveyed import only
 import rodsweep as rs
 from rodsweep.api import options
 from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
 from rodsweep.config.document.reading import tree_yaml
 from rodsweep.config.schema import Config
@@ -152,9 +152,9 @@ def test_sweep_gives_the_dataset_of_the_file(name, command, monkeypatch):
 def test_text_of_the_config_gives_the_same_points(tmp_path):
     """It is what ranks are given, and what the Dataset carries."""
     tree = config_tree("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
-    again = job_from(YAML(typ="safe").load(tree_yaml(tree)))
-    assert again.resolved == job_from(tree).resolved
-    assert again.text == tree_yaml(tree)
+    again = job_of_tree(YAML(typ="safe").load(tree_yaml(tree)))
+    assert again.resolved == job_of_tree(tree).resolved
+    assert again.config_text == tree_yaml(tree)
 
 
 @pytest.mark.parametrize("name", list(small.CONFIGS))
@@ -220,7 +220,7 @@ def test_a_process_that_cannot_solve_says_why(tmp_path, before, variables, code,
 
 @pytest.mark.parametrize("axis", [np.array([10, 20]), (10, 20.0), range(10, 30, 10), rs.linspace(10, 20, 2)])
 def test_axes_may_be_what_python_has(axis):
-    job = job_from(config_tree("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
+    job = job_of_tree(config_tree("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
     assert [column.tolist() for column in job.points.columns] == [[10, 20], [1e4], [np.inf], [0]]
 
 
@@ -230,11 +230,11 @@ def test_numpy_scalars_as_values_and_as_names_are_those_of_python():
         np.str_(name): np.str_(value) if isinstance(value, str) else value for name, value in asked.items()
     }
     own |= {"k1": np.float32(1e4), "modes": np.int64(3), "certify": np.bool_(False)}
-    plain = job_from(config_tree("spectrum", asked | {"certify": False}))
-    assert job_from(config_tree(np.str_("spectrum"), own)).text == plain.text
+    plain = job_of_tree(config_tree("spectrum", asked | {"certify": False}))
+    assert job_of_tree(config_tree(np.str_("spectrum"), own)).config_text == plain.config_text
     arm = {np.str_(name): np.str_(text) for name, text in SILICONE.items()}
-    plain = job_from(config_tree("thresholds", {"arm": SILICONE}))
-    assert job_from(config_tree("thresholds", {"arm": arm})).text == plain.text
+    plain = job_of_tree(config_tree("thresholds", {"arm": SILICONE}))
+    assert job_of_tree(config_tree("thresholds", {"arm": arm})).config_text == plain.config_text
     assert rs.Arm(**arm) == rs.Arm(**SILICONE)
 
 

@@ -29,7 +29,7 @@ from rodsweep.post.tables.alignment import (
 from rodsweep.post.tables.columns import Column
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 ARM = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "10 Pa s", "pressure": "3 kPa"}
@@ -54,7 +54,7 @@ def test_a_number_has_the_digits_that_its_error_allows(seed):
     values = rng.choice([-1, 1], 50) * 10 ** rng.uniform(-8, 8, 50)
     relative = 10 ** rng.uniform(-13, -1, 50)
     columns = [real("period", values), real("period_error", relative)]
-    pairs = ColumnTexts(columns, {}).pairs("period")
+    pairs = ColumnTexts(columns, {}).value_and_error_texts("period")
     for (text, stated), value, error in zip(pairs, values, relative * np.abs(values), strict=True):
         digit = 10.0 ** floor(log10(error))
         assert unit_of(text) > 0.9999 * digit, (text, value, error)
@@ -68,7 +68,7 @@ def test_a_number_has_the_digits_that_its_error_allows(seed):
 
 def test_numbers_of_unknown_error_have_six_digits_and_missing_ones_none():
     digits = ColumnTexts([real("tip_x_max", [0.123456789, np.nan, 0, np.inf])], {})
-    assert digits.pairs("tip_x_max") == [("0.123457", ""), ("", ""), ("0", ""), ("inf", "")]
+    assert digits.value_and_error_texts("tip_x_max") == [("0.123457", ""), ("", ""), ("0", ""), ("inf", "")]
 
 
 def test_a_number_below_its_error_has_no_digit():
@@ -78,7 +78,9 @@ def test_a_number_below_its_error_has_no_digit():
 
 def test_an_si_number_has_the_relative_error_of_its_own():
     columns = [real("period", [0.5]), real("period_si", [320.262]), real("period_error", [1e-3])]
-    assert ColumnTexts(columns, {"period": "period_si"}).pairs("period_si") == [("320.3", "4e-01")]
+    assert ColumnTexts(columns, {"period": "period_si"}).value_and_error_texts("period_si") == [
+        ("320.3", "4e-01")
+    ]
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -193,7 +195,7 @@ def test_check_stays_in_the_window(name, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(WINDOW))
     page = io.StringIO()
     with redirect_stdout(page):
-        print_job_check(make_job(ROOT / "configs" / f"{name}.yaml", ()))
+        print_job_check(job_of_file(ROOT / "configs" / f"{name}.yaml", ()))
     lines = page.getvalue().splitlines()
     assert max(map(len, lines)) <= WINDOW
     assert any(line.startswith("expected: ") for line in lines)

@@ -61,7 +61,9 @@ def of_arm(portrait):
     }
     quantities = {name: np.array(value) for name, value in SCALES.items()}
     as_arm = replace(
-        view, variables={**view.variables, **validity, **quantities}, typed={"length": "cm", "young": "kPa"}
+        view,
+        variables={**view.variables, **validity, **quantities},
+        typed_units={"length": "cm", "young": "kPa"},
     )
     rod = replace(portrait.results.rod, arm={"length": "10 cm"})
     return replace(portrait.results, rod=rod, views={**portrait.results.views, "thresholds": as_arm})

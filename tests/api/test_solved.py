@@ -10,8 +10,8 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.api.keyword_arguments import config_tree, job_from
-from rodsweep.api.solving import solve_here
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
+from rodsweep.api.solving import solve_in_process
 
 ROD = {"F": 30, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
@@ -29,14 +29,18 @@ CONFIGS = {
 def test_solved_points_and_their_dataset_are_read_alike(config):
     task, keywords = CONFIGS[config]
     given = {name: value for name, value in keywords.items() if value is not None}
-    solved = solve_here(job_from(config_tree(task, given)))
+    solved = solve_in_process(job_of_tree(config_tree(task, given)))
     early, late = solved.view, view_of_dataset(solved.dataset, Path(task))
     assert early.variables.keys() == late.variables.keys()
     for name, values in late.variables.items():
         assert np.array_equal(early.variables[name], values, equal_nan=True)
         assert early.variables[name].dtype == values.dtype
     assert (early.task, early.config, early.flags) == (late.task, late.config, late.flags)
-    assert (early.parameters, early.arm_axes, early.typed) == (late.parameters, late.arm_axes, late.typed)
+    assert (early.parameters, early.arm_axes, early.typed_units) == (
+        late.parameters,
+        late.arm_axes,
+        late.typed_units,
+    )
     assert early.is_grid == late.is_grid
 
 
@@ -50,7 +54,7 @@ def test_a_copy_of_an_answer_is_the_answer(twin):
 
 
 def test_a_dataset_has_the_time_of_the_solve_not_of_its_first_use():
-    solved = solve_here(job_from(config_tree("spectrum", ROD)))
+    solved = solve_in_process(job_of_tree(config_tree("spectrum", ROD)))
     long_ago = {"started": "2001-01-01T00:00:00+00:00", "finished": "2001-01-01T00:00:01+00:00"}
-    used_late = replace(solved, history={**solved.history, **long_ago})
+    used_late = replace(solved, run_attributes={**solved.run_attributes, **long_ago})
     assert long_ago.items() <= used_late.dataset.attrs.items()

@@ -147,7 +147,7 @@ def test_race_makes_long_runs_once_a_round(monkeypatch):
 def test_slow_method_is_run_once():
     runs = []
     (measurement,) = measure_case(
-        "c", 3, [Contender("m", "s", "g", runs.append, slow=True)], 5, lambda _: {"error": 0.5}
+        "c", 3, [Contender("m", "s", "g", runs.append, is_slow=True)], 5, lambda _: {"error": 0.5}
     )
     assert runs == [3]
     assert (measurement.error, measurement.group) == (0.5, "g")
@@ -196,7 +196,7 @@ def test_numbers_of_a_study_are_in_the_file(tmp_path):
 
 
 def test_study_without_errors_has_no_figure():
-    assert not Study("x", "", (Measurement("c", "m", "s", 0.5, np.nan),)).drawable
+    assert not Study("x", "", (Measurement("c", "m", "s", 0.5, np.nan),)).is_drawable
 
 
 @pytest.mark.parametrize("name", ["nowhere/a.md", "a.png", "a.h5", "."])

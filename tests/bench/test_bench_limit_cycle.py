@@ -163,7 +163,7 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     def gives_up(leg):
         raise ArithmeticError("too stiff")
 
-    double = replace(DEFAULT_INTEGRATOR, name="double", tolerances=(1e-5, 1e-8), waiting=(1e-7,))
+    double = replace(DEFAULT_INTEGRATOR, name="double", tolerances=(1e-5, 1e-8), waiting_tolerances=(1e-7,))
     failing = [Contender("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
     peers = Peers(

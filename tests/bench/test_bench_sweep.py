@@ -77,7 +77,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded)
     assert "| limit cycles | 2 | 1 |" in study.text
     assert "| 12 of F | 144 |" in study.text
     assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher_words(2))
-    assert not study.drawable
+    assert not study.is_drawable
     table = study.table()
     instant = [i for i, case in enumerate(table["case"]) if case == "no solver"]
     assert len(instant) == (2 if launcher_words(2) else 1)
@@ -97,7 +97,7 @@ def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
         case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
         killed = run(case, 1)
         assert killed.journal_bytes > 74 * (points - 1)
-        resumed = run(replace(case, kind="instant"), 1, fresh=False)
+        resumed = run(replace(case, solver_kind="instant"), 1, fresh=False)
         peaks[points] = [killed.peak_memory[0], resumed.peak_memory[0]]
     for few, many in zip(*peaks.values(), strict=True):
         assert 5e7 < few < many + 1e6 * FEW_MEGABYTES

@@ -59,7 +59,7 @@ def test_tables_say_what_was_missed():
         (20.0, "wrong (20.00) | wrong (20.00) | wrong (20.00)"),
         (CASE["narrow"].hopf, "wrong (74.83) | 0e+00 | wrong (74.83)"),
     ):
-        method = Contender("a", "b", "", lambda _, force=force: FirstThreshold(force, 10), slow=True)
+        method = Contender("a", "b", "", lambda _, force=force: FirstThreshold(force, 10), is_slow=True)
         assert f"| {cells} |" in threshold_table(HOPF, measure_rods(HOPF, cases, [method], 1))
 
 

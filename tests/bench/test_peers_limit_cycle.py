@@ -112,7 +112,9 @@ def test_cvode_is_left_out_in_one_sentence_where_it_is_not_installed(monkeypatch
 def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
     found = peers(quick=True, folder=tmp_path)
     assert {c.method for c in found.of(FOLLOWING_RACE)} == {family.name for family in installed_families()}
-    assert {c.method for c in found.of(WAITING_RACE)} == {f.name for f in installed_families() if f.waiting}
+    assert {c.method for c in found.of(WAITING_RACE)} == {
+        f.name for f in installed_families() if f.waiting_tolerances
+    }
     assert (AUTO_SKIPPED in found.skipped) == (not found.sections)
     assert (CVODE_SKIPPED in found.skipped) == (CVODE not in {family.name for family in installed_families()})
 

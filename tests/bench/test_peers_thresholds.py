@@ -146,7 +146,7 @@ def test_a_continuation_code_that_fails_is_shown_as_failed():
 
     run = partial(hopf_by_pycont, SimpleNamespace(arclengthContinuation=give_up), 1.0)
     for case in (CASE["filament"], CASE["Fig. 2d"]):
-        (result,) = measure_rods(HOPF, [case], [Contender("a", "", CONTINUATION_GROUP, run, slow=True)], 1)
+        (result,) = measure_rods(HOPF, [case], [Contender("a", "", CONTINUATION_GROUP, run, is_slow=True)], 1)
         assert result.error == inf
         assert "| failed (RuntimeError) |" in threshold_table(HOPF, [result])
 

@@ -20,9 +20,9 @@ from rodsweep.solve.changes.thresholds import ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
-from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.load import Load
-from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
+from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_absolute_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -163,10 +163,10 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
             (rod, rs.Arm(**{n: getattr(rod, n) for n in QUANTITIES if getattr(rod, n) is not None}))
             for rod in planes(arm)
         ),
-        key=lambda each: each[1].flutter.forces[0].force(ChangeKind.hopf) * each[0].force_scale,
+        key=lambda each: each[1].flutter.by_drag[0].first_force(ChangeKind.hopf) * each[0].force_scale,
     )
     first, found = plane[0], plane[1].flutter
-    hopf = found.forces[0].first(ChangeKind.hopf)
+    hopf = found.by_drag[0].first_threshold(ChangeKind.hopf)
     effects = neglected_effects(first, largest_angular_frequency(first, abs(hopf.frequency)), hopf.at)
     worst = int(worst_validity(effects, of_cycles=False))
     if arm.share_of_flutter is not None:
@@ -176,7 +176,7 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     assert report.verdict[0].startswith("The model does not apply") == (worst == 2)
     assert bool(report.warnings) == (worst == 1)
     if worst < 2 and arm.share_of_flutter is not None:
-        spans = found.force(ChangeKind.hopf)
+        spans = found.first_forces(ChangeKind.hopf)
         at = arm.share_of_flutter * hopf.at
         words = "stays straight" if at < spans.low else "drag decides" if at < spans.high else "the arm beats"
         assert words in report.verdict[0]
@@ -194,7 +194,7 @@ def test_a_tall_rectangle_flutters_first_in_the_plane_of_its_width():
     tall = rs.Arm(**TALL, pressure="2 kPa")
     flat = tall.turned
     assert (flat.width, flat.height) == ("12 mm", "8 mm")
-    found, other = flat.flutter.force(ChangeKind.hopf), tall.flutter.force(ChangeKind.hopf)
+    found, other = flat.flutter.first_forces(ChangeKind.hopf), tall.flutter.first_forces(ChangeKind.hopf)
     low, high = (F * flat.pressure_scale / 1000 for F in (found.low, found.high))
     report = tall.report()
     assert report.verdict[0] == headline(flat).replace("plane of its height", "plane of its width")
@@ -215,13 +215,13 @@ def test_a_square_has_one_plane():
 def test_a_tall_arm_that_is_stiff_in_its_plane_of_motion_beats_in_the_other():
     """Below flutter in the plane that was meant, and above in the one that goes first."""
     tall = rs.Arm(**TALL, pressure="2 kPa")
-    assert tall.flutter.force(ChangeKind.hopf).low > tall.F
-    assert tall.turned.flutter.force(ChangeKind.hopf).high < tall.turned.F
+    assert tall.flutter.first_forces(ChangeKind.hopf).low > tall.F
+    assert tall.turned.flutter.first_forces(ChangeKind.hopf).high < tall.turned.F
 
 
 def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
     arm = rs.Arm(**THICK)
-    flutter, rate = arm.flutter.force(ChangeKind.hopf), arm.flutter.frequency(ChangeKind.hopf)
+    flutter, rate = arm.flutter.first_forces(ChangeKind.hopf), arm.flutter.first_frequencies(ChangeKind.hopf)
     said = headline(arm)
     stated = numbers_in(said)
     assert said.startswith("The arm flutters at ")
@@ -239,7 +239,7 @@ def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
 def test_a_load_may_be_relative_to_flutter(load):
     arm = rs.Arm(**THICK, **{load: "1.25 of flutter"})
     same = rs.Arm(**THICK, **{load: "125% of flutter"})
-    likeliest = arm.flutter.forces[0].force(ChangeKind.hopf)
+    likeliest = arm.flutter.by_drag[0].first_force(ChangeKind.hopf)
     assert pytest.approx(1.25 * likeliest, rel=1e-12) == arm.loaded.F
     assert same.loaded == arm.loaded
     report = arm.report()
@@ -253,7 +253,7 @@ def test_a_load_may_be_relative_to_flutter(load):
 
 def test_a_load_relative_to_the_flutter_of_a_rectangle_is_so_in_the_plane_that_goes_first():
     tall = rs.Arm(**TALL, pressure="1.5 of flutter")
-    flutter = tall.turned.flutter.forces[0].force(ChangeKind.hopf) * tall.turned.pressure_scale
+    flutter = tall.turned.flutter.by_drag[0].first_force(ChangeKind.hopf) * tall.turned.pressure_scale
     assert tall.loaded.si.pressure == pytest.approx(1.5 * flutter)
     assert tall.loaded.height == tall.height
 
@@ -268,11 +268,11 @@ def test_other_relative_loads_are_refused(given):
 
 def test_a_load_relative_to_no_flutter_is_refused():
     arm = SlenderArm(**THICK, pressure="1.2 of flutter")
-    none = FlutterForces(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.ok, 200.0))
+    none = ThresholdsWithDrag(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.ok, 200.0))
     with pytest.raises(
         rs.InputError, match="^pressure = '1.2 of flutter' cannot be computed: .* up to 5560 Pa"
     ):
-        with_load(Planes(PlaneOfMotion(arm, FlutterRange((none,)))))
+        with_absolute_load(Planes(PlaneOfMotion(arm, ThresholdsOverDrags((none,)))))
 
 
 def test_the_report_is_a_table_in_a_notebook():
@@ -289,5 +289,5 @@ def test_a_load_of_at_most_so_much_is_rounded_down(share):
     """1.3381 kPa was told as 1.34 kPa, which is beyond the limit."""
     load = Load(SlenderArm(**THICK, pressure="1.34 kPa"))
     force = share * 1.34 / load.load_at_unit_force
-    told = float(load.at_most(force).split()[0])
+    told = float(load.rounded_down_text(force).split()[0])
     assert 0.99 * share * 1.34 < told <= share * 1.34 * (1 + 1e-9)

@@ -139,7 +139,7 @@ def test_extension_killed_at_any_point_goes_on_with_the_same_command(command):
     assert not (command.directory / "c.h5.journal").exists()
 
 
-@pytest.mark.parametrize("step", ["write_points", "seal", "delete_matching_files"])
+@pytest.mark.parametrize("step", ["write_records", "seal", "delete_matching_files"])
 def test_kill_while_the_file_is_exchanged_loses_nothing(command, step):
     """Before the new file is whole, before it takes the name, and right after it has."""
     command.write("small.yaml", SPECTRA)
@@ -276,7 +276,7 @@ def test_what_changes_no_number_makes_no_other_config(text, old, new, is_same):
 def asked(text):
     """The fingerprint of the config of a grid."""
     config = validated_config(YAML(typ="safe").load(text))
-    columns = [config.parameters.axes[name].array() for name in config.names]
+    columns = [config.parameters.axes[name].array() for name in config.parameter_names]
     return fingerprint_of(resolved_config(config), columns)
 
 

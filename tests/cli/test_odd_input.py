@@ -13,7 +13,7 @@ import xarray as xr
 import rodsweep as rs
 from rodsweep.results.file.seal import seal
 from rodsweep.tasks.running import job
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 SPECTRA = """
 task: spectrum
@@ -156,7 +156,7 @@ def test_large_grid_may_be_larger_than_the_memory_but_not_its_axes(command, monk
     axes = {"F": "start: 0, stop: 9", "k1": "start: 100, stop: 1000", "k2": "start: 100, stop: 1000"}
     sets = tuple(f"parameters.{name}={{{ends}, num: 1000}}" for name, ends in axes.items())
     path = command.write("c.yaml", SPECTRA)
-    assert make_job(path, sets).points.count == 10**9
+    assert job_of_file(path, sets).points.count == 10**9
     checked = command("check", "c.yaml", *(word for given in sets for word in ("--set", given)))
     assert checked.returncode == 0, checked.stderr
     axis = rs.linspace(100, 1000, 1000)
@@ -164,7 +164,7 @@ def test_large_grid_may_be_larger_than_the_memory_but_not_its_axes(command, monk
         rs.sweep("spectrum", F=rs.linspace(0, 9, 1000), k1=axis, k2=axis, gamma3=rs.linspace(0, 1, 1000))
     monkeypatch.setattr(job, "machine_memory", lambda: 10**7)
     with pytest.raises(rs.InputError, match="GB of memory of this machine; use fewer values"):
-        make_job(path, ("parameters.F={start: 0, stop: 9, num: 1000000}",))
+        job_of_file(path, ("parameters.F={start: 0, stop: 9, num: 1000000}",))
 
 
 def test_deleted_working_directory_is_told_in_a_sentence(command):

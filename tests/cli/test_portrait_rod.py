@@ -33,16 +33,16 @@ def test_an_arm_is_the_arm_that_it_is_in_python(monkeypatch):
 
 def points_of(rod: DescribedRod) -> dict[str, float]:
     """Parameters that a task has of a rod at F = 40."""
-    points = PortraitRequest(rod=rod).job("limit_cycle", {}, 40.0).points
-    return {name: float(values[0]) for name, values in points.by_name.items()}
+    points = PortraitRequest(rod=rod).job_of_task("limit_cycle", {}, 40.0).points
+    return {name: float(values[0]) for name, values in points.columns_by_name.items()}
 
 
 def test_an_arm_in_segments_has_the_profile_of_its_config():
     segments = ["5 cm: radius 6 mm, young 80 kPa", "5 cm: radius 4 mm, young 100 kPa"]
     found = rod_of_options({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
-    build = PortraitRequest(rod=found).job("thresholds", {}).config.build
+    build = PortraitRequest(rod=found).job_of_task("thresholds", {}).config.build
     assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
-    assert found.words == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
+    assert found.description == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
 
 
 def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
@@ -51,7 +51,7 @@ def test_a_rod_has_its_law_and_the_profile_of_a_file(tmp_path):
     found = rod_of_options({**ROD, "taper": 0.9}, {}, material)
     assert found.parameters == {**ROD, "gamma1": 1.0, "taper": 0.9}
     assert found.material == {"law": "neo_hookean", "profile": {"u": [0, 1], "k3": [1, 0.5]}}
-    assert found.words.endswith("taper = 0.9, law neo_hookean, a profile along its length")
+    assert found.description.endswith("taper = 0.9, law neo_hookean, a profile along its length")
 
 
 @pytest.mark.parametrize(

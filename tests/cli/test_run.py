@@ -57,7 +57,7 @@ def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode not in (0, 1, 2, 75), err
     wait_for_end(command.directory)
-    assert read_view(path).journalled == 100
+    assert read_view(path).journalled_count == 100
     assert "100 of the computed points are in the journal" in " ".join(command("show", "c.h5").stdout.split())
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
@@ -312,7 +312,8 @@ def test_longitudinal_modes_are_added_only_where_asked(command):
 def test_package_imports_start_neither_mpi_nor_petsc(command):
     code = (
         "import sys, rodsweep, rodsweep.cli\n"
-        "from rodsweep.tasks.running.job import make_job\nfrom rodsweep.results.file.view import read_view\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
+        "from rodsweep.results.file.view import read_view\n"
         "from rodsweep.post.figures import draw\nfrom rodsweep.post.summary import show_summary\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py.PETSc', 'slepc4py.SLEPc') if m in sys.modules])"
     )

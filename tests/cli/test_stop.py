@@ -114,7 +114,9 @@ def typed_ctrl_c(command, ranks):
         os.execve(argv[0], argv, os.environ | {"PYTHONPATH": path})
     result, said = command.directory / "c.h5", b""
     try:
-        pause_until(lambda: result.exists() and read_view(result).journalled >= 61, "61 points are not there")
+        pause_until(
+            lambda: result.exists() and read_view(result).journalled_count >= 61, "61 points are not there"
+        )
         os.write(terminal, b"\x03")
         with suppress(OSError):  # once the terminal's other end is closed
             while part := os.read(terminal, 4096):

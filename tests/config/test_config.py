@@ -5,10 +5,10 @@ import os
 import numpy as np
 import pytest
 
-from rodsweep.config.document.reading import config_of, config_yaml
+from rodsweep.config.document.reading import config_from_resolved, config_yaml
 from rodsweep.config.document.refusals import similar_keys
 from rodsweep.errors import InputError
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 GOOD = """
 title: test
@@ -26,7 +26,7 @@ accuracy: 1.0e-8
 def job(tmp_path, text, *overrides):
     path = tmp_path / "c.yaml"
     path.write_text(text)
-    return make_job(path, overrides)
+    return job_of_file(path, overrides)
 
 
 def test_axes_are_numbers_lists_and_ranges(tmp_path):
@@ -330,7 +330,7 @@ def test_phase_diagram_may_reach_into_the_crushed_rods(tmp_path):
 )
 def test_rows_of_a_phase_diagram_lie_along_the_first_of_its_two_axes(tmp_path, axes, line, row):
     made = job(tmp_path, config("phase_diagram", axes))
-    assert made.config.plane == (line, row)
+    assert made.config.plane_parameters == (line, row)
     assert made.points.names == tuple(name for name in ("F", "k1", "k2", "gamma3") if name != line)
     assert made.points.count == 2
     assert made.points.values(0)[row] != made.points.values(1)[row]
@@ -372,7 +372,7 @@ def test_file_that_is_no_text_is_refused(tmp_path):
     path.write_bytes(b"\xff\xfe\x00\x01")
     for bad in (path, tmp_path, tmp_path / "none.yaml"):
         with pytest.raises(InputError):
-            make_job(bad, ())
+            job_of_file(bad, ())
 
 
 @pytest.mark.parametrize(
@@ -418,8 +418,8 @@ def test_a_list_may_have_a_column_of_tapers_in_every_task(tmp_path, task):
     assert made.points.rod(1).k2 == 50
     assert made.layout.parameters == (*names, "taper")
     assert not made.config.standard
-    assert config_of(made.resolved) == made.config
-    assert job(tmp_path, config_yaml(made.config)).points.identity[-1].tolist() == [0.5, 0.8]
+    assert config_from_resolved(made.resolved) == made.config
+    assert job(tmp_path, config_yaml(made.config)).points.identifying_arrays[-1].tolist() == [0.5, 0.8]
 
 
 def test_columns_are_those_of_the_header(tmp_path):

@@ -10,7 +10,7 @@ import rodsweep as rs
 from rodsweep.config import load_config
 from rodsweep.errors import InputError
 from rodsweep.model.material.profile import Profile
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 from rodsweep.wording import counted
 
 BASE = """
@@ -242,10 +242,10 @@ SAID = [
 def test_check_states_the_arm_and_the_mesh_on_which_it_is_solved(tmp_path, parameters, material, arm):
     """These arms need no finer mesh than the first."""
     (tmp_path / "a.yaml").write_text(f"task: spectrum\n{parameters}\n{material}")
-    made = make_job(tmp_path / "a.yaml", ())
+    made = job_of_file(tmp_path / "a.yaml", ())
     solved = made.solver().solve(0)
     mesh = f"{counted(solved.elements, 'element')} of order {solved.order}"
-    assert made.task.arms() == f"{arm}; at first {mesh}"
+    assert made.task.arms_line() == f"{arm}; at first {mesh}"
 
 
 def test_check_states_the_largest_mesh_of_a_grid(tmp_path):
@@ -255,14 +255,14 @@ def test_check_states_the_largest_mesh_of_a_grid(tmp_path):
     said = []
     for text in (cones, hardest):
         (tmp_path / "a.yaml").write_text(text)
-        said.append(make_job(tmp_path / "a.yaml", ()).task.arms())
+        said.append(job_of_file(tmp_path / "a.yaml", ()).task.arms_line())
     assert said[0].startswith("cones of radius ratios 0.1 to 1.1 of linear material; ")
     assert said[0].split("; ")[1] == f"{said[1].split('; ')[1]}, for the finest mesh"
 
 
 def test_check_states_no_mesh_of_uniform_arms_of_linear_material(tmp_path):
     (tmp_path / "a.yaml").write_text(BASE.format(task="spectrum", more="", rest=""))
-    assert make_job(tmp_path / "a.yaml", ()).task.arms() == ""
+    assert job_of_file(tmp_path / "a.yaml", ()).task.arms_line() == ""
 
 
 @pytest.mark.parametrize("start", ["mode", "hopf"])
@@ -271,7 +271,7 @@ def test_check_states_the_first_mesh_of_cycles(tmp_path, start):
     (tmp_path / "a.yaml").write_text(text)
     assert re.fullmatch(
         r"a cone of radius ratio 0.5 of linear material; at first 1 element of order \d+",
-        make_job(tmp_path / "a.yaml", ()).task.arms(),
+        job_of_file(tmp_path / "a.yaml", ()).task.arms_line(),
     )
 
 
@@ -285,7 +285,7 @@ def test_check_states_the_mesh_of_a_list_of_arms(tmp_path, task):
     )
     (tmp_path / "list.csv").write_text("\n".join(rows) + "\n")
     (tmp_path / "a.yaml").write_text(f"task: {task}\nparameters: {{points: list.csv}}\n")
-    said = make_job(tmp_path / "a.yaml", ()).task.arms()
+    said = job_of_file(tmp_path / "a.yaml", ()).task.arms_line()
     assert said.startswith("cones of radius ratios 0.6 to 1 of linear material; at first ")
 
 
@@ -295,6 +295,6 @@ def test_check_foresees_minutes_where_many_modes_of_an_arm_grow(tmp_path):
     seconds = []
     for numbers in ({"stop": 40, "k2": 5, "taper": 0.1}, {"stop": 20, "k2": 1000, "taper": 0.6}):
         (tmp_path / "a.yaml").write_text(f"task: spectrum\nparameters: {{{arms.format(**numbers)}}}\n")
-        seconds.append(make_job(tmp_path / "a.yaml", ()).task.cost().seconds)
+        seconds.append(job_of_file(tmp_path / "a.yaml", ()).task.cost().seconds)
     assert 95 / 3 < seconds[0] < 95 * 3
     assert seconds[1] < 1

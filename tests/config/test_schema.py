@@ -10,11 +10,11 @@ from conftest import ROOT
 from faults import small
 
 from rodsweep.config import load_config
-from rodsweep.config.document.parsing import parse
+from rodsweep.config.document.parsing import parsed_yaml
 from rodsweep.config.json_schema import json_schema
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
-from rodsweep.tasks.running.job import job_of
+from rodsweep.tasks.running.job import job_of_config
 
 PROSE = {"$schema", "definitions", "title", "description", "default", "additionalProperties"}
 KINDS = {"number": float | int, "integer": int, "string": str, "boolean": bool, "object": dict, "array": list}
@@ -70,7 +70,7 @@ def whole_schema():
 
 def fits_schema(text):
     whole = whole_schema()
-    return fits(parse(text, "here"), whole, whole)
+    return fits(parsed_yaml(text, "here"), whole, whole)
 
 
 ARM = "length: 10 cm, young: 100 kPa, viscosity: 1.4 Pa s"
@@ -159,10 +159,10 @@ def test_schema_and_check_agree_on_keys_together_and_on_bounds(tmp_path, task, p
     (tmp_path / "c.yaml").write_text(text)
     assert fits_schema(text) == good
     if good:
-        job_of(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
+        job_of_config(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
     else:
         with pytest.raises(InputError):
-            job_of(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
+            job_of_config(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").glob("*.yaml")), ids=lambda path: path.stem)

@@ -3,7 +3,7 @@
 import pytest
 
 from rodsweep.config import load_config
-from rodsweep.config.document.reading import config_of, config_yaml, resolved_config
+from rodsweep.config.document.reading import config_from_resolved, config_yaml, resolved_config
 from rodsweep.errors import InputError
 
 ROUND = "length: 12 cm, radius: 6 mm, young: 100 kPa, viscosity: 50 Pa s"
@@ -29,12 +29,12 @@ def config(directory, arm, more="", beside="", task="thresholds"):
 )
 def test_an_arm_that_varies_is_read_again_from_its_file_and_its_text(tmp_path, arm):
     read = config(tmp_path, arm)
-    again = config_of(resolved_config(read))
+    again = config_from_resolved(resolved_config(read))
     (tmp_path / "text.yaml").write_text(config_yaml(read))
     for other in (again, load_config(tmp_path / "text.yaml")[0]):
         assert other.build == read.build
         assert other.settings_of_results == read.settings_of_results
-        assert other.names == read.names
+        assert other.parameter_names == read.parameter_names
     assert not read.standard
 
 

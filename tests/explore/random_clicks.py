@@ -135,7 +135,7 @@ class RandomUser:
         """A random value of a control, in its unit."""
         low, high = RANGES[name]
         share = self.random.random()
-        logarithmic = SCALES[self.tab()][name].logarithmic
+        logarithmic = SCALES[self.tab()][name].is_logarithmic
         return float(low * (high / low) ** share if logarithmic else low + share * (high - low))
 
     def slide(self) -> str:

@@ -14,7 +14,12 @@ from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page import STOPPED_SENTENCE, Page
 from rodsweep.explore.page_style import template_text
 from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
-from rodsweep.explore.pictures.diagram import BOUNDARY_COLOURS, DiagramCell, cells, unstable_count_words
+from rodsweep.explore.pictures.diagram import (
+    BOUNDARY_COLOURS,
+    DiagramCell,
+    diagram_cells,
+    unstable_count_words,
+)
 from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from rodsweep.explore.solving.needs import INSTANT_KINDS
@@ -83,7 +88,7 @@ def test_pictures_and_numbers_are_those_of_the_solver():
     assert page.contents.spectrum.card.figure.title.text == "2 unstable modes, certified"
     assert shown(page)["F_hopf"] == number_text(thresholds.F_hopf)
     assert float(shown(page)["period"]) == pytest.approx(cycle.period, rel=1e-7)
-    shapes = page.contents.beating.shapes.data
+    shapes = page.contents.beating.shapes_source.data
     nodes = int(shapes["number"][0])
     assert np.max(np.reshape(shapes["y"], (-1, nodes))[:, -1]) == pytest.approx(cycle.tip_y_max, rel=1e-2)
     assert page.contents.sign.text == ""
@@ -105,7 +110,7 @@ def test_a_rod_at_rest_says_so_above_the_straight_arm():
     card = page.contents.beating.card
     assert (card.message.visible, card.figure.visible) == (True, True)
     assert "straight" in card.message.text
-    shapes = page.contents.beating.shapes.data
+    shapes = page.contents.beating.shapes_source.data
     assert shapes["x"][-1] == pytest.approx(1 - 20 / 1e4)
     assert not np.any(shapes["y"])
     page.change({"F": "50"})
@@ -189,7 +194,7 @@ def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     assert (state.rod["k1"], state.second, state.F_max) == ("200", "k1", "60")
     assert "diagram" not in {question.kind for question in solvers.questions}
     counts = rs.open(command.directory / "plane.h5")["unstable_count"].squeeze()
-    drawn = page.contents.diagram.cells.data
+    drawn = page.contents.diagram.cell_source.data
     assert max(drawn["unstable"]) == int(counts.max())
 
 
@@ -204,8 +209,8 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
     run_callbacks(page.document, seconds=True)
     page.change({"F": "61"})
     sharing = page.contents.sharing
-    assert "F: 61" in sharing.lines.config
-    assert "F=61" in sharing.lines.python
+    assert "F: 61" in sharing.shared_lines.config
+    assert "F=61" in sharing.shared_lines.python
     assert "61" not in sharing.yaml.text + sharing.python.text + sharing.address.tags[0]
     run_callbacks(page.document, seconds=True)
     assert "F=61" in sharing.address.tags[0]
@@ -216,16 +221,17 @@ def test_texts_to_share_wait_until_the_page_rests_and_what_the_buttons_copy_does
 def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     picture = page_with(ImmediateSolvers(())).contents.diagram
     counts = np.array([[0, 1, 2, UNKNOWN_COUNT, CRUSHED_COUNT]])
-    assert [unstable_count_words(cell.unstable) for cell in cells(np.arange(5.0), np.ones(1), counts)] == [
+    cells = diagram_cells(np.arange(5.0), np.ones(1), counts)
+    assert [unstable_count_words(cell.unstable) for cell in cells] == [
         "stable", "1 unstable mode", "2 unstable modes", "not searched, or not known", "crushed by the load",
     ]  # fmt: skip
     (hover,) = picture.card.figure.select(HoverTool)
-    assert [renderer.data_source for renderer in hover.renderers] == [picture.cells]
+    assert [renderer.data_source for renderer in hover.renderers] == [picture.cell_source]
 
 
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
     counts = np.array([[0, 0, 2], [0, 2, 2]])
-    found = cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)
+    found = diagram_cells(np.array([0.0, 1.0, 2.0]), np.array([1.0, 10.0]), counts)
     root = 10**0.5
     assert found == [
         DiagramCell(0.0, 1.5, pytest.approx(1 / root), pytest.approx(root), 0),
@@ -242,7 +248,7 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
         def ask(self, session, question, done, progress=None):
             super().ask(session, question, done)
             if question.kind == "cycles":
-                progress(Reply("progress", {"words": "curve 1 of <2>", "share": 0.5}, 1.0))
+                progress(Reply("progress", {"words": "curve 1 of <2>", "completed_fraction": 0.5}, 1.0))
 
         def drop(self, session, kind):
             self.dropped.append(kind)
@@ -271,10 +277,10 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     page.stop()
     page.drag("bent", (0.6, 0.5))
     run_callbacks(page.document)
-    assert len(page.contents.beating.bent.data["x"]) > 0
+    assert len(page.contents.beating.bent_source.data["x"]) > 0
     page.drag("motion", (0.6, 0.5))
     page.stop()
-    assert len(page.contents.beating.bent.data["x"]) == 0
+    assert len(page.contents.beating.bent_source.data["x"]) == 0
     solvers.questions.clear()
     page.change({"F": "51"})
     run_callbacks(page.document, seconds=True)
@@ -287,13 +293,13 @@ def test_a_search_that_finds_no_folds_says_so_above_the_diagram_as_fine_as_befor
     page = page_with(ImmediateSolvers(("diagram", "cycles")), "F_max=30")
     run_callbacks(page.document, seconds=True)
     run_callbacks(page.document)
-    card, drawn = page.contents.diagram.card, dict(page.contents.diagram.cells.data)
+    card, drawn = page.contents.diagram.card, dict(page.contents.diagram.cell_source.data)
     assert not card.message.visible
     page.solve("cycles")
     run_callbacks(page.document)
     assert (card.message.visible, card.message.text) == (True, NO_CYCLE_CURVES_SENTENCE)
     assert card.figure.visible
-    assert page.contents.diagram.cells.data == drawn
+    assert page.contents.diagram.cell_source.data == drawn
 
 
 def test_folds_are_added_to_the_drawn_diagram_while_the_rod_is_inside():
@@ -337,7 +343,7 @@ def test_a_failure_takes_the_sign_and_the_button_away():
         def ask(self, session, question, done, progress=None):
             super().ask(session, question, done)
             if question.kind == "cycles":
-                progress(Reply("progress", {"words": "point 1 of 8", "share": None}, 1.0))
+                progress(Reply("progress", {"words": "point 1 of 8", "completed_fraction": None}, 1.0))
                 done(Reply("failed", {"sentence": "the solver ended unexpectedly"}, 2.0))
 
     page = page_with(Failing())
@@ -358,8 +364,8 @@ def test_the_pictures_of_an_arm_are_in_si_units():
     assert labels == ["growth rate (1/s)", "frequency (Hz)", "pressure (kPa)", "growth rate (1/s)"]
     assert spectrum.source.data["growth"][0] == pytest.approx(float(answer.growth_rate_si[0]))
     assert spectrum.source.data["frequency"][0] == pytest.approx(float(answer.frequency_hz[0]))
-    assert len(growth.rates.data["F"]) > 100
-    at = np.interp(3.2, growth.rates.data["F"], growth.rates.data["first"])
+    assert len(growth.rate_source.data["F"]) > 100
+    at = np.interp(3.2, growth.rate_source.data["F"], growth.rate_source.data["first"])
     softer = arm.replace(pressure="3.2 kPa").spectrum()
     assert at == pytest.approx(float(softer.growth_rate_si[0]), rel=1e-3)
     onset, hopf = (float(at) / 1e3 for at in (thresholds.pressure_onset, thresholds.pressure_hopf))
@@ -367,7 +373,7 @@ def test_the_pictures_of_an_arm_are_in_si_units():
     lines = growth.card.figure.title.text.splitlines()
     assert " ".join(lines) == title
     assert max(map(len, lines)) <= 46  # a longer line would be cut
-    assert growth.lines.data["frequency"][1] == pytest.approx(float(thresholds.frequency_hopf_hz))
+    assert growth.threshold_source.data["frequency"][1] == pytest.approx(float(thresholds.frequency_hopf_hz))
 
 
 def test_a_stopped_solve_has_a_sentence_in_place_of_its_picture():

@@ -48,7 +48,7 @@ def loop():
 @pytest.fixture(scope="module")
 def solver():
     """One process for the tests that leave it idle: to start it takes a second."""
-    made = SolverProcess(SolverTimeLimits(interrupt=0.05, kill=LONGEST))
+    made = SolverProcess(SolverTimeLimits(interrupt_seconds=0.05, kill_seconds=LONGEST))
     yield made
     made.close()
 
@@ -122,7 +122,7 @@ def test_a_page_that_ends_takes_its_questions_along(solver):
 
 
 def test_a_solver_that_does_not_answer_is_killed_and_started_again():
-    solver = SolverProcess(SolverTimeLimits(interrupt=0.05, kill=0.2))
+    solver = SolverProcess(SolverTimeLimits(interrupt_seconds=0.05, kill_seconds=0.2))
     try:
         replies: list[Reply] = []
         solver.ask(("page", "branch"), SLOW, replies.append)
@@ -131,7 +131,7 @@ def test_a_solver_that_does_not_answer_is_killed_and_started_again():
         os.kill(first, signal.SIGSTOP)
         solver.ask(("page", "branch"), QUICK, replies.append)
         wait_until(lambda: replies)
-        assert (replies[0].outcome, solver.starts) == ("answer", 2)
+        assert (replies[0].outcome, solver.start_count) == ("answer", 2)
         assert not exists(first)
     finally:
         solver.close()

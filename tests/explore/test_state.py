@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import rodsweep as rs
 from rodsweep.errors import InputError
-from rodsweep.explore.sharing import state_of_text
+from rodsweep.explore.sharing import state_from_config_text
 from rodsweep.explore.state import (
     DEFAULT_ARM,
     DEFAULT_ROD,
@@ -63,33 +63,33 @@ def test_an_address_with_an_unknown_key_or_choice_is_refused(query, named):
 @pytest.mark.parametrize("law", LAWS)
 def test_a_loaded_config_is_the_state_that_saved_it(law):
     state = PageState(rod=OTHER, law=law)
-    assert state_of_text(state.yaml("limit_cycle")).subject() == state.subject()
+    assert state_from_config_text(state.yaml("limit_cycle")).subject() == state.subject()
 
 
 def test_a_loaded_config_of_an_arm_is_the_arm_that_saved_it():
     state = PageState(tab="arm", arm=DEFAULT_ARM | {"pressure": "3.25 kPa", "radius": "4 mm"})
-    loaded = state_of_text(state.yaml("limit_cycle"))
+    loaded = state_from_config_text(state.yaml("limit_cycle"))
     assert (loaded.tab, loaded.arm) == ("arm", state.arm)
 
 
 def test_a_saved_config_keeps_every_digit():
     rod = PageState(rod=OTHER | {"F": "49.7580049161915", "k1": "1234567.5"})
-    assert state_of_text(rod.yaml("limit_cycle")).subject() == rod.subject()
+    assert state_from_config_text(rod.yaml("limit_cycle")).subject() == rod.subject()
     arm = PageState(tab="arm", arm=DEFAULT_ARM | {"pressure": "3.2731121 kPa"})
-    assert state_of_text(arm.yaml("limit_cycle")).arm["pressure"] == "3.2731121 kPa"
+    assert state_from_config_text(arm.yaml("limit_cycle")).arm["pressure"] == "3.2731121 kPa"
 
 
 @pytest.mark.parametrize("tab", TAB_DEFAULTS)
 @pytest.mark.parametrize("task", ["thresholds", "branch"])
 def test_a_saved_config_has_the_largest_force_of_the_page(task, tab):
     state = PageState(tab=tab, F_max="72.5")
-    assert state_of_text(state.yaml(task)).F_max == "72.5"
-    assert state_of_text(state.yaml("limit_cycle"), "60").F_max == "60"
+    assert state_from_config_text(state.yaml(task)).F_max == "72.5"
+    assert state_from_config_text(state.yaml("limit_cycle"), "60").F_max == "60"
 
 
 def test_a_diagram_with_crushed_points_opens_with_a_rod_that_is_not_crushed():
     plane = "{F: {start: 0, stop: 100, num: 101}, k1: [20, 30, 40], k2: 1.0e4, gamma3: 1.0e-4}"
-    state = state_of_text(f"task: phase_diagram\nparameters: {plane}\n")
+    state = state_from_config_text(f"task: phase_diagram\nparameters: {plane}\n")
     assert (state.rod["F"], state.rod["k1"], state.F_max) == ("15", "30", "100")
     state.subject()
 
@@ -97,13 +97,15 @@ def test_a_diagram_with_crushed_points_opens_with_a_rod_that_is_not_crushed():
 @pytest.mark.parametrize("text", ["", "- 1", "task: spectrum", "task: [", "parameters: {F: 3}"])
 def test_text_that_is_no_config_is_refused_in_a_sentence(text):
     with pytest.raises(InputError):
-        state_of_text(text)
+        state_from_config_text(text)
 
 
 def test_a_config_of_an_arm_that_varies_along_its_length_is_refused():
     profile = "material: {profile: {u: [0, 1], k1: [1, 2], k2: [1, 2], k3: [1, 2], gamma3: [1, 1]}}"
     with pytest.raises(InputError, match="profile"):
-        state_of_text(f"task: spectrum\nparameters: {{F: 3, k1: 1e4, k2: 1e4, gamma3: 0.1}}\n{profile}")
+        state_from_config_text(
+            f"task: spectrum\nparameters: {{F: 3, k1: 1e4, k2: 1e4, gamma3: 0.1}}\n{profile}"
+        )
 
 
 @pytest.mark.parametrize("tab", ["rod", "arm"])

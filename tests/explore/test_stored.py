@@ -59,9 +59,9 @@ def test_stored_cycles_are_drawn_and_not_solved_again(command):
     assert page.state.rod["F"] == "40"
     assert not {"cycle", "branch"} & asked(solvers)
     assert shown(page)["period"] == number_text(data["period"].sel(F=40).values)
-    picture = page.contents.beating.shapes.data
+    picture = page.contents.beating.shapes_source.data
     assert picture["y"] == pytest.approx(data["shape_y"].sel(F=40).values.ravel(), abs=1e-7)
-    drawn = page.contents.branches.cycles.data
+    drawn = page.contents.branches.cycle_source.data
     assert drawn["F"] == pytest.approx([20, 40, 50])
     assert drawn["y"] == pytest.approx([0, *data["tip_y_max"].sel(F=[40, 50]).values])
 
@@ -95,7 +95,7 @@ def test_a_stored_rod_at_rest_is_drawn_straight(command):
     page, solvers = opened_page(command, CYCLES, "F=20")
     assert "cycle" not in asked(solvers)
     assert page.contents.beating.card.message.text.startswith("the rod returns to the straight state")
-    assert page.contents.beating.shapes.data["x"][-1] == pytest.approx(1 - 20 / 1e4)
+    assert page.contents.beating.shapes_source.data["x"][-1] == pytest.approx(1 - 20 / 1e4)
 
 
 @pytest.mark.parametrize("query", few(["F=41", "law=fixed", "k2=110", "gamma1=2", "taper=0.9"], 1))
@@ -113,7 +113,7 @@ def test_stored_branches_are_drawn_and_solved_again_by_their_button_only(command
     page, solvers = opened_page(command, BRANCH)
     data = rs.open(command.directory / "result.h5").squeeze()
     assert "branch" not in asked(solvers)
-    pieces = page.contents.branches.pieces.data
+    pieces = page.contents.branches.branch_source.data
     of_cycles = max(pieces["y"], key=np.max)
     assert np.max(of_cycles) == pytest.approx(np.nanmax(data["tip_y_max"].values))
     assert pieces["dash"].count("dashed") == 1
@@ -127,7 +127,7 @@ def test_stored_curves_of_folds_are_drawn_in_the_diagram(command):
     page, solvers = opened_page(command, PLANE)
     data = rs.open(command.directory / "result.h5")
     assert not {"diagram", "cycles"} & asked(solvers)
-    curves = page.contents.diagram.of_cycles.data
+    curves = page.contents.diagram.cycle_curve_source.data
     assert np.concatenate(curves["x"]) == pytest.approx(data["cycle_curve_F"].values)
     assert np.concatenate(curves["y"]) == pytest.approx(data["cycle_curve_k1"].values)
     assert set(curves["dash"]) == {"solid"}
@@ -145,7 +145,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
     page = page_with(
         NoSolvers(), state=state, stored=StoredResults(path, data, state, stored_diagram(data, state))
     )
-    curves = page.contents.diagram.of_cycles.data
+    curves = page.contents.diagram.cycle_curve_source.data
     assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS_COLOUR, "dashed")]
     assert curves["x"][0] == pytest.approx(data["cycle_curve_F"].values)
     words = [item.label.value for item in page.contents.diagram.legend.items]
@@ -180,9 +180,9 @@ def test_stored_cycles_of_arms_are_drawn_and_not_solved_again(command):
     assert (page.state.tab, page.state.arm["pressure"]) == ("arm", "4 kPa")  # the control has five digits
     assert not {"cycle", "branch"} & asked(solvers)
     assert float(shown(page)["period_si"]) == pytest.approx(float(data["period_si"]), rel=1e-7)
-    picture = page.contents.beating.shapes.data
+    picture = page.contents.beating.shapes_source.data
     assert picture["y"] == pytest.approx(10 * data["shape_y"].values.ravel(), abs=1e-6)
-    drawn = page.contents.branches.cycles.data
+    drawn = page.contents.branches.cycle_source.data
     assert drawn["F"] == pytest.approx([1, 4.00004, 5])
     assert drawn["y"] == pytest.approx([0, *10 * arms["tip_y_max"].values[1:]])
     loads = page.contents.branches.card.figure.x_range
@@ -200,7 +200,7 @@ def test_stored_thresholds_of_arms_are_the_diagram(command):
     data = rs.open(command.directory / "result.h5")
     assert (page.state.law, page.state.second) == ("fixed", "length")
     assert "diagram" not in asked(solvers)
-    drawn = page.contents.diagram.crossings.data
+    drawn = page.contents.diagram.crossing_source.data
     stored = data["crossing_pressure"].values / 1e3
     assert np.sort(drawn["x"]) == pytest.approx(np.sort(stored[stored < 8]))
     assert set(drawn["y"]) == {8, 10}
@@ -211,5 +211,5 @@ def test_a_stored_branch_of_an_arm_is_drawn(command):
     page, solvers = opened_page(command, BRANCH_OF_ARM)
     data = rs.open(command.directory / "result.h5").squeeze()
     assert "branch" not in asked(solvers)
-    ys = np.concatenate(page.contents.branches.pieces.data["y"])
+    ys = np.concatenate(page.contents.branches.branch_source.data["y"])
     assert np.max(ys) == pytest.approx(100 * np.nanmax(data["tip_y_max_si"].values))

@@ -23,7 +23,7 @@ KINDS = (*INSTANT_KINDS, "bent", "motion", "film")
 
 def drag(page: Page, phase: str, x: float, y: float) -> None:
     """What the browser tells of a drag, in the picture's unit of length."""
-    page.contents.beating.grip.data = {"x": [x], "y": [y], "phase": [phase]}
+    page.contents.beating.grip_source.data = {"x": [x], "y": [y], "phase": [phase]}
     run_callbacks(page.document)
 
 
@@ -36,7 +36,7 @@ def ends(source) -> np.ndarray:
 def test_the_tip_follows_the_drag():
     page = page_with(ImmediateSolvers(KINDS))
     drag(page, "bent", 0.6, 0.5)
-    bent = page.contents.beating.bent.data
+    bent = page.contents.beating.bent_source.data
     assert (bent["x"][-1], bent["y"][-1]) == pytest.approx((0.6, 0.5), abs=1e-6)
 
 
@@ -44,11 +44,11 @@ def test_a_fluttering_arm_that_is_let_go_moves_from_there_into_its_cycle():
     page = page_with(ImmediateSolvers(KINDS))
     drag(page, "let go", 0.6, 0.5)
     picture = page.contents.beating
-    assert ends(picture.motion)[0] == pytest.approx((0.6, 0.5), abs=1e-6)
+    assert ends(picture.motion_source)[0] == pytest.approx((0.6, 0.5), abs=1e-6)
     cycle = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).cycle(shapes=48)
-    assert ends(picture.reached)[:, 1] == pytest.approx(cycle.data["shape_y"].values[:, -1], abs=1e-5)
+    assert ends(picture.reached_source)[:, 1] == pytest.approx(cycle.data["shape_y"].values[:, -1], abs=1e-5)
     assert picture.card.figure.title.text == "Let go at (0.6, 0.5) L: it beats"
-    per_shape, period = picture.motion.tags
+    per_shape, period = picture.motion_source.tags
     assert period == PERIOD_SECONDS
     # Returns of a motion that is not settled yet differ from the period by some percent.
     assert per_shape == pytest.approx(PERIOD_SECONDS / 32, rel=0.1)
@@ -57,8 +57,8 @@ def test_a_fluttering_arm_that_is_let_go_moves_from_there_into_its_cycle():
 def test_the_drawn_path_of_the_tip_is_smooth_and_leads_through_the_shapes():
     page = page_with(ImmediateSolvers(KINDS))
     picture = page.contents.beating
-    for each in (picture.shapes, picture.motion):
-        path = np.stack([picture.path.data[name] for name in "xy"], axis=1)
+    for each in (picture.shapes_source, picture.motion_source):
+        path = np.stack([picture.path_source.data[name] for name in "xy"], axis=1)
         assert path[::PATH_SEGMENT_COUNT][: len(ends(each))] == pytest.approx(ends(each), abs=1e-6)
         steps = np.diff(path, axis=0)
         turns = np.angle(np.exp(1j * np.diff(np.arctan2(steps[:, 1], steps[:, 0]))))
@@ -71,8 +71,8 @@ def test_an_arm_below_flutter_that_is_let_go_comes_to_rest():
     drag(page, "let go", 0.6, -0.5)
     picture = page.contents.beating
     assert picture.card.figure.title.text == "Let go at (0.6, -0.5) L: it comes to rest"
-    assert len(picture.reached.data["x"]) == 0
-    tips = ends(picture.motion)
+    assert len(picture.reached_source.data["x"]) == 0
+    tips = ends(picture.motion_source)
     assert tips[0] == pytest.approx((0.6, -0.5), abs=1e-6)
     assert abs(tips[-1, 1]) < 0.01
 
@@ -81,7 +81,7 @@ def test_a_drag_in_the_picture_of_an_arm_is_in_centimetres():
     page = page_with(ImmediateSolvers(KINDS), "tab=arm&length=12+cm")
     drag(page, "let go", 6.0, 5.0)
     picture = page.contents.beating
-    assert ends(picture.motion)[0] == pytest.approx((6, 5), abs=1e-5)
+    assert ends(picture.motion_source)[0] == pytest.approx((6, 5), abs=1e-5)
     assert picture.card.figure.title.text.startswith("Let go at (6, 5) cm: ")
 
 
@@ -91,7 +91,7 @@ def test_a_change_of_the_rod_forgets_the_motion():
     page.change({"F": "60"})
     run_callbacks(page.document)
     picture = page.contents.beating
-    assert (len(picture.motion.data["x"]), len(picture.bent.data["x"])) == (0, 0)
+    assert (len(picture.motion_source.data["x"]), len(picture.bent_source.data["x"])) == (0, 0)
     assert picture.card.figure.title.text == NO_TITLE
 
 
@@ -105,7 +105,7 @@ def test_an_answer_to_another_place_of_the_tip_is_not_shown():
     question, done = kept[0]
     done(Reply("answer", answer_to(question), 0.0))
     run_callbacks(page.document)
-    assert len(page.contents.beating.motion.data["x"]) == 0
+    assert len(page.contents.beating.motion_source.data["x"]) == 0
     assert page.contents.sign.text == "solving motion ..."
 
 
@@ -119,7 +119,7 @@ def test_every_place_of_the_pointer_bends_the_arm(place):
 def test_the_film_shows_the_shapes_of_a_period():
     page = page_with(ImmediateSolvers(("film",)))
     given = []
-    page.contents.sharing.give_film = given.append
+    page.contents.sharing.save_film = given.append
     page.solve("film")
     run_callbacks(page.document)
     assert len(given) == 1

@@ -317,10 +317,10 @@ def load(solving: bool, configs: list[str]) -> None:
     """Compiles what is compiled at first use for some configs, after `import_all`."""
     from rodsweep.errors import EnvironmentIncomplete
     from rodsweep.sweep.team import Team
-    from rodsweep.tasks.running.job import make_job
+    from rodsweep.tasks.running.job import job_of_file
 
     for path in configs:
-        job = make_job(Path(path), ())
+        job = job_of_file(Path(path), ())
         job.task.cost()
         if solving:
             Team()

@@ -10,7 +10,7 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.post.branch_curves import RodBranches, branch_ends, intersection, union
+from rodsweep.post.branch_curves import RodBranches, branch_ends, intersection_of_ranges, union_of_ranges
 
 from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
 from .truths import leading
@@ -173,14 +173,19 @@ def _ranges_line(page, line, true):
 
 def _beside(fine, rod):
     """Where stable cycles are beside a stable straight rod."""
-    stable = union(piece for curve in RodBranches(fine, rod).curves for piece in curve.stable_ranges)
-    return intersection(stable, RodBranches(fine, rod).straight_ranges(branch_ends(fine))[0])
+    stable = union_of_ranges(
+        piece for curve in RodBranches(fine, rod).curves for piece in curve.stable_ranges
+    )
+    return intersection_of_ranges(stable, RodBranches(fine, rod).straight_ranges(branch_ends(fine))[0])
 
 
 def _pairs(curves):
     ranges_ = [curve.stable_ranges for curve in curves]
-    return union(
-        piece for i in range(len(ranges_)) for j in range(i) for piece in intersection(ranges_[i], ranges_[j])
+    return union_of_ranges(
+        piece
+        for i in range(len(ranges_))
+        for j in range(i)
+        for piece in intersection_of_ranges(ranges_[i], ranges_[j])
     )
 
 

@@ -141,7 +141,9 @@ def _normal_form_sizes(view):
     for i, rod in enumerate(rods_of(view)):
         top = min(float(view.point_columns["F"].max()), 0.999 * rod.k1)
         sizes = _sizes_of_rod(replace(rod, F=0.0), float(view.point_columns["gamma1"][i]), top)
-        scale = in_si(view)["length"][i] / UNITS[view.typed.get("length", "m")] if view.quantities else 1.0
+        scale = (
+            in_si(view)["length"][i] / UNITS[view.typed_units.get("length", "m")] if view.quantities else 1.0
+        )
         found += (sizes[np.isfinite(sizes)] * scale).tolist()
     return np.array(found)
 

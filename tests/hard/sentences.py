@@ -22,7 +22,7 @@ from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.sweep.points.points import lines_over
+from rodsweep.sweep.points.points import lines_along
 
 from .arm_sentences import arm_sentences, random_arm, region_as_stated
 from .branch_sentences import branch_sentences
@@ -217,7 +217,7 @@ def table_sentences(view, page, keywords):
     for name, column in (view.quantities | view.point_columns | along).items():
         values = np.unique(np.asarray(column, float))
         for line, why, low, high, _ in parameter_lines(page, name, values):
-            if name in view.typed:  # in other units, which `arm_sentences` reads
+            if name in view.typed_units:  # in other units, which `arm_sentences` reads
                 continue
             texts = (low, values.min()), (high, values.max())
             ends = ["" if text == "inf" and end == inf else as_stated(text, end) for text, end in texts]
@@ -278,7 +278,7 @@ def threshold_sentences(view, page):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
         for _, match in read(page, r", on NUMBER of NUMBER lines? over", only=line):
-            lines = [each for each in lines_over(view.point_columns, name) if len(each.x)]
+            lines = [each for each in lines_along(view.point_columns, name) if len(each.x)]
             having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
             right = int(match[1]) == having and int(match[2]) == len(lines)
             why += [] if right else [f"on {having} of {len(lines)} lines"]
@@ -428,7 +428,7 @@ def _monotony(view, page, kind, F):
         rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
         r"(?:, falls on NUMBER)?(?:, is constant on NUMBER)?(?:, is not monotone on NUMBER)?",
     ):
-        axis = list(view.axes).index(match[2])
+        axis = list(view.parameter_values).index(match[2])
         along = np.moveaxis(F.reshape(shape), axis, -1).reshape(-1, shape[axis])
         along = along[:, ::-1] if match[1] else along
         known = [row[np.isfinite(row)] for row in along if np.isfinite(row).sum() > 1]
@@ -440,7 +440,7 @@ def _monotony(view, page, kind, F):
         found.append((line, "" if told == true else f"it is {true}"))
         for _, items in read(page, r"is not monotone on \d+ \(([^)]*)\)", only=line):
             for name, text in re.findall(rf"(\w+) = ({NUMBER})", items[1]):
-                found.append((line, near_one_of(text, view.axes[name])))
+                found.append((line, near_one_of(text, view.parameter_values[name])))
     return found
 
 
@@ -733,9 +733,11 @@ CHANGES_OF_CYCLES = {
 
 
 def diagram_sentences(view, page, keywords, fine):
-    line, row = "F", next(name for name in view.parameters if len(view.axes[name]) > 1)
-    v, values, rows = view.variables, view.variables[line], view.axes[row]
-    fixed = {name: float(view.axes[name][0]) for name in view.parameters if name in LINEAR_PARAMETERS}
+    line, row = "F", next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
+    v, values, rows = view.variables, view.variables[line], view.parameter_values[row]
+    fixed = {
+        name: float(view.parameter_values[name][0]) for name in view.parameters if name in LINEAR_PARAMETERS
+    }
     every, table = [], []
     for value in rows:
         rod = Rod(F=0.0, **fixed | {row: float(value)})
@@ -808,7 +810,7 @@ def _curve_sentences(view, page, row):
         off = [np.abs(v[f"curve_{n}"][here][[0, -1]] - float(match[i])) for n, i in ((row, 2), ("F", 3))]
         near = (off[0] <= unit_of(match[2])) & (off[1] <= unit_of(match[3]))
         found.append((line, "" if near.any() else "the curve does not end there"))
-    fixed = {name: float(view.axes[name][0]) for name in view.parameters if name != row}
+    fixed = {name: float(view.parameter_values[name][0]) for name in view.parameters if name != row}
     for i in range(0, len(v["curve_kind"]), max(1, len(v["curve_kind"]) // 6)):
         rod = Rod(F=float(v["curve_F"][i]), **fixed | {row: float(v[f"curve_{row}"][i])})
         w = solve_spectrum(rod, SpectrumRequest(MANY, 1e-10, False)).eigenvalues
@@ -915,7 +917,7 @@ def _states_of(view, row, fixed, table):
     """
     F, gamma1 = view.variables["F"], float(view.attributes.get("gamma1", 1.0))
     states, kinds, at = [], [], []
-    for value, motions in zip(view.axes[row], table, strict=True):
+    for value, motions in zip(view.parameter_values[row], table, strict=True):
         rod = {**fixed, row: float(value), "gamma1": gamma1, "stop": float(F[-1])}
         branch = solved("branch", rod | {"accuracy": FINE["branch"]})
         ranges_ = [piece for curve in RodBranches(branch).curves for piece in curve.stable_ranges]
@@ -934,7 +936,7 @@ def _states_of(view, row, fixed, table):
 
 def _state_sentences(view, page, fine, row):
     """Stable states and special points of cycles, against branches of a far smaller accuracy."""
-    v, rows, found = fine, view.axes[row], []
+    v, rows, found = fine, view.parameter_values[row], []
     states = v["stable_states"]
     for number, word in enumerate(("neither known", "straight", "cycle", "both", "undecided", "crushed")):
         share = [100 * (states == number).mean()]
@@ -978,7 +980,7 @@ def _state_sentences(view, page, fine, row):
 
 def _special_on_branch(view, row, kind, value, F, error):
     """Why a point of a curve of special points of cycles is none on the branch of its rod."""
-    rod = {name: float(view.axes[name][0]) for name in view.parameters} | {row: value}
+    rod = {name: float(view.parameter_values[name][0]) for name in view.parameters} | {row: value}
     rod["gamma1"] = float(view.attributes.get("gamma1", 1.0))
     top = min(1.05 * float(F), 0.9998 * rod["k1"])
     data = rs.sweep("branch", **rod, stop=top, accuracy=1e-7, progress=False)

@@ -470,9 +470,9 @@ def diagram_figure(d, view, _):
     v, columns, found = view.variables, view.point_columns, []
     (axes,) = d.panels
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
+    row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     fixed = {
-        name: float(view.axes[name][0])
+        name: float(view.parameter_values[name][0])
         for name in view.parameters
         if name in LINEAR_PARAMETERS and name != row
     }
@@ -514,8 +514,10 @@ def _pixels(d, axes, view, pixels, table, rods, states, covers, row):
     random, found, n = np.random.default_rng(5), [], len(pixels)
     to_data = axes.transAxes + axes.transData.inverted()
     if states:
-        y = view.axes[row][np.isfinite(view.axes[row])]
-        grid = view.variables["stable_states"].reshape(len(view.axes[row]), -1)[np.isfinite(view.axes[row])]
+        y = view.parameter_values[row][np.isfinite(view.parameter_values[row])]
+        grid = view.variables["stable_states"].reshape(len(view.parameter_values[row]), -1)[
+            np.isfinite(view.parameter_values[row])
+        ]
         for place, known in zip(np.ndindex(grid.shape), grid.ravel(), strict=True):
             at = d.places(axes, view.variables["F"][place[1]], y[place[0]])[0]
             i, j = (int(np.clip(at[k] * n, 0, n - 1)) for k in (1, 0))
@@ -550,7 +552,7 @@ def _pixels(d, axes, view, pixels, table, rods, states, covers, row):
 
 def _row_bars(d, axes, view, mesh, words, rods, row):
     """Classes along bars of rows, and the names of these."""
-    found, values = [], view.axes[row]
+    found, values = [], view.parameter_values[row]
     for tick, label in zip(axes.get_yticks(), axes.get_yticklabels(), strict=True):
         text = plain(label.get_text()).partition(" = ")[2]
         found.append((label.get_text(), nearly(text, float(values[round(tick)]))))

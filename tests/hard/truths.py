@@ -10,7 +10,7 @@ from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.sweep.points.points import lines_over
+from rodsweep.sweep.points.points import lines_along
 
 BESIDE = 1e-7
 """Relative distance from a stated threshold at which eigenvalues are computed on both its sides."""
@@ -62,14 +62,14 @@ def changes_over_force(rod, top):
 def changes_on_lines(view, name):
     """(rod, crossing, points) of every change of stability and onset on the lines over a parameter."""
     found = []
-    for line in lines_over(view.point_columns, name):
+    for line in lines_along(view.point_columns, name):
         low, high = float(line.x.min()), float(line.x.max())
         low = min(low, 0.0) if name == "F" and view.task == "limit_cycle" and low < high else low
         rod = Rod(**{n: line.parameters.get(n, low) for n in LINEAR_PARAMETERS})
         for crossing in changes_along(rod, name, low, high) if low < high else ():
             kind, after = crossing.kind.name, crossing.unstable_after
             if kind == "onset" or (kind, after) in (("hopf", 2), ("restabilization", 0)):
-                found.append((rod, crossing, line.at))
+                found.append((rod, crossing, line.indices))
     return found
 
 

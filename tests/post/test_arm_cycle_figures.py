@@ -27,7 +27,7 @@ def arms(lengths=(0.15,), gamma1=None):
     view = make_view(columns, [0] * len(made), as_list=True)
     units = {name: [getattr(arm, name) for arm in made] for name in ("tau2", "force_scale", "pressure_scale")}
     quantities = {name: np.array(value) for name, value in (ARM | units | {"length": list(lengths)}).items()}
-    return replace(view, variables=view.variables | quantities, typed=TYPED), made
+    return replace(view, variables=view.variables | quantities, typed_units=TYPED), made
 
 
 def test_an_arm_beats_in_cm_and_s_under_its_quantities():
@@ -83,7 +83,7 @@ def test_energy_of_an_arm_is_in_joule_and_its_rate_in_watt():
 def test_a_film_of_an_arm_counts_seconds():
     view, (arm,) = arms()
     _, (moving,) = first_frame(chosen_cycles(view, (), ()))
-    moving.show(4)
+    moving.show_frame(4)
     seconds = float(view.variables["period"][0]) * arm.tau2 * 4 / moving.frames
     shown = re.match(r"\$t\$ = ([\d.]+) s = ", moving.text.get_text())
     assert float(shown[1]) == pytest.approx(seconds, rel=1e-2)

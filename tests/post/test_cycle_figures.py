@@ -18,11 +18,11 @@ from rodsweep.discretization.elements.periodic import interpolate_samples, time_
 from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
-from rodsweep.post.figures.cycle.amplitudes.branches import branches_of
+from rodsweep.post.figures.cycle.amplitudes.branches import amplitude_branches
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
-from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, drawn_shapes
+from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, drawn_shape_indices
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
@@ -52,7 +52,7 @@ def test_interpolant_and_derivative_are_exact_for_harmonics(n):
 
 @pytest.mark.parametrize("stored", [1, 8, 12, 16, 25, 48, 500])
 def test_drawn_shapes_are_equally_spaced_in_time(stored):
-    drawn, step = drawn_shapes(stored)
+    drawn, step = drawn_shape_indices(stored)
     assert drawn[0] == 0
     assert min(stored, 6) <= len(drawn) <= 12
     assert np.array(drawn) / stored == pytest.approx(np.arange(len(drawn)) * step)
@@ -62,7 +62,7 @@ def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_late
     view = make_view(([50.0], [1e4], [1e2], [1e-2], [1.0]), [0])
     axes = draw_portrait(view, ())[0].axes[0]
     arrows = [a for a in axes.collections if isinstance(a, Quiver)]
-    drawn, _ = drawn_shapes(SHAPES)
+    drawn, _ = drawn_shape_indices(SHAPES)
     assert len(arrows) == len(drawn) == 12
     v = {name: view.variables[f"shape_{name}"][0, 0, 0, 0, 0] for name in ("x", "y", "theta")}
     for place, arrow in zip(drawn, arrows, strict=True):
@@ -114,7 +114,7 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
     grid = make_view(SWEEP, SWEPT)
     columns = [c.ravel() for c in np.meshgrid(*SWEEP, indexing="ij")]
     for view in (grid, make_view(columns, SWEPT, as_list=True)):
-        lines = branches_of(view, "F")
+        lines = amplitude_branches(view, "F")
         assert [line.parameters["gamma1"] for line in lines] == [1.0, 0.5]
         for line in lines:
             wanted = expected[line.parameters["gamma1"]]
@@ -146,7 +146,7 @@ def test_period_and_power_are_drawn_where_there_are_cycles():
 def test_a_list_that_goes_up_and_down_stays_in_its_order():
     F = [20.0, 30.0, 40.0, 30.0, 20.0]
     columns = (F, [1e4] * 5, [1e2] * 5, [1e-2] * 5, [1.0] * 5)
-    (line,) = branches_of(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
+    (line,) = amplitude_branches(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
     assert line.x.tolist() == F
     assert line.amplitude_y == pytest.approx([0, 0, 40**0.5 / 16, 30**0.5 / 16, 0])
 
@@ -330,7 +330,7 @@ def test_no_arrow_of_a_film_is_over_the_running_time():
     figure, arms = first_frame(selection)
     for k in range(arms[0].frames):
         for moving in arms:
-            moving.show(k)
+            moving.show_frame(k)
         figure.draw_without_rendering()
         for moving in arms:
             tip = moving.arrow.get_offsets()[0]

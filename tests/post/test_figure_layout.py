@@ -240,7 +240,7 @@ def test_the_frames_of_a_film_are_whole(name):
     with matplotlib.rc_context(FIGURE_STYLE):
         figure, arms = first_frame(selection)
         for arm in arms:
-            arm.show(7)
+            arm.show_frame(7)
         figure.draw_without_rendering()
         assert faults(figure) == []
 

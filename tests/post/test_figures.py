@@ -17,7 +17,7 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
-from rodsweep.post.figures.lists import number_points
+from rodsweep.post.figures.lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.sections import section_at_values
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
@@ -30,7 +30,7 @@ from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 
 def test_every_task_has_a_summary_and_a_figure():
@@ -179,7 +179,7 @@ def test_config_changes_stability_where_its_head_comment_says(name):
     """Flutter sets in (+1) and ends (-1) at the forces of docs/method.md, to ten digits, and nowhere else."""
     path = ROOT / "configs" / f"{name}.yaml"
     head = path.read_text()
-    job = make_job(path, ())
+    job = job_of_file(path, ())
     F = job.points.columns[0]
     crossings = EXPECTED[name]
     request = SpectrumRequest(4, 1e-10, True)
@@ -341,7 +341,7 @@ def test_one_spectrum_is_drawn_as_its_eigenvalues_in_the_complex_plane(command, 
 def test_points_of_a_list_of_arms_are_labelled_by_words_of_the_quantities():
     quantities = {"drag": np.array([0, 2]), "poisson": np.array([0.3, 0.5]), "young": np.array([1e5, 2e5])}
     axes = Figure().subplots()
-    number_points(axes, SimpleNamespace(quantities=quantities), 2)
+    label_point_numbers(axes, SimpleNamespace(quantities=quantities), 2)
     assert axes.get_xlabel() == "drag\nPoisson's ratio\nYoung's modulus (kPa)"
     texts = [label.get_text() for label in axes.get_xticklabels()]
     assert texts == ["likeliest\n0.3\n100", "most rotational\n0.5\n200"]

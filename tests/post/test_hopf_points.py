@@ -10,9 +10,9 @@ from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
-from rodsweep.sweep.points.points import lines_over
+from rodsweep.sweep.points.points import lines_along
 from rodsweep.tasks.protocol import solve_on_one_rank
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
 
@@ -33,7 +33,7 @@ def searched(tmp_path, config, in_order=solve_on_one_rank):
     """The variables of the Hopf points of a config, by name."""
     path = tmp_path / "c.yaml"
     path.write_text(config)
-    return {v.name: values for v, values in make_job(path, ()).task.constants(in_order)}
+    return {v.name: values for v, values in job_of_file(path, ()).task.config_variables(in_order)}
 
 
 @pytest.mark.parametrize("F", ["[45, 55, 65, 75]", "[49, 50]", "{start: 1, stop: 150, num: 4}"])
@@ -80,7 +80,7 @@ def test_points_that_are_listed_make_the_lines_that_a_grid_makes(tmp_path):
 
 
 def changes_on(view, name="F"):
-    (line,) = lines_over(view.point_columns, name)
+    (line,) = lines_along(view.point_columns, name)
     return StoredChanges(view, name).thresholds_on(line)
 
 
@@ -245,13 +245,13 @@ def test_no_hopf_point_is_marked_over_another_parameter():
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
     axes = ([20.0, 30, 40], [1e4], [200.0, 100], [1e-2], [1.0, 0.5])
     view = make_view(axes, [0] * 12, stored=())
-    lines = list(lines_over(view.point_columns, "F"))
+    lines = list(lines_along(view.point_columns, "F"))
     keys = [(line.parameters["k2"], line.parameters["gamma1"]) for line in lines]
     assert keys == [(200, 1), (200, 0.5), (100, 1), (100, 0.5)]
-    assert sorted(np.concatenate([line.at for line in lines])) == list(range(12))
+    assert sorted(np.concatenate([line.indices for line in lines])) == list(range(12))
     for line in lines:
         assert line.x.tolist() == [20, 30, 40]
-        assert {view.point_columns["k2"][i] for i in line.at} == {line.parameters["k2"]}
+        assert {view.point_columns["k2"][i] for i in line.indices} == {line.parameters["k2"]}
 
 
 @pytest.mark.parametrize(
@@ -320,8 +320,10 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     view = make_view(([60.0, 75], [200.0], [1e4], [1e-4], [1.0]), [0, 0], stored=())
     view.variables.update(found | {"linear_growth_rate": np.ones((2, 1, 1, 1, 1))})
     stored = StoredChanges(view, "F")
-    (line,) = lines_over(view.point_columns, "F")
+    (line,) = lines_along(view.point_columns, "F")
     assert stored.thresholds_on(line) == []
-    assert [point.position for point in stored.up_to(line)] == pytest.approx(WINDOW[:1], rel=1e-12)
-    (sentence,), _ = stability_lines(view, "F", stored.up_to)
+    assert [point.position for point in stored.thresholds_up_to_end(line)] == pytest.approx(
+        WINDOW[:1], rel=1e-12
+    )
+    (sentence,), _ = stability_lines(view, "F", stored.thresholds_up_to_end)
     assert sentence.startswith("F** (straight rod starts to beat): 49.7580049161")

@@ -78,7 +78,7 @@ def test_the_page_says_what_show_says(command, name):
     assert answer.startswith(lead)
     summary = summary_of(read_view(command.directory / f"{name}.h5"))
     paragraphs = page.texts("p")
-    for line in [*summary.answer, *summary.trust, *summary.details, *summary.origin]:
+    for line in [*summary.answer, *summary.reliability, *summary.details, *summary.provenance]:
         assert " ".join(line.replace("`", "").split()) in ["", *paragraphs]
     for row in summary.statuses.rows:
         assert {row[0], row[1], row[2].replace("`", "")} <= set(page.texts("td"))

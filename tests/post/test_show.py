@@ -15,8 +15,8 @@ from rodsweep.post.summary.ranges import number_with_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdStatus
-from rodsweep.sweep.points.points import lines_over
-from rodsweep.tasks.running.job import make_job
+from rodsweep.sweep.points.points import lines_along
+from rodsweep.tasks.running.job import job_of_file
 
 ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
 
@@ -41,11 +41,11 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     config = f"task: spectrum\nparameters: {{F: {forces}, {ROD}}}\nspectrum: {{certify: {certify}}}\n"
     shown(command, config)
     view = read_view(command.directory / "c.h5")
-    (line,) = lines_over(view.point_columns, "F")
+    (line,) = lines_along(view.point_columns, "F")
     found = [
         change
         for change in StoredChanges(view, "F").thresholds_on(line)
-        if isinstance(change, LocatedChange) and change.is_hopf
+        if isinstance(change, LocatedChange) and change.changes_stability
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
@@ -80,7 +80,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         view = read_view(command.directory / output)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
-    (line,) = lines_over(view.point_columns, "F")
+    (line,) = lines_along(view.point_columns, "F")
     assert StoredChanges(view, "F").thresholds_on(line) == [BracketedChange(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "beat): 49.758004916" in command("show", "all.h5").stdout
@@ -91,9 +91,9 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     shown(command, f"task: spectrum\nparameters: {{F: [40, 60], {ROD}}}\n")
     view = read_view(command.directory / "c.h5")
     view.variables["unstable_count"][-1] = 4
-    located = make_job(command.directory / "c.yaml", ()).task.afterwards(view.variables)
+    located = job_of_file(command.directory / "c.yaml", ()).task.variables_from_points(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
-    (line,) = lines_over(view.point_columns, "F")
+    (line,) = lines_along(view.point_columns, "F")
     assert StoredChanges(view, "F").thresholds_on(line) == [BracketedChange(40, 60, "hopf")]
     (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
     assert told == "F** (straight rod starts to beat): between 40 and 60"

@@ -13,7 +13,7 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.determinant.arm.hull import hull
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.provenance import (
-    FAILURE_REASONS,
+    FAILURE_REASONS_ATTRIBUTE,
     MAX_FAILURE_REASONS,
     joined_failure_reasons,
     merged_history,
@@ -200,14 +200,14 @@ def test_show_names_the_reason_of_each_kind_of_failure_with_a_point(tmp_path):
 
 def test_files_that_are_merged_keep_the_reasons_of_both():
     one, other = "F=1.0: failed a", "F=2.0: failed b"
-    attributes = [{FAILURE_REASONS: text} for text in (one, f"{one}\n{other}")] + [{}]
-    assert merged_history(attributes)[FAILURE_REASONS] == f"{one}\n{other}"
-    assert FAILURE_REASONS not in merged_history([{}])
+    attributes = [{FAILURE_REASONS_ATTRIBUTE: text} for text in (one, f"{one}\n{other}")] + [{}]
+    assert merged_history(attributes)[FAILURE_REASONS_ATTRIBUTE] == f"{one}\n{other}"
+    assert FAILURE_REASONS_ATTRIBUTE not in merged_history([{}])
     assert (
         joined_failure_reasons("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[
-            FAILURE_REASONS
+            FAILURE_REASONS_ATTRIBUTE
         ].count("F=")
         == 1
     )
     many = "\n".join(f"F={i}.0: failed {'x' * i}" for i in range(2 * MAX_FAILURE_REASONS))
-    assert len(joined_failure_reasons(many)[FAILURE_REASONS].splitlines()) == MAX_FAILURE_REASONS
+    assert len(joined_failure_reasons(many)[FAILURE_REASONS_ATTRIBUTE].splitlines()) == MAX_FAILURE_REASONS

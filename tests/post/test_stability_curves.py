@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rodsweep.post.figures.stability.class_bars import draw_class_bars
-from rodsweep.post.figures.stability.diagram_curves import boundaries_to_name, force_of_plane
+from rodsweep.post.figures.stability.diagram_curves import boundaries_to_name, constant_force_text
 from rodsweep.post.stability_curves import curves_bounding_stability
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -42,8 +42,8 @@ def test_the_boundary_is_the_curve_on_which_the_rows_change_their_stability():
 
 
 def test_a_plane_without_force_names_the_force_at_which_it_lies():
-    assert force_of_plane(diagram(), "k1", "k2") == " = 50"
-    assert force_of_plane(diagram(), "F", "k2") == ""
+    assert constant_force_text(diagram(), "k1", "k2") == " = 50"
+    assert constant_force_text(diagram(), "F", "k2") == ""
 
 
 @pytest.mark.parametrize("further", [0, 2])

@@ -18,7 +18,7 @@ from rodsweep.errors import InputError
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.tasks.running.job import make_job, plan_without_solver
+from rodsweep.tasks.running.job import job_of_file, plan_without_solver
 
 CONFIGS = {
     "spectrum": """
@@ -60,7 +60,7 @@ def results(tmp_path_factory, loaded):
 
 def plan_for(results, name):
     """The plan of a config; the words of the statuses do not matter to what is continued."""
-    job = make_job(results / f"{name}.yaml", ())
+    job = job_of_file(results / f"{name}.yaml", ())
     return plan_without_solver(job.config, job.points)
 
 

@@ -15,9 +15,9 @@ from ranks import PATIENCE
 from rodsweep.errors import InputError
 from rodsweep.results.file import exchange
 from rodsweep.results.file.combination.merge import merge
-from rodsweep.results.file.exchange import Lock
+from rodsweep.results.file.exchange import ResultFileLock
 from rodsweep.results.run.journal import journal_directory
-from rodsweep.sweep.points.ranges import Shard, shard_of
+from rodsweep.sweep.points.ranges import Shard, parsed_shard
 from rodsweep.tasks.running.job import plan_without_solver
 
 SPECTRA = """
@@ -68,7 +68,7 @@ def test_shard_of_what_is_left_is_what_is_left_of_the_shard():
 @pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "1/0", "-1/2", "1/2/3", "", "1/1e9", "9" * 5000])
 def test_shards_that_are_none_are_refused(text):
     with pytest.raises(InputError, match="--shard .* I/N"):
-        shard_of(text)
+        parsed_shard(text)
 
 
 def test_merged_shards_are_the_undivided_run(command):
@@ -159,7 +159,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
     for number in (1, 2):
         assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0
     first, second, merged = (command.directory / f"{name}.h5" for name in ("c-1-of-2", "c-2-of-2", "m"))
-    held = Lock(journal_directory(merged), merged)
+    held = ResultFileLock(journal_directory(merged), merged)
     waits = threading.Event()
     clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
     monkeypatch.setattr(exchange, "time", clock)
@@ -168,7 +168,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
         assert waits.wait(PATIENCE)
         shutil.copy(first, merged)
         held.release()
-        assert waiting.result(PATIENCE).points == 492
+        assert waiting.result(PATIENCE).point_count == 492
 
 
 def test_damaged_shard_leaves_the_merged_file_as_it_was(command):

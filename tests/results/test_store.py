@@ -14,7 +14,7 @@ from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.current_state import write_snapshot
-from rodsweep.results.file.provenance import FAILURE_REASONS
+from rodsweep.results.file.provenance import FAILURE_REASONS_ATTRIBUTE
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
@@ -64,7 +64,7 @@ def record(index, error=1e-12):
 
 
 def journal(store, indices, rank=0, error=1e-12):
-    pages = Journal(store.journals, rank, LAYOUT, store.plan.fingerprint)
+    pages = Journal(store.journal_directory, rank, LAYOUT, store.plan.fingerprint)
     for index in indices:
         pages.append(index, record(index, error))
     pages.close()
@@ -97,13 +97,13 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     count = whole.missing()[0][1]
     journal(whole, range(count))
     whole.add_journals({})
-    monkeypatch.setattr(pages_of, "BYTES_A_BLOCK", 3 * (LAYOUT.record.itemsize + 4))
+    monkeypatch.setattr(pages_of, "BYTES_PER_READ", 3 * (LAYOUT.record_dtype.itemsize + 4))
     monkeypatch.setattr(points, "MAX_BLOCK_POINTS", 2)
     store = Store(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)
     journal(store, [*order[:3], order[0]], rank=1)
-    assert read_view(tmp_path / "a.h5").journalled == count
+    assert read_view(tmp_path / "a.h5").journalled_count == count
     assert store.missing() == [(0, count)]
     store.add_journals({})
     assert store.missing() == []
@@ -126,7 +126,7 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
         store.add_journals({})
         store.close()
     merged = merge(tmp_path / "m.h5", paths, lambda config, points: plan(False, count=points.count))
-    assert (merged.points, merged.missing, merged.finished) == (6, whole - 1, False)
+    assert (merged.point_count, merged.missing_count, merged.is_finished) == (6, whole - 1, False)
     with h5py.File(tmp_path / "m.h5") as file:
         done = np.flatnonzero(file["status"][...] == 0)
         assert done.tolist() == shares[1]
@@ -149,7 +149,7 @@ def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):
     path = tmp_path / "a.h5"
     store = Store(path, plan())
     journal(store, range(7))
-    assert read_view(path).journalled == 7
+    assert read_view(path).journalled_count == 7
     store.close()
     again = Store(path, plan())
     assert again.missing() == [(7, 12)]
@@ -161,10 +161,10 @@ def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):
 def test_torn_tail_of_a_journal_is_dropped(tmp_path, lost):
     store = Store(tmp_path / "a.h5", plan())
     journal(store, range(7))
-    (page,) = store.journals.glob("rank-*")
+    (page,) = store.journal_directory.glob("rank-*")
     page.write_bytes(page.read_bytes()[:-lost])
-    records = np.concatenate(list(read_journals(store.journals, LAYOUT, store.plan.fingerprint)))
-    whole = 7 - -(-lost // (LAYOUT.record.itemsize + 4))
+    records = np.concatenate(list(read_journals(store.journal_directory, LAYOUT, store.plan.fingerprint)))
+    whole = 7 - -(-lost // (LAYOUT.record_dtype.itemsize + 4))
     assert records["index"].tolist() == list(range(whole))
     store.close()
 
@@ -173,59 +173,59 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
     """In sight before the next run folds them in, and beside those of earlier runs, the newest first."""
     path, long = (
         tmp_path / "a.h5",
-        "F=3.0: failed " + "w\N{GREEK SMALL LETTER OMEGA}" * LAYOUT.record.itemsize,
+        "F=3.0: failed " + "w\N{GREEK SMALL LETTER OMEGA}" * LAYOUT.record_dtype.itemsize,
     )
     one, other = "F=1.0: failed a", "F=2.0: failed b"
     store = Store(path, plan())
-    pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
+    pages = Journal(store.journal_directory, 0, LAYOUT, store.plan.fingerprint)
     pages.append(0, record(0), [one])
     pages.append(1, record(1))
     store.add_journals({})
-    pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
+    pages = Journal(store.journal_directory, 0, LAYOUT, store.plan.fingerprint)
     several = {name: np.array([value, value]) for name, value in record(2).items()}
     pages.append_all(np.array([2, 3]), several, [other, long])
     store.close()  # the journal stays, as after SIGKILL
     told = f"{other}\n{long}\n{one}"
     view = read_view(path)
-    assert (view.journalled, view.attributes[FAILURE_REASONS]) == (2, told)
-    assert open_result(path).attrs[FAILURE_REASONS] == told
+    assert (view.journalled_count, view.attributes[FAILURE_REASONS_ATTRIBUTE]) == (2, told)
+    assert open_result(path).attrs[FAILURE_REASONS_ATTRIBUTE] == told
     write_snapshot(path, tmp_path / "s.h5")
-    assert read_view(tmp_path / "s.h5").attributes[FAILURE_REASONS] == told
+    assert read_view(tmp_path / "s.h5").attributes[FAILURE_REASONS_ATTRIBUTE] == told
     again = Store(path, plan())
     assert again.missing() == [(4, 12)]
-    assert again.attributes()[FAILURE_REASONS] == told
+    assert again.attributes()[FAILURE_REASONS_ATTRIBUTE] == told
     again.close()
 
 
-@pytest.mark.parametrize("lost", [1, LAYOUT.record.itemsize + 4])
+@pytest.mark.parametrize("lost", [1, LAYOUT.record_dtype.itemsize + 4])
 def test_a_torn_line_of_reasons_is_dropped_and_only_it(tmp_path, lost):
     store = Store(tmp_path / "a.h5", plan())
-    pages = Journal(store.journals, 0, LAYOUT, store.plan.fingerprint)
+    pages = Journal(store.journal_directory, 0, LAYOUT, store.plan.fingerprint)
     pages.append(0, record(0), ["F=1.0: failed a"])
-    nothing = np.zeros(0, LAYOUT.record)
+    nothing = np.zeros(0, LAYOUT.record_dtype)
     pages.append_all(nothing["index"], {name: nothing[name] for name in record(0)}, ["x" * 300])
     pages.close()
-    (page,) = store.journals.glob("rank-*")
+    (page,) = store.journal_directory.glob("rank-*")
     page.write_bytes(page.read_bytes()[:-lost])
-    assert read_reasons(store.journals, LAYOUT, store.plan.fingerprint) == ["F=1.0: failed a"]
+    assert read_reasons(store.journal_directory, LAYOUT, store.plan.fingerprint) == ["F=1.0: failed a"]
     store.close()
 
 
 def test_damaged_record_is_dropped_and_only_it(tmp_path):
     store = Store(tmp_path / "a.h5", plan())
     journal(store, range(7))
-    (page,) = store.journals.glob("rank-*")
+    (page,) = store.journal_directory.glob("rank-*")
     data = bytearray(page.read_bytes())
-    data[-3 * (LAYOUT.record.itemsize + 4) + 20] ^= 1
+    data[-3 * (LAYOUT.record_dtype.itemsize + 4) + 20] ^= 1
     page.write_bytes(data)
-    records = np.concatenate(list(read_journals(store.journals, LAYOUT, store.plan.fingerprint)))
+    records = np.concatenate(list(read_journals(store.journal_directory, LAYOUT, store.plan.fingerprint)))
     assert records["index"].tolist() == [0, 1, 2, 3, 5, 6]
     store.close()
 
 
 def test_journal_of_another_config_is_not_folded(tmp_path):
     store = Store(tmp_path / "a.h5", plan())
-    pages = Journal(store.journals, 0, LAYOUT, "another")
+    pages = Journal(store.journal_directory, 0, LAYOUT, "another")
     pages.append(0, record(0))
     pages.close()
     store.add_journals({})

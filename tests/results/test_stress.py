@@ -20,7 +20,7 @@ from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.results.run.journal import JOURNAL_HEAD, journal_directory
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 INCOMPLETE = re.compile(r"\d (points?|rows?|rods?) (is|are) missing|curves through them are missing")
 """How `show` says that a run is not complete."""
@@ -125,8 +125,8 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
     random.seed(config)
     command.write("c.yaml", config)
     path = command.directory / "c.h5"
-    points = make_job(command.directory / "c.yaml", ()).points.count
-    record = make_job(command.directory / "c.yaml", ()).layout.record.itemsize + 4
+    points = job_of_file(command.directory / "c.yaml", ()).points.count
+    record = job_of_file(command.directory / "c.yaml", ()).layout.record_dtype.itemsize + 4
     whole = command("run", "c.yaml", "-o", "whole.h5")
     assert whole.returncode == 0, whole.stderr
     struck, kept, told = 0, 0, []

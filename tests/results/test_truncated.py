@@ -11,7 +11,7 @@ from rodsweep.post.summary import show_summary
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.ranges import Shard
-from rodsweep.tasks.running.job import make_job, plan_of
+from rodsweep.tasks.running.job import job_of_file, plan_of
 
 CONFIGS = {
     "spectrum": """
@@ -47,7 +47,7 @@ def test_file_cut_off_anywhere_is_refused_and_left_as_it_is(command, name, monke
     path = command.directory / "c.h5"
     whole = path.read_bytes()
     monkeypatch.chdir(command.directory)
-    job = make_job(config, ())
+    job = job_of_file(config, ())
     plan = plan_of(job, job.task.solver(), Shard(), "")
     rng, refused = Random(name), 0
     for size in [0, 1, 8, 100, len(whole) - 1, *(rng.randrange(len(whole)) for _ in range(CUTS))]:

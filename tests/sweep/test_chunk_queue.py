@@ -107,8 +107,8 @@ def test_two_threads_share_the_work_without_losing_any():
 def test_points_that_all_ranks_have_kept_are_counted():
     handout = ChunkQueue([(0, 9)], ranks=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
-        handout.add_report(rank, RankReport(points=points))
-    assert handout.points == 6
+        handout.add_report(rank, RankReport(stored_points=points))
+    assert handout.stored_points == 6
 
 
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
@@ -189,7 +189,7 @@ def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch)
     answers = []
     for report in [RankReport(), ahead, done, ahead, done, ahead, done, ahead, done]:
         mail.post(REQUEST_TAG, report)
-        first.between_points()
+        first.poll_messages()
         answers.append(mail.sent.pop() if mail.sent else None)
     # Ahead while eight units are left, then only once the last chunk is done.
     assert answers == [(0, 1), (1, 2), None, (2, 3), None, None, (3, 4), None, (4, 5)]
@@ -199,9 +199,9 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
     """Its report may come before the message that it was asked to stop, and while others wait."""
     mail = Mail()
     first = claims(mail, [(0, 1)], monkeypatch)
-    for report in (RankReport(), RankReport(0, 9.0, (0, 1), 1, stop="SIGTERM")):
+    for report in (RankReport(), RankReport(0, 9.0, (0, 1), 1, stop_signal="SIGTERM")):
         mail.post(REQUEST_TAG, report)
-        first.between_points()
+        first.poll_messages()
     assert first.stop.name == "SIGTERM"
     assert mail.sent == [(0, 1), "SIGTERM", NO_WORK_LEFT]
     assert first.queue.next_chunk(0) == NO_WORK_LEFT
@@ -222,11 +222,11 @@ def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
         mail.post(STOP_TAG, "SIGTERM")
     else:
         first.stop.name = "SIGTERM"
-    first.between_points()
+    first.poll_messages()
     assert first.stop.name == "SIGTERM"
     assert mail.sent == ["SIGTERM"]
     mail.post(REQUEST_TAG, RankReport())
-    first.between_points()
+    first.poll_messages()
     assert mail.sent == ["SIGTERM", NO_WORK_LEFT]
     assert first.next_chunk(RankReport()) == NO_WORK_LEFT
 
@@ -235,11 +235,11 @@ def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(m
     mail, shown = Mail(), []
     first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
     mail.post(PROGRESS_TAG, SolvePosition("branch", 0.5))
-    first.between_points()
+    first.poll_messages()
     first.report_position(SolvePosition("mesh"))  # its share is not known
     first.report_position(SolvePosition("cycle", 0.25))
     mail.post(REQUEST_TAG, RankReport(1, 9.0))
-    first.between_points()
+    first.poll_messages()
     first.report_position(SolvePosition("cycle", 0.75))
     assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
 
@@ -264,14 +264,14 @@ def test_another_rank_tells_the_first_of_a_stop_or_hears_of_it_once():
     mail = Mail(sender=0)
     asked, told = other_claims(mail), other_claims(mail)
     for _ in range(2):
-        told.between_points()
+        told.poll_messages()
     assert not told.stop
     asked.stop.name = "SIGUSR1"
     for _ in range(2):
-        asked.between_points()
+        asked.poll_messages()
     assert mail.sent == ["SIGUSR1"]
     mail.post(STOP_TAG, "SIGUSR1")
     for _ in range(2):
-        told.between_points()
+        told.poll_messages()
     assert told.stop.name == "SIGUSR1"
     assert mail.sent == ["SIGUSR1"]

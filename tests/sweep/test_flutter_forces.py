@@ -13,8 +13,8 @@ from rodsweep.config import load_config
 from rodsweep.config.arm.axes import FLUTTER_UNKNOWN
 from rodsweep.errors import BUG_STATUS, InputError
 from rodsweep.model.rod import Rod
-from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_of_flutter
-from rodsweep.tasks.running.job import job_of
+from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_needing_flutter_force
+from rodsweep.tasks.running.job import job_of_config
 from rodsweep.verdict import relative
 
 RODS = 8
@@ -63,7 +63,7 @@ def searches(command, rank):
 def rods(command):
     """The rods of the config `a.yaml`, in the order in which the ranks share them."""
     config, _ = load_config(command.write("a.yaml", ARMS.format(task="spectrum")))
-    return rods_of_flutter(config.parameters.arm)
+    return rods_needing_flutter_force(config.parameters.arm)
 
 
 @pytest.mark.long
@@ -126,7 +126,7 @@ def test_arms_of_which_none_has_a_known_flutter_are_refused(command, rods):
     path = command.directory / "a.yaml"
     unknown = dict.fromkeys(rods, FlutterForce(float("nan"), "no box is left"))
     with pytest.raises(InputError, match=r"parameters\.arm\.pressure: no box is left"):
-        job_of(path, *load_config(path), unknown)
+        job_of_config(path, *load_config(path), unknown)
 
 
 @pytest.mark.parametrize("error", [OverflowError("too large"), ZeroDivisionError()])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rodsweep.sweep.progress import on_terminal
-from rodsweep.sweep.remaining_time import RECORD_RATIO, Pace, duration_text, rate_in_words
+from rodsweep.sweep.remaining_time import RECORD_RATIO, RemainingTimeEstimator, duration_text, rate_in_words
 
 RANDOM = np.random.default_rng(3)
 COLD, WARM = 0.1, 0.01
@@ -27,14 +27,14 @@ def told(costs, every=0.0, together=1):
 
     every: seconds between what is said; together: points that are heard of at once, as of other ranks.
     """
-    pace, said, after = Pace(len(costs)), [], 0.0
+    pace, said, after = RemainingTimeEstimator(len(costs)), [], 0.0
     times = list(accumulate(costs))
     for done in range(together, len(costs) + 1, together):
         now = times[done - 1]
         if now < after:
             continue
         after = now + every
-        left = pace.remaining(done, now)
+        left = pace.remaining_seconds(done, now)
         if left is not None:
             said.append((now, left, times[-1] - now))
     return np.array(said)
@@ -75,41 +75,47 @@ def test_nothing_is_left_at_the_end(kind):
 
 
 def test_nothing_is_said_before_the_pace_is_known():
-    pace = Pace(100)
-    assert [pace.remaining(done, now) for done, now in ((0, 5.0), (1, 6.0), (2, 7.0))] == [None, None, None]
-    assert pace.remaining(3, 8.0) == pytest.approx(97)
-    assert Pace(1).remaining(1, 4.0) == 0
+    pace = RemainingTimeEstimator(100)
+    assert [pace.remaining_seconds(done, now) for done, now in ((0, 5.0), (1, 6.0), (2, 7.0))] == [
+        None,
+        None,
+        None,
+    ]
+    assert pace.remaining_seconds(3, 8.0) == pytest.approx(97)
+    assert RemainingTimeEstimator(1).remaining_seconds(1, 4.0) == 0
 
 
 def test_a_point_that_does_not_end_is_waited_for():
-    pace = Pace(20)
+    pace = RemainingTimeEstimator(20)
     for done in range(1, 11):
-        pace.remaining(done, float(done))
-    waits = [pace.remaining(10, 10.0 + waited) for waited in (1.0, 20.0, 100.0, 1000.0)]
+        pace.remaining_seconds(done, float(done))
+    waits = [pace.remaining_seconds(10, 10.0 + waited) for waited in (1.0, 20.0, 100.0, 1000.0)]
     assert waits == sorted(waits)
     assert waits[-1] > 100
 
 
 def test_time_left_of_long_points_is_told_from_the_share_that_is_done():
-    pace = Pace(4)
-    assert pace.remaining(0, 5.0, 0.05) is None, "its start would decide"
-    assert pace.remaining(0, 10.0, 0.5) == pytest.approx(70)
-    alone = [(now, Pace(1).remaining(0, now, now / 80.0)) for now in (8.0, 40.0, 79.0)]
+    pace = RemainingTimeEstimator(4)
+    assert pace.remaining_seconds(0, 5.0, 0.05) is None, "its start would decide"
+    assert pace.remaining_seconds(0, 10.0, 0.5) == pytest.approx(70)
+    alone = [
+        (now, RemainingTimeEstimator(1).remaining_seconds(0, now, now / 80.0)) for now in (8.0, 40.0, 79.0)
+    ]
     assert alone == [(now, pytest.approx(80.0 - now)) for now in (8.0, 40.0, 79.0)]
 
 
 def test_share_that_is_done_of_the_point_in_work_counts_beside_whole_points():
-    pace = Pace(10)
+    pace = RemainingTimeEstimator(10)
     for done in range(1, 6):
-        pace.remaining(done, 10.0 * done)
-    assert pace.remaining(5, 55.0, 0.5) == pytest.approx(45)
+        pace.remaining_seconds(done, 10.0 * done)
+    assert pace.remaining_seconds(5, 55.0, 0.5) == pytest.approx(45)
     assert pace._seconds_per_point(5, 90.0, 0.5) > 10, "the point in work takes longer than those before it"
 
 
 def test_memory_does_not_grow_with_the_points():
-    pace = Pace(10**6)
+    pace = RemainingTimeEstimator(10**6)
     for done in range(1, 10**5):
-        pace.remaining(done, done * 1e-3)
+        pace.remaining_seconds(done, done * 1e-3)
     assert len(pace.records) < 3 * np.log(10**5) / np.log(RECORD_RATIO)
 
 

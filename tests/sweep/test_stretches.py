@@ -15,7 +15,7 @@ import rodsweep as rs
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.ranges import IndexSet, index_count
 from rodsweep.sweep.points.stretches import (
-    SHORTEST_AXIS,
+    MIN_STRETCH_AXIS_VALUES,
     STRETCH_POINTS,
     Stretches,
     StretchResult,
@@ -52,8 +52,8 @@ def test_every_point_is_in_one_stretch_of_neighbours(shape):
 
 def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
     assert stretches_along_longest_axis((5, 9, 9, 2), EVERY).axis == 1
-    assert stretches_along_longest_axis((1, 1, 1, SHORTEST_AXIS), EVERY).axis == 3
-    assert stretches_along_longest_axis((1, SHORTEST_AXIS - 1, 1, 1), EVERY) is None
+    assert stretches_along_longest_axis((1, 1, 1, MIN_STRETCH_AXIS_VALUES), EVERY).axis == 3
+    assert stretches_along_longest_axis((1, MIN_STRETCH_AXIS_VALUES - 1, 1, 1), EVERY) is None
     assert stretches_along_longest_axis((99, 9, 8), ("", "F", "k2")).axis == 1
     assert stretches_along_longest_axis((99, 99), ("", "")) is None
 
@@ -131,7 +131,7 @@ def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     kill(*([process.pid, *ranks.values()] if whole_job else [ranks[1]]))
     process.communicate(timeout=PATIENCE)
     wait_for_end(command.directory)
-    kept = read_view(path).journalled
+    kept = read_view(path).journalled_count
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
     assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
@@ -168,7 +168,7 @@ def test_a_stretch_of_which_a_part_was_written_is_redone_and_its_rest_kept(comma
     record = (journal.stat().st_size - 100) // (2 * STRETCH_POINTS)
     with journal.open("r+b") as file:
         file.truncate(journal.stat().st_size - 20 * record - 7)
-    kept = read_view(path).journalled
+    kept = read_view(path).journalled_count
     assert 2 * STRETCH_POINTS - 28 < kept < 2 * STRETCH_POINTS - 18
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr

@@ -11,7 +11,7 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
@@ -49,7 +49,7 @@ limit_cycle: {start: neighbour, harmonics: 2}
 
 
 def job(task, **keywords):
-    return job_from(config_tree(task, keywords))
+    return job_of_tree(config_tree(task, keywords))
 
 
 @pytest.fixture(scope="module")
@@ -262,7 +262,7 @@ def test_viscosity_is_an_axis_of_times_alone():
     assert ratio.item() == pytest.approx(1000, rel=1e-12)
     other = arm | {"viscosity": ["1.4 mPa s", "2 Pa s"]}
     one, two = (job("thresholds", arm=each, crossings=4) for each in (arm, other))
-    assert not np.array_equal(one.points.identity[0], two.points.identity[0])
+    assert not np.array_equal(one.points.identifying_arrays[0], two.points.identifying_arrays[0])
 
 
 def test_a_parameter_beside_the_arm_is_an_axis_too():

@@ -12,11 +12,11 @@ from pint import UnitRegistry
 from surveyed import only
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import at_points, si_name_of
+from rodsweep.results.layouts.arm import quantities_at_points, si_name_of
 
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 LOADED = SILICONE | {"pressure": "2 kPa"}
@@ -42,13 +42,13 @@ QUICK = {
 
 
 def job(task, **keywords):
-    return job_from(config_tree(task, keywords))
+    return job_of_tree(config_tree(task, keywords))
 
 
 def test_load_becomes_an_axis_of_F():
     """F = 4 (L/a)^2 p/E, k1 = 4 (L/a)^2, and k2 = 3 k1/(7 + 6 nu)."""
     made = job("spectrum", arm=SILICONE | {"pressure": {"start": "0 kPa", "stop": "5 kPa", "num": 6}})
-    columns = made.points.by_name
+    columns = made.points.columns_by_name
     assert made.points.shape == (6, 1, 1, 1)
     assert columns["F"] == pytest.approx(16 * np.arange(6), rel=1e-12)
     assert [columns[name][0] for name in ("k1", "k2")] == pytest.approx([1600, 480], rel=1e-12)
@@ -61,21 +61,21 @@ def test_longer_range_of_a_load_has_the_same_forces():
         job("spectrum", arm=SILICONE | {"pressure": {"start": "0 kPa", "stop": stop, "num": num}})
         for stop, num in (("5 kPa", 51), ("6 kPa", 61))
     )
-    assert np.array_equal(longer.points.by_name["F"][:51], first.points.by_name["F"])
+    assert np.array_equal(longer.points.columns_by_name["F"][:51], first.points.columns_by_name["F"])
 
 
 def test_ratio_of_poisson_becomes_an_axis_of_k2_which_falls_as_it_rises():
     made = job("modes", arm=LOADED | {"poisson": [0.2, 0.4, 0.5]})
     (poisson,) = (values for variable, values in made.quantities if variable.name == "poisson")
     assert made.points.shape == (1, 1, 3, 1)
-    assert made.points.by_name["k2"] == pytest.approx(4800 / (7 + 6 * poisson), rel=1e-12)
+    assert made.points.columns_by_name["k2"] == pytest.approx(4800 / (7 + 6 * poisson), rel=1e-12)
     assert poisson.tolist() == [0.5, 0.4, 0.2]
 
 
 def test_logarithmic_ranges_stay_so():
     made = job("spectrum", arm=SILICONE | {"pressure": rs.logspace("0.1 kPa", "10 kPa", 5)})
-    assert made.config.parameters.axes["F"].logarithmic
-    assert made.points.by_name["F"] == pytest.approx(np.geomspace(1.6, 160, 5), rel=1e-12)
+    assert made.config.parameters.axes["F"].is_logarithmic
+    assert made.points.columns_by_name["F"] == pytest.approx(np.geomspace(1.6, 160, 5), rel=1e-12)
 
 
 def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
@@ -83,7 +83,7 @@ def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
     made = job("limit_cycle", arm=SILICONE | axes, gamma1=[0.5, 1])
     assert made.points.shape == (2, 2, 2, 2)
     assert made.layout.arm_axes == (*axes, "gamma1")
-    quantities = at_points(made.quantities, made.points)
+    quantities = quantities_at_points(made.quantities, made.points)
     for index in range(16):
         at = {name: float(quantities[name][index]) for name in axes}
         arm = SlenderArm(radius=0.005, viscosity=1.4, **at)
@@ -98,11 +98,11 @@ def test_axes_that_move_several_parameters_become_a_grid_over_the_quantities():
 
 def test_parameter_beside_the_arm_replaces_its_own():
     made = job("phase_diagram", **QUICK["phase_diagram"])
-    assert made.config.plane == ("F", "gamma3")
-    assert made.points.by_name["gamma3"].tolist() == [0.002, 0.004]
+    assert made.config.plane_parameters == ("F", "gamma3")
+    assert made.points.columns_by_name["gamma3"].tolist() == [0.002, 0.004]
     cycle = job("limit_cycle", arm=LOADED)
-    assert cycle.points.by_name["gamma1"][0] == SlenderArm(**LOADED).gamma1
-    assert job("limit_cycle", arm=LOADED, gamma1=1).points.by_name["gamma1"][0] == 1
+    assert cycle.points.columns_by_name["gamma1"][0] == SlenderArm(**LOADED).gamma1
+    assert job("limit_cycle", arm=LOADED, gamma1=1).points.columns_by_name["gamma1"][0] == 1
 
 
 def test_other_units_ask_for_the_same():
@@ -169,7 +169,7 @@ def test_huge_grids_are_refused_before_they_are_made():
 
 def yaml(task):
     """The config file that says what the keywords say."""
-    return job(task, **QUICK[task]).text
+    return job(task, **QUICK[task]).config_text
 
 
 @pytest.mark.parametrize("task", only(("spectrum", "branch", "thresholds"), QUICK))
@@ -241,7 +241,7 @@ def test_axes_of_a_force_have_its_si_unit_opposite(command, drawn):
     }
     for name, (largest, number, label) in loads.items():
         load = {name: {"start": 0, "stop": largest, "num": 9}}
-        command.write(f"{name}.yaml", job("spectrum", arm=SILICONE | load, modes=2).text)
+        command.write(f"{name}.yaml", job("spectrum", arm=SILICONE | load, modes=2).config_text)
         assert command("run", f"{name}.yaml").returncode == 0
         draw(read_view(command.directory / f"{name}.h5"), command.directory / "f.png")
         drawn[-1].draw_without_rendering()
@@ -261,7 +261,7 @@ def test_neighbours_follow_each_other_along_a_quantity_of_the_arm():
 
 
 def test_configs_without_an_arm_have_no_trace_of_it():
-    made = job_from(config_tree("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
+    made = job_of_tree(config_tree("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
     assert "arm" not in made.resolved["parameters"]
     assert made.quantities == ()
     assert not any(variable.name.endswith("_si") for variable in made.layout.variables)
@@ -303,8 +303,8 @@ def test_show_tells_thresholds_as_the_load_is_given_and_frequencies_in_hertz(
 @pytest.mark.parametrize(("task", "more"), [("thresholds", {}), ("branch", {"stop": 40}), ("spectrum", {})])
 def test_an_arm_of_python_is_taken_by_sweeps(task, more):
     """Its load is left out where the task finds the load."""
-    loaded = job("spectrum", arm=LOADED).points.by_name
-    made = job(task, arm=rs.Arm(**LOADED, density_difference="1 kg/m^3"), **more).points.by_name
+    loaded = job("spectrum", arm=LOADED).points.columns_by_name
+    made = job(task, arm=rs.Arm(**LOADED, density_difference="1 kg/m^3"), **more).points.columns_by_name
     assert ("F" in made) == (task == "spectrum")
     for name in loaded.keys() & made.keys():
         assert made[name] == pytest.approx(loaded[name], rel=1e-14)
@@ -313,8 +313,8 @@ def test_an_arm_of_python_is_taken_by_sweeps(task, more):
 def test_quantities_of_pint_keep_their_units():
     units = UnitRegistry()
     lengths, viscosity = units.Quantity([10, 11], "cm"), units.Quantity(1.4, "Pa*s")
-    made = job("spectrum", arm=LOADED | {"length": lengths, "viscosity": viscosity}).points.by_name
-    told = job("spectrum", arm=LOADED | {"length": ["10 cm", "11 cm"]}).points.by_name
+    made = job("spectrum", arm=LOADED | {"length": lengths, "viscosity": viscosity}).points.columns_by_name
+    told = job("spectrum", arm=LOADED | {"length": ["10 cm", "11 cm"]}).points.columns_by_name
     assert all(np.array_equal(made[name], told[name]) for name in told)
     assert rs.Arm(**LOADED | {"length": units.Quantity(10, "cm")}).k1 == pytest.approx(1600, rel=1e-12)
     with pytest.raises(rs.InputError, match="length = '10 kilogram' is not measured in m"):
@@ -337,6 +337,6 @@ def test_the_curves_of_a_diagram_of_arms_are_part_of_its_cost():
                 },
                 "phase_diagram": {"curves": curves},
             }
-            cost[taper, curves] = job_from(tree).task.cost().seconds
+            cost[taper, curves] = job_of_tree(tree).task.cost().seconds
     assert cost[1.0, True] == cost[1.0, False]
     assert cost[0.5, True] > cost[0.5, False] + 1

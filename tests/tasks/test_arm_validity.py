@@ -8,7 +8,7 @@ import pytest
 from surveyed import few
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import job_from
+from rodsweep.api.keyword_arguments import job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import (
     Validity,
@@ -92,7 +92,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
 
 
 def test_a_search_that_failed_is_no_arm_at_rest():
-    made = job_from(
+    made = job_of_tree(
         {
             "task": "thresholds",
             "parameters": {"arm": SILICONE | {"length": "10 cm"}},
@@ -104,7 +104,9 @@ def test_a_search_that_failed_is_no_arm_at_rest():
     assert record["model_applies"] == Validity.applies
     judge = ArmValidity(made.config, made.points, solver.statuses)
     failed = next(status for status in solver.statuses if status.name == "failed")
-    assert judge.of(record | {"status": int(failed)}, 0)["model_applies"] == VALIDITY_NOT_KNOWN
+    assert (
+        judge.variables_of_points(record | {"status": int(failed)}, 0)["model_applies"] == VALIDITY_NOT_KNOWN
+    )
 
 
 def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():

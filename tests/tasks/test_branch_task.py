@@ -14,7 +14,12 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.floquet import min_unstable_multipliers
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import RodBranches, intersection, stability_of_pieces, union
+from rodsweep.post.branch_curves import (
+    RodBranches,
+    intersection_of_ranges,
+    stability_of_pieces,
+    union_of_ranges,
+)
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
 from rodsweep.post.summary import branch as summary
@@ -24,7 +29,7 @@ from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.tasks.branch import branch_values
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 CONFIG = (
     "task: branch\nparameters: {{k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4}}\n"
@@ -54,7 +59,7 @@ def test_show_of_many_rods_names_those_with_two_stable_states(command):
 
 
 def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cycles(command):
-    """SummaryLines once each: a symmetry breaking lies on both branches that meet there."""
+    """Each is told once: a symmetry breaking lies on both branches that meet there."""
     shown(command, CONFIG.format(k1="[100, 150]", stop=80))
     view = read_view(command.directory / "c.h5")
     (branch,) = RodBranches(view, 1).curves
@@ -156,9 +161,9 @@ def test_a_cycle_is_unstable_if_its_largest_multiplier_lies_outside_for_certain(
 
 
 def test_ranges_are_joined_and_intersected():
-    assert union([(3, 4), (0, 1), (1, 2)]) == [(0, 2), (3, 4)]
-    assert intersection([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
-    assert intersection([(0, 1)], [(1, 2)]) == []
+    assert union_of_ranges([(3, 4), (0, 1), (1, 2)]) == [(0, 2), (3, 4)]
+    assert intersection_of_ranges([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
+    assert intersection_of_ranges([(0, 1)], [(1, 2)]) == []
 
 
 @pytest.mark.parametrize("suffix", few(["svg", "png", "pdf"], 1))
@@ -289,7 +294,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
         f"task: branch\nparameters: {{{others}, k2: 1.0e4, gamma3: 1.0e-4}}\n"
         f"branch: {{along: {along}, start: 50, stop: 160}}\n"
     )
-    names = {variable.name for variable in make_job(config, ()).layout.variables}
+    names = {variable.name for variable in job_of_file(config, ()).layout.variables}
     rod = (
         Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
         if along == "F"

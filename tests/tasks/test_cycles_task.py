@@ -26,7 +26,7 @@ from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
 from rodsweep.sweep.points.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 GRID = {"F": "[1, 2]", "k1": "100", "k2": "[10, 20]", "gamma3": "0.5", "gamma1": "[0.5, 1]"}
 
@@ -40,7 +40,7 @@ def config(options="", more="", **axes):
 def job_of(directory, text, *overrides):
     path = directory / "c.yaml"
     path.write_text(text)
-    return make_job(path, overrides)
+    return job_of_file(path, overrides)
 
 
 # --- what a config may say --------------------------------------------------------------------------------
@@ -166,7 +166,7 @@ REFUSED = [
 def test_neighbours_follow_each_other_along_the_longest_axis(tmp_path):
     for axes, along in (({}, "F"), ({"k2": "[1, 2, 3]"}, "k2"), ({"gamma1": "[1, 2, 3]"}, "gamma1")):
         job = job_of(tmp_path, config(NEIGHBOUR, **axes))
-        assert job.config.along == along
+        assert job.config.chain_parameter == along
         assert job.task.chains.axis == job.points.names.index(along)
 
 
@@ -277,7 +277,7 @@ def filled_file(directory, text=None):
     attributes = {"title": "t", "task": job.config.task}
     plan = Plan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
     store = Store(directory / "c.h5", plan)
-    journal = Journal(store.journals, 0, job.layout, plan.fingerprint)
+    journal = Journal(store.journal_directory, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):
         outcome = nothing() if index == job.points.count - 1 else cycle(index)
         journal.append(index, job.task.record(job.points.values(index), outcome))
@@ -357,7 +357,7 @@ def test_point_list_opens_with_its_parameters_as_coordinates(tmp_path):
         assert data.shape_x.dims == ("point", "shape", "u")
         assert {"F", "k1", "k2", "gamma3", "gamma1", "point"} <= set(data.coords)
         assert data.gamma1.values.tolist() == [0.5, 1]
-    assert read_view(path).axes["gamma1"].tolist() == [0.5, 1]
+    assert read_view(path).parameter_values["gamma1"].tolist() == [0.5, 1]
 
 
 def test_nothing_is_stored_over_a_cycle_that_was_not_asked_for(tmp_path):
@@ -394,9 +394,10 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     file = filled_file(tmp_path)
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import print_job_check\nfrom rodsweep.tasks.running.job import make_job\n"
+        "from rodsweep.cli.checking import print_job_check\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
-        "print_job_check(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
+        "print_job_check(job_of_file(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "c.yaml"), str(file)]
@@ -693,7 +694,7 @@ def test_resume_in_the_middle_of_a_chain_gives_the_same_file(command, ranks, dir
     killed = run_fake(command, *words, DIE_AT="4 20", ranks=ranks)
     assert killed.returncode not in (0, 1, 2)
     wait_for_end(command.directory)
-    journalled = read_view(command.directory / "c.h5").journalled
+    journalled = read_view(command.directory / "c.h5").journalled_count
     assert 3 <= journalled < 27
     before = solved(command)
     assert journalled in range(len(before) - max(ranks, 1), len(before) + 1)

@@ -238,7 +238,7 @@ def test_unit_that_a_stop_ended_is_wanted_again():
     pool = DependentItemQueue(items, {}, 2)
     first = pool.next_chunk(0)
     assert pool.next_chunk(1) != first
-    pool.add_report(0, RankReport(returned=first))
+    pool.add_report(0, RankReport(returned_items=first))
     assert pool.next_chunk(0) == first
     pool.stop()
     assert pool.next_chunk(1) == NO_WORK_LEFT

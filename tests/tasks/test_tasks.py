@@ -29,7 +29,7 @@ from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
 from rodsweep.tasks.diagram.records import cycle_curve_record
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 
 CONFIGS = {
@@ -59,7 +59,7 @@ TASKS = list(CONFIGS)
 def job_of(tmp_path, task, *overrides):
     path = tmp_path / "c.yaml"
     path.write_text(f"task: {task}\n{CONFIGS[task]}\n")
-    return make_job(path, overrides)
+    return job_of_file(path, overrides)
 
 
 def plan_of(job):
@@ -67,7 +67,7 @@ def plan_of(job):
         job.points,
         job.layout,
         job.task.coordinates(),
-        job.task.constants,
+        job.task.config_variables,
         job.resolved,
         {"title": "t", "task": job.config.task},
         ((0, "ok"), (5, "failed")),
@@ -151,7 +151,7 @@ def filled_file(tmp_path, task):
     """The file of a small run in which every point has a record."""
     job = job_of(tmp_path, task)
     store = Store(tmp_path / "c.h5", plan_of(job))
-    journal = Journal(store.journals, 0, job.layout, store.plan.fingerprint)
+    journal = Journal(store.journal_directory, 0, job.layout, store.plan.fingerprint)
     for index in range(job.points.count):
         journal.append(index, record_of(task, index))
     journal.close()
@@ -250,7 +250,7 @@ def test_transient_growth_is_stored_only_where_it_is_computed(tmp_path):
 def test_point_list_of_rods_without_a_force_opens_with_its_coordinates(tmp_path):
     (tmp_path / "p.csv").write_text("k2,k1,gamma3\n1,9,0\n2,inf,0.5\n")
     (tmp_path / "c.yaml").write_text("task: thresholds\nparameters: {points: p.csv}\n")
-    Store(tmp_path / "c.h5", plan_of(make_job(tmp_path / "c.yaml", ()))).close()
+    Store(tmp_path / "c.h5", plan_of(job_of_file(tmp_path / "c.yaml", ()))).close()
     with xarray.open_dataset(tmp_path / "c.h5", engine="h5netcdf") as data:
         assert data.crossing_F.dims == ("point", "crossing")
         assert set(data.coords) == {"point", "crossing", "k1", "k2", "gamma3"}
@@ -348,10 +348,12 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     """For any task: they must work on a login node."""
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import print_job_check\nfrom rodsweep.tasks.running.job import make_job\n"
+        "from rodsweep.cli.checking import print_job_check\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "for place in map(Path, sys.argv[1:]):\n"
-        "    print_job_check(make_job(place / 'c.yaml', ()))\n    show_summary(read_view(place / 'c.h5'))\n"
+        "    print_job_check(job_of_file(place / 'c.yaml', ()))\n"
+        "    show_summary(read_view(place / 'c.h5'))\n"
         "    print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     for task in TASKS:
@@ -392,7 +394,7 @@ def test_killed_search_for_thresholds_is_continued_to_the_same_file(command):
         "c.yaml", "task: thresholds\nparameters: {k1: {start: 10, stop: 17, num: 8}, k2: [1, 2], gamma3: 0}\n"
     )
     assert run_fake(command, DIE_AT="13").returncode == 9
-    assert read_view(command.directory / "c.h5").journalled == 6
+    assert read_view(command.directory / "c.h5").journalled_count == 6
     again = run_fake(command)
     assert "10 of 16 points to do, 6 kept" in again.stdout, again.stderr
     assert "14 ok, 2 list_full" in again.stdout

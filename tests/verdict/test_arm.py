@@ -17,7 +17,7 @@ from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind, Crossing
 from rodsweep.verdict import flutter
-from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.planes import PlaneOfMotion, Planes
 from rodsweep.verdict.sentences import verdict_sentences
 from rodsweep.verdict.validity import Assessment
@@ -199,7 +199,7 @@ def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
 def test_silicone_arm_is_just_below_flutter():
     """A filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it; frequencies as 1/viscosity."""
     rod = arm(viscosity=THICK)
-    flutter = rod.flutter.force(ChangeKind.hopf)
+    flutter = rod.flutter.first_forces(ChangeKind.hopf)
     assert rod.F < flutter.low < flutter.high < 37.695
     assert flutter.for_every_drag
     verdict = rod.report().verdict
@@ -209,9 +209,9 @@ def test_silicone_arm_is_just_below_flutter():
 
 def test_frequency_follows_from_tau2():
     rod = arm()
-    for drag, found in zip(rod.drags, rod.flutter.forces, strict=True):
-        rate = found.first(ChangeKind.hopf).frequency
-        assert found.frequency(ChangeKind.hopf) == pytest.approx(
+    for drag, found in zip(rod.drags, rod.flutter.by_drag, strict=True):
+        rate = found.first_threshold(ChangeKind.hopf).frequency
+        assert found.first_frequency(ChangeKind.hopf) == pytest.approx(
             abs(rate) / (2 * math.pi * rod.tau2_with(drag))
         )
 
@@ -222,7 +222,7 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     from rodsweep.verdict.flutter import SEARCH_REQUEST
 
     rod = arm()
-    flutter = rod.flutter.force(ChangeKind.hopf)
+    flutter = rod.flutter.first_forces(ChangeKind.hopf)
     all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):
@@ -287,13 +287,13 @@ def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
     crossings = tuple(Crossing(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
     transitions = Transitions(crossings=crossings, proved=True)
-    return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
+    return ThresholdsWithDrag(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
 
 
 def verdict(rod, *forces):
     """The verdict on an arm with changes that are given for each drag."""
-    plane = PlaneOfMotion(rod, FlutterRange(forces))
-    return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.flutter_range))
+    plane = PlaneOfMotion(rod, ThresholdsOverDrags(forces))
+    return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.thresholds))
 
 
 @pytest.mark.parametrize(
@@ -366,7 +366,9 @@ def test_arm_without_flutter_and_failed_search_are_told():
     assert none == [
         "The arm does not flutter up to 12.5 kPa, where the search ends: it stays straight at 2 kPa."
     ]
-    failed = FlutterForces(tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.failed, 200.0, "no box"))
+    failed = ThresholdsWithDrag(
+        tau2=1.0, thresholds=empty_thresholds(ThresholdStatus.failed, 200.0, "no box")
+    )
     assert verdict(arm(), failed) == ["For some drags the thresholds could not be found: no box."]
 
 
@@ -378,13 +380,13 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
     whole = found(1.0, (21.0, ChangeKind.hopf, 2), (30.0, ChangeKind.restabilization, 0))
 
     def forces(arm, drag, end=200.0):
-        return whole if drag == arm.drags[0] else FlutterForces(tau2=2.0, thresholds=early)
+        return whole if drag == arm.drags[0] else ThresholdsWithDrag(tau2=2.0, thresholds=early)
 
-    monkeypatch.setattr(flutter, "flutter_forces", forces)
-    searched = flutter.flutter_range(arm(viscosity=1e3))
-    assert len(searched.forces) > 1
+    monkeypatch.setattr(flutter, "thresholds_with_drag", forces)
+    searched = flutter.thresholds_over_drags(arm(viscosity=1e3))
+    assert len(searched.by_drag) > 1
     assert searched.end == 25.0
-    told = " ".join(verdict(arm(viscosity=1e3), *searched.forces))
+    told = " ".join(verdict(arm(viscosity=1e3), *searched.by_drag))
     assert "whether the arm beats at 2 kPa is not known: changes were sought up to 1.56 kPa." in told
     assert "does not become stable again up to 1.56 kPa, where the search ends" in told
 

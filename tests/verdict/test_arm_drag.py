@@ -10,7 +10,7 @@ from contents import content, same
 from matplotlib.collections import PolyCollection
 
 import rodsweep as rs
-from rodsweep.api.keyword_arguments import config_tree, job_from
+from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm
@@ -24,7 +24,7 @@ from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.points import rod_numbers
 from rodsweep.verdict.flutter import ChangeKind
-from rodsweep.verdict.relative import first_flutter, first_hopf_force
+from rodsweep.verdict.relative import first_flutter_force, first_hopf_force
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
 QUICK = {"accuracy": 1e-3, "harmonics": 2}
@@ -48,11 +48,13 @@ def test_thresholds_over_the_drags_are_those_of_the_verdict():
     arm = rs.Arm(**SILICONE)
     assert data.drag.attrs["flag_meanings"].split() == list(DRAGS)
     assert data.drag.values.tolist() == [0, 1, 2, 3, 4]
-    for drag, found in zip(DRAGS, arm.flutter.forces, strict=True):
+    for drag, found in zip(DRAGS, arm.flutter.by_drag, strict=True):
         here = data.sel(drag=DRAGS.index(drag))
-        force = found.force(ChangeKind.hopf) * arm.pressure_scale
+        force = found.first_force(ChangeKind.hopf) * arm.pressure_scale
         assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
-        assert here.frequency_hopf_hz.item() == pytest.approx(found.frequency(ChangeKind.hopf), rel=1e-9)
+        assert here.frequency_hopf_hz.item() == pytest.approx(
+            found.first_frequency(ChangeKind.hopf), rel=1e-9
+        )
         assert here.tau2.item() == arm.replace(drag=drag).tau2
 
 
@@ -103,9 +105,11 @@ def test_a_relative_force_is_told_as_a_force():
 def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():
     arm = {"length": "15 cm", "width": "6 mm", "height": "8 mm", "young": "60 kPa", "viscosity": "40 Pa s"}
     flat, tall = SlenderArm(**arm), SlenderArm(**arm | {"width": "8 mm", "height": "6 mm"})
-    assert first_flutter(flat) * flat.force_scale == pytest.approx(first_flutter(tall) * tall.force_scale)
+    assert first_flutter_force(flat) * flat.force_scale == pytest.approx(
+        first_flutter_force(tall) * tall.force_scale
+    )
     own = Rod(F=0.0, k1=tall.k1, k2=tall.k2, gamma3=tall.gamma3)
-    assert first_flutter(tall) == first_hopf_force(own)
+    assert first_flutter_force(tall) == first_hopf_force(own)
     data = rs.sweep("spectrum", arm=arm | {"pressure": "1.2 of flutter"}, modes=2)
     known = rs.Arm(**arm, pressure="1.2 of flutter").loaded
     assert data.pressure.item() == pytest.approx(known.si.pressure, rel=1e-9)
@@ -130,7 +134,7 @@ def test_a_relative_load_is_one_of_the_arm_as_it_is_built(kind):
     arm = {name: value for name, value in (SILICONE | VARIED[kind]).items() if value is not None}
     given = arm | {"pressure": ["0.9999 of flutter", "1.0001 of flutter"]}
     data = rs.sweep("modes", arm=given, modes=1, nodes=5)
-    flutter = rs.Arm(**arm).flutter.forces[0].force(ChangeKind.hopf)
+    flutter = rs.Arm(**arm).flutter.by_drag[0].first_force(ChangeKind.hopf)
     assert data.F.values.ravel() == pytest.approx([0.9999 * flutter, 1.0001 * flutter], rel=2e-6)
     below, above = data.growth_rate.values.ravel()
     assert below < 0 < above
@@ -172,7 +176,7 @@ def test_an_arm_without_flutter_is_a_point_with_a_status():
         section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(36.0 if arm.k1 == stiff else np.inf)
     )
     assert grid.coverage is not None and grid.coverage.tolist() == [NO_FLUTTER, 0]
-    assert np.isnan(grid.by_name["F"][0])
+    assert np.isnan(grid.columns_by_name["F"][0])
     with pytest.raises(ValueError, match="relative to flutter, but with the likeliest drag no arm flutters"):
         grid_of_arms(section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(np.inf))
 
@@ -255,7 +259,7 @@ def test_a_rod_of_several_points_is_solved_once(task):
 def test_points_of_different_rods_are_told_apart():
     lengths = SILICONE | {"length": ["10 cm", "14 cm"]}
     points = [
-        job_from(config_tree("thresholds", {"arm": arm})).points
+        job_of_tree(config_tree("thresholds", {"arm": arm})).points
         for arm in (lengths | {"viscosity": ["20 Pa s", "30 Pa s"]}, lengths)
     ]
     assert np.diff(rod_numbers(points[0])).astype(bool).tolist() == [False, True, False]
@@ -307,7 +311,8 @@ def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
     (tmp_path / "a.yaml").write_text(tube, encoding="utf-8")
     code = (
         "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import print_job_check\n"
-        "from rodsweep.tasks.running.job import make_job\nprint_job_check(make_job(Path(sys.argv[1]), ()))\n"
+        "from rodsweep.tasks.running.job import job_of_file\n"
+        "print_job_check(job_of_file(Path(sys.argv[1]), ()))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]

@@ -35,7 +35,7 @@ number of rows."""
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WholeTable:
-    """All numbers and lists of an answer, as text for a terminal and as HTML for a notebook."""
+    """All numbers and lists of an answer. text: for a terminal. html: for a notebook."""
 
     text: str
     html: str
@@ -116,9 +116,9 @@ class Answer:
             raise AttributeError(name)
         tables = self._tables
         if name in self.lists:
-            columns = tables.items(name)
+            columns = tables.list_columns(name)
             return frame_of(columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None)
-        for variable in tables.contents.of_points:
+        for variable in tables.contents.point_variables:
             if variable.name == name:
                 return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
         for each, variables in tables.contents.lists.items():
@@ -129,7 +129,7 @@ class Answer:
         if name in self.data.variables:  # a coordinate, or a number of the whole file
             values = self.data[name].values
             return values if values.ndim else values.item()
-        raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")
+        raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._attribute_names())}")
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
         """Values of a variable or a coordinate of a list, with one entry per item of the list.
@@ -137,7 +137,7 @@ class Answer:
         table: name of the list. name: name of the variable or coordinate.
         """
         dimensions = self._tables.contents.dimensions(table)
-        (column,) = (column for column in self._tables.items(table) if column.name == name)
+        (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
         lacks_counts = column.values.dtype.kind in "iu" and column.absent.any() and not column.words
@@ -147,13 +147,13 @@ class Answer:
         inner = [self.data.sizes[each] for each in dimensions[1:]]
         return values[:: prod(inner)] if name == dimensions[0] else values.reshape(-1, *inner)
 
-    def _names(self) -> list[str]:
+    def _attribute_names(self) -> list[str]:
         """Names of all variables and lists, for messages and completion."""
         extra = ["eigenvalues"] if EIGENVALUE[0] in self.data else []
         return [*map(str, self.data.data_vars), *self.lists, *extra]
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *map(str, self.data.variables), *self._names()})
+        return sorted({*super().__dir__(), *map(str, self.data.variables), *self._attribute_names()})
 
     def table(self) -> "WholeTable":
         """All numbers with units and meanings, and the lists, as a text in a terminal and as a table in a
@@ -173,11 +173,13 @@ class Answer:
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
-        own = [c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.given]
+        own = [
+            c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.is_input
+        ]
         own.sort(key=_is_dimensionless)
         lists = {}
         for name in self.lists:
-            number, *others = tables.items(name)
+            number, *others = tables.list_columns(name)
             lists[name] = (number, *sorted(others, key=_is_dimensionless))
         if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
@@ -190,7 +192,7 @@ class Answer:
             heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
             numbers=tuple(c for c in own if not c.absent[0]),
-            absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
+            absent_names=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
             row_counts={

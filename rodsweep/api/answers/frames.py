@@ -39,4 +39,4 @@ def series_of(column: Column) -> Any:
 
 def column_texts(column: Column) -> list[str | None]:
     """Values of a column as texts; None stands for a missing value."""
-    return [text or None for text in column.text()]
+    return [text or None for text in column.texts()]

@@ -97,7 +97,9 @@ def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> Non
 
 @dataclass(frozen=True, slots=True)
 class SolvedShapes:
-    """Function that adds the shapes of cycles to a view. Each set of cycles is solved once and cached."""
+    """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
+    function that computes the shapes.
+    """
 
     solve: Shapes = with_shapes
     solved: dict[tuple[int, ...], View] = field(default_factory=dict)
@@ -114,8 +116,9 @@ class SolvedShapes:
 @dataclass(frozen=True, slots=True)
 class Picture:
     """A figure. Notebooks display the figure; `save` writes a file in any format of `rodsweep plot`.
-
     `figure()` returns the matplotlib figure, for adding data to its panels.
+
+    views: results in the figure. choices: keywords of `draw` that choose its content and look.
     """
 
     views: Sequence[View] = field(repr=False)

@@ -37,13 +37,14 @@ class PrintedAnswer:
     """Everything that the text or HTML of an answer contains."""
 
     rod: OneRod
+    """Numbers and lists of the answer, with the digits to print."""
     heading: tuple[str, ...]
     """Lines with the result in a sentence, the rod, and the meaning of the status."""
     headline: Headline
     """Main numbers and main list of the task."""
     numbers: tuple[Column, ...]
     """Variables with a single value, as columns with one row."""
-    absent: tuple[str, ...]
+    absent_names: tuple[str, ...]
     """Names of the variables that have no value for this rod."""
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
@@ -60,8 +61,8 @@ class PrintedAnswer:
             yield "; ".join(
                 f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.row_counts.items()
             )
-        if self.absent:
-            yield f"none: {', '.join(self.absent)}"
+        if self.absent_names:
+            yield f"none: {', '.join(self.absent_names)}"
 
 
 def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
@@ -102,7 +103,9 @@ def brief_html(printed: PrintedAnswer) -> str:
 
 def whole_text(printed: PrintedAnswer) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, and the lists."""
-    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers]
+    rows = [
+        (c.name, printed.rod.point_texts.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers
+    ]
     parts = [
         "\n".join(_folded_heading(printed)),
         "\n".join(["numbers", *rows_with_prose(rows)]) if rows else "",
@@ -110,7 +113,7 @@ def whole_text(printed: PrintedAnswer) -> str:
     for name, columns in printed.lists.items():
         lines = [wrap_cell_text(_list_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
-            digits = printed.rod.lists[name]
+            digits = printed.rod.list_texts[name]
             kept = [column for column in columns if not column.absent.all()]
             cells = [column_cells((c.name, _unit_text(c)), digits.texts(c.name)) for c in kept]
             for number, block in enumerate(table_blocks(cells)):
@@ -121,11 +124,13 @@ def whole_text(printed: PrintedAnswer) -> str:
 
 def whole_html(printed: PrintedAnswer) -> str:
     """Long HTML of an answer, with the content of `whole_text`."""
-    rows = [(c.name, printed.rod.points.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers]
+    rows = [
+        (c.name, printed.rod.point_texts.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers
+    ]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
         parts.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
-        digits = printed.rod.lists[name]
+        digits = printed.rod.list_texts[name]
         heads = [tuple(column.name for column in columns), tuple(map(_unit_text, columns))]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
         parts.append(_html_table(heads, rows_of) if rows_of else "")
@@ -153,7 +158,7 @@ def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     for name in printed.headline.numbers:
         column = printed.rod.column(name)
         if column is not None:
-            ((value, error),) = printed.rod.points.pairs(column.name)
+            ((value, error),) = printed.rod.point_texts.value_and_error_texts(column.name)
             pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", _unit_text(column)))
     return pairs
 
@@ -177,7 +182,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     room: maximum number of rows in a column. A column consists of the cells name, unit, and values; errors
     form a separate column. Columns that would make a line longer than WIDTH are omitted.
     """
-    digits = printed.rod.lists.get(printed.headline.table)
+    digits = printed.rod.list_texts.get(printed.headline.table)
     if digits is None:
         return [], 0
     names = [printed.rod.preferred_name(digits, name) for name in printed.headline.columns]
@@ -187,7 +192,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     found: list[list[str]] = []
     width = -len(COLUMN_GAP)
     for column in columns if count else ():
-        values, errors = zip(*digits.pairs(column.name)[:room], strict=True)
+        values, errors = zip(*digits.value_and_error_texts(column.name)[:room], strict=True)
         added = [column_cells((column.name, _unit_text(column)), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)

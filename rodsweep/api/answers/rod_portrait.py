@@ -20,7 +20,7 @@ from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
 from ..dataset import named_file_path, view_of_dataset
 from ..keyword_arguments import plain_keyword
-from ..solving import solve_here
+from ..solving import solve_in_process
 from .answer import Answer
 
 SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'
@@ -120,8 +120,8 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
     own = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
 
     def solve(job: Job) -> View:
-        solved = solve_here(job, progress=progress)
-        answers[job.text] = Answer(rod, solved, solved.messages[0])
+        solved = solve_in_process(job, progress=progress)
+        answers[job.config_text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.name))
 
     results = rod_results(replace(request, **own), solve)

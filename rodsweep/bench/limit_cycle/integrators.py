@@ -24,7 +24,7 @@ tolerances up to TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
-    """Task of an integrator. z: initial state, (unknowns,). duration: in tau2."""
+    """Task of an integrator. beam: rod on its mesh. z: initial state, (unknowns,). duration: in tau2."""
 
     beam: Beam
     z: Array
@@ -38,25 +38,26 @@ fails."""
 
 @dataclass(frozen=True, slots=True)
 class IntegratorFamily:
-    """An integrator with its tolerances, from the loosest.
+    """An integrator with its name in the tables, and its tolerances, from the loosest.
 
-    tolerances: tolerances of the runs that follow a cycle. waiting: tolerances of the runs until the motion
-    is periodic; empty if the integrator has no such runs.
+    integrate: the integrator. tolerances: tolerances of the runs that follow a cycle. waiting_tolerances:
+    tolerances of the runs until the motion is periodic; empty if the integrator has no such runs.
     """
 
     name: str
     integrate: Integration
     tolerances: tuple[float, ...]
-    waiting: tuple[float, ...] = ()
+    waiting_tolerances: tuple[float, ...] = ()
 
     def following_contenders(self) -> list[Contender]:
-        """Contenders of the race FOLLOWING, which follow a cycle in time: one for each of `tolerances`."""
+        """Contenders of the race FOLLOWING_RACE, which follow a cycle in time: one for each of
+        `tolerances`."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
     def settling_contenders(self) -> list[Contender]:
-        """Contenders of the race WAITING, which integrate until the motion is periodic: one for each of
-        `waiting`."""
-        return [self._at(tolerance) for tolerance in self.waiting]
+        """Contenders of the race WAITING_RACE, which integrate until the motion is periodic: one for each of
+        `waiting_tolerances`."""
+        return [self._at(tolerance) for tolerance in self.waiting_tolerances]
 
     def _at(self, tolerance: float) -> Contender:
         run = partial(self.integrate, tolerance)

@@ -37,16 +37,16 @@ WAITING_PERIODS = 15
 class SettlingMethod:
     """A method that reaches the limit cycle from a given start.
 
-    force: F. way: name of the method. setting: tolerance. returns: number of returns of the tip until the
-    motion is periodic; nan if the motion does not become periodic. error: relative error of period and
-    largest tip y. run: the timed function. times: duration of the complete method divided by the duration of
-    `run`. failed: looser tolerances at which the integration failed.
+    force: F. name: name of the method. setting: tolerance. return_count: number of returns of the tip until
+    the motion is periodic; nan if the motion does not become periodic. error: relative error of period and
+    largest tip y. run: the timed function. time_factor: duration of the complete method divided by the
+    duration of `run`. failed: looser tolerances at which the integration failed.
     """
 
     force: float
-    way: str
+    name: str
     setting: str
-    returns: float
+    return_count: float
     error: float
     run: Callable[[], object]
     time_factor: float = 1.0
@@ -55,16 +55,16 @@ class SettlingMethod:
     @property
     def reaches_cycle(self) -> bool:
         """Whether the method reaches the cycle."""
-        return isfinite(self.returns)
+        return isfinite(self.return_count)
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
         """Values of a row of `settling_table`, by name. timed: times of `run`."""
         about = "about " if self.time_factor != 1 else ""
         return {
             "force": self.force,
-            "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
+            "way": self.name + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
             "tolerance": self.setting,
-            "returns": f"{about}{self.returns:.0f}"
+            "returns": f"{about}{self.return_count:.0f}"
             if self.reaches_cycle
             else f"not reached in {WAITING_PERIODS} periods",
             "milliseconds": f"{about}{1e3 * self.time_factor * timed.median:.0f}"
@@ -76,8 +76,8 @@ class SettlingMethod:
 
 def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
-    methods. at: reference cycle at F = 50. every: contenders of the race WAITING. rounds: number of timed
-    rounds.
+    methods. at: reference cycle at F = 50. every: contenders of the race WAITING_RACE. rounds: number of
+    timed rounds.
     """
     waiting = {
         method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()

@@ -1,7 +1,6 @@
-"""The limit-cycle benchmark: a cycle followed in time, reached by integration, and solved by collocation.
-
-The contenders of the races FOLLOWING and WAITING integrate an `IntegrationTask` and return a `Trajectory`.
-The settings of each method are tolerances, from the loosest.
+"""The limit-cycle benchmark: a cycle followed in time, reached by integration, and solved by collocation. The
+contenders of FOLLOWING_RACE and WAITING_RACE integrate an `IntegrationTask` and return a `Trajectory`. The
+settings of each method are tolerances, from the loosest.
 """
 
 from collections.abc import Sequence
@@ -72,7 +71,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
 
 
 def introduction(rounds: int) -> str:
-    """Description of the race FOLLOWING for the report. rounds: number of timed rounds."""
+    """Description of the race FOLLOWING_RACE for the report. rounds: number of timed rounds."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
         f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
@@ -86,7 +85,7 @@ def introduction(rounds: int) -> str:
 
 
 def work_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race FOLLOWING: steps, time and errors of every method at every tolerance."""
+    """Table of the race FOLLOWING_RACE: steps, time and errors of every method at every tolerance."""
     nothing = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
     return markdown_table(
         "method | tolerance | steps a period | ms a period | error of period | error of amplitude",
@@ -101,7 +100,7 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 
 
 def time_at_error_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race FOLLOWING at equal error: time of every method, interpolated at the error
+    """Table of the race FOLLOWING_RACE at equal error: time of every method, interpolated at the error
     TARGET_ERROR."""
     at = {}
     for (method,), own in grouped_by_fields(measurements, "method").items():

@@ -70,7 +70,7 @@ FAILED_COLUMNS = dict.fromkeys(
 class AccurateCycle:
     """Reference cycle on a mesh with errors of REFERENCE_ACCURACY.
 
-    period: in tau2. tip_y_max: largest y of the tip in L.
+    orbit: the cycle. period: in tau2. tip_y_max: largest y of the tip in L.
     """
 
     orbit: Orbit
@@ -143,7 +143,7 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     return cycle
 
 
-def solve_from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
+def solve_without_neighbour(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """The cycle of a rod to the relative accuracy `accuracy`, without a neighbour. start: option `start`."""
     return require_cycle(
         solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
@@ -165,7 +165,7 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
         for axis in SWEPT_PARAMETERS
     ]
     cold = [
-        Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_from_cold, start, accuracy))
+        Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_without_neighbour, start, accuracy))
         for name, start in COLD_STARTS.items()
     ]
     return warm + cold

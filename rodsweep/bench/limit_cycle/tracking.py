@@ -157,7 +157,9 @@ class TipReturns:
 
 
 def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
-    """All returns of a run."""
+    """Returns of the tip in a run, see `TipReturns`: time and state by Newton's method with small steps,
+    largest y from the run repeated with small steps.
+    """
     row = tip_angle_row(beam)
     y = beam.tip_coordinates(run.states)[1]
     angle = run.states @ row

@@ -47,7 +47,7 @@ ARM_RODS = {
 ELEMENT_ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements on which eigensolvers are run."""
 EDGE_ACCURACY = 1e-2
-"""Accuracy for which the edges of the elements are chosen; the orders in ORDERS make the mesh more
+"""Accuracy for which the edges of the elements are chosen; the orders in ELEMENT_ORDERS make the mesh more
 accurate."""
 TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""

@@ -10,7 +10,7 @@ from ...results.file.view import read_view
 from ..study import Measurement, markdown_table
 from .launch import CONFIG_NAME, RESULT, SOLVED, CommandRun, SweepCase
 
-FOLLOWED_CONFIG = """
+FOLLOWING_SWEEP_CONFIG = """
 task: spectrum
 parameters:
   F: {{start: 0, stop: {F_max}, num: {0}}}
@@ -72,7 +72,7 @@ def followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick: bool) -
         for method, shape in ((FOLLOWED_METHOD, axis.shape), (ALONE_METHOD, axis.smaller)):
             directory = folder / f"{method} {axis.name}".replace(" ", "_")
             directory.mkdir()
-            text = FOLLOWED_CONFIG.format(
+            text = FOLLOWING_SWEEP_CONFIG.format(
                 *shape, str(method == FOLLOWED_METHOD).lower(), F_max=axis.F_max, taper=axis.taper
             )
             (directory / CONFIG_NAME).write_text(text)

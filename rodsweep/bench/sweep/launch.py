@@ -55,13 +55,13 @@ class SweepCase:
     """A sweep to be run.
 
     points: number of points. directories: directories with a config. If there are several, each config has a
-    part of the points, and one command per directory runs, all at the same time. kind: kind of solver.
+    part of the points, and one command per directory runs, all at the same time. solver_kind: kind of solver.
     """
 
     name: str
     points: int
     directories: tuple[Path, ...]
-    kind: str
+    solver_kind: str
 
 
 def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
@@ -145,12 +145,12 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     others = _other_process_seconds()
     began = time.monotonic()
     words = [*launcher_words(ranks), *command]
-    started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
-    said = [_printed_seconds(process, case.kind) for process in started]
+    started = [_start_command(words, case.solver_kind, directory, fresh) for directory in case.directories]
+    said = [_printed_seconds(process, case.solver_kind) for process in started]
     seconds = time.monotonic() - began
     elsewhere = np.maximum(0.0, (_other_process_seconds() - others) / seconds)
     files = [directory / RESULT for directory in case.directories]
-    solved = [_solver_time_and_share(file) if case.kind == SOLVED else (0.0, nan) for file in files]
+    solved = [_solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files]
     return CommandRun(
         seconds=seconds,
         stated_seconds=max(said),
@@ -167,7 +167,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     )
 
 
-def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
+def _start_command(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()

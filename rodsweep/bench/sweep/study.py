@@ -116,7 +116,7 @@ def instant_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
     measurements = measure_in_turn(run, entries)
     for size in sizes:
         killed = spectrum_case(folder / f"killed{size}", KILLED, size, KILLED)
-        resumed = replace(killed, name="resumed", kind=INSTANT)
+        resumed = replace(killed, name="resumed", solver_kind=INSTANT)
         measurements.append(sweep_measurement(killed, 1, [run(killed, 1)]))
         measurements.append(sweep_measurement(resumed, 1, [run(resumed, 1, fresh=False)]))
     return measurements
@@ -132,12 +132,11 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
-    """Measurement of a sweep from all its runs; times are medians, and the error is nan. ranks: number of
-    ranks.
-    """
+    """Measurement of a sweep from its runs; times are medians, the error is nan. ranks: number of ranks."""
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
+    journal_bytes, is_killed = runs[0].journal_bytes, case.solver_kind == KILLED
     extra = {
         "ranks": float(ranks),
         "points": float(case.points),
@@ -150,7 +149,7 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
         "rss_megabytes_first": memory[0],
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,
         "file_bytes_per_point": runs[0].file_bytes / case.points,
-        "journal_bytes_per_point": runs[0].journal_bytes / (case.points - 1) if case.kind == KILLED else nan,
+        "journal_bytes_per_point": journal_bytes / (case.points - 1) if is_killed else nan,
         "processors_elsewhere": nan_median(run.processors_busy_elsewhere for run in runs),
         "share_busy": nan_median(run.busy_fraction for run in runs),
     }

@@ -37,7 +37,8 @@ threshold was missed."""
 
 @dataclass(frozen=True)
 class ThresholdCase:
-    """A rod with its exact first thresholds.
+    """A rod, with its name in the tables, and its exact first thresholds. k1, k2, gamma3, taper, build: as in
+    `Rod`.
 
     onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if the rod has
     no such threshold. search_end: F at which the searches of peers end.

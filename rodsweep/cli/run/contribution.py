@@ -20,13 +20,13 @@ MAX_FAILURES_PRINTED = 3
 class RunContribution:
     """Report of a rank to the first rank at the end of a run.
 
-    host: name of the machine. failures: text on one failed point for each distinct reason. share: statistics
+    host: name of the machine. failures: text on one failed point for each distinct reason. work: statistics
     of the rank's work.
     """
 
     host: str
     failures: list[str]
-    share: RankWork
+    work: RankWork
 
 
 def last_run_attributes(plan: Plan) -> dict[str, Any]:
@@ -40,34 +40,36 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
     rank. contributions: reports of all ranks. mpi_library: name and version of the MPI library.
     """
     hosts = {contribution.host for contribution in contributions}
-    shares = [contribution.share for contribution in contributions[: provenance.MAX_RANK_SHARES]]
-    points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
+    shares = [contribution.work for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
+    points, busy, idle = zip(
+        *((share.solved_points, share.busy_seconds, share.idle_seconds) for share in shares), strict=True
+    )
     numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
     return {
         "ranks": len(contributions),
-        "hosts": " ".join(sorted(hosts))[: provenance.LONGEST_ATTRIBUTE],
+        "hosts": " ".join(sorted(hosts))[: provenance.MAX_ATTRIBUTE_LENGTH],
         "mpi_library": mpi_library.split("\n", maxsplit=1)[0].strip("\0 "),
         "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-        **dict(zip(provenance.RANK_SHARES, numbers, strict=True)),
+        **dict(zip(provenance.RANK_STATISTICS, numbers, strict=True)),
     }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunEnd:
-    """Counts and times at the end of a run."""
+    """Counts and times at the end of a run. ranks: number of ranks."""
 
     ranks: int
-    requested: int
+    requested_points: int
     """Number of points to be solved in this run."""
-    unsolved: int
+    unsolved_points: int
     """Number of points of this run that are not solved."""
-    stored: int
+    stored_points: int
     """Number of points that the file holds at the end of the run."""
     seconds: float
     """Time spent on the points, in s."""
     curve_seconds: float
     """Time spent on the variables that need all points, in s."""
-    interrupted: int
+    interrupted_points: int
     """Number of points interrupted by a stop."""
     followed_halves: int | None
     """Number of half curves followed in this run; None if no curves were to be computed."""
@@ -78,8 +80,8 @@ class RunEnd:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
         sentences = []
         ranks = counted(self.ranks, "rank")
-        if self.requested:
-            points = self.requested - self.unsolved
+        if self.requested_points:
+            points = self.requested_points - self.unsolved_points
             each = self.seconds * self.ranks / max(points, 1)
             pace = f" ({duration(each)} a point and rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
@@ -92,9 +94,9 @@ class RunEnd:
 
     def stored_points_clause(self) -> str:
         """Clause with the numbers of points and half curves that a stopped run has stored."""
-        points = f"{counted(self.stored, 'point')} kept"
+        points = f"{counted(self.stored_points, 'point')} kept"
         if self.stored_halves is not None:
             return f"{points}, the curves are missing, {self.stored_halves} of their halves kept"
-        if self.interrupted:
-            return f"{points}, {self.interrupted} interrupted, to be solved again"
+        if self.interrupted_points:
+            return f"{points}, {self.interrupted_points} interrupted, to be solved again"
         return points

@@ -25,11 +25,11 @@ HALF_CURVE_NOUN = "halves of curves"
 
 @dataclass(frozen=True, slots=True)
 class PendingJointWork:
-    """Variables that depend on all points. due: whether the file lacks these variables. work_items: the half
-    curves to be followed; None if nothing is divided among the ranks.
+    """Variables that depend on all points. is_missing: whether the file lacks these variables. work_items:
+    the half curves to be followed; None if nothing is divided among the ranks.
     """
 
-    due: bool
+    is_missing: bool
     work_items: WorkItems | None = None
 
 
@@ -101,8 +101,8 @@ class JointWork:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again. items: half curves, as in `PendingJointWork`.
         """
-        chosen = self.team.on_first(lambda: items.items_to_solve(self.results))
-        for starts in self.team.exchange(self.joint_variables.initial_data(items, chosen)):
+        chosen = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
+        for starts in self.team.gather_on_all_ranks(self.joint_variables.initial_data(items, chosen)):
             self.joint_variables.add_initial_data(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:

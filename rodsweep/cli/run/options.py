@@ -16,6 +16,7 @@ class RunOptions:
     extend: bool = False
     """Whether an existing result file with fewer points is extended to the config."""
     shard: Shard
+    """Part of the points that the run solves."""
     strict: bool = False
     """Whether the run ends at the first exception that is a bug."""
     quiet: bool = False

@@ -32,6 +32,9 @@ from .contribution import RunContribution
 class PointWork:
     """Solves the points of a shard of a job, and writes the results into journals next to the result file
     `output`.
+
+    team: all ranks. solver: solver of the points. plan: plan of the result file. stop: stop request of this
+    process.
     """
 
     team: Team
@@ -43,10 +46,10 @@ class PointWork:
     stop: StopRequest
     quiet: bool
     """Whether to hide the progress."""
-    where: Callable[[int], str]
+    point_text: Callable[[int], str]
     """Function from the flat index of a point to a text with the point's parameters."""
 
-    def items(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
+    def items_to_solve(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """Returns (ranges of the numbers of this shard's work items with missing points, number of missing
         points in these work items).
 
@@ -70,10 +73,11 @@ class PointWork:
     ) -> RunContribution:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        items, count: returned by `items`. missing: ranges of the flat indices of all missing points. prepare:
-        function called before the first solve. Raises EnvironmentIncomplete if a journal cannot be written.
+        items, count: returned by `items_to_solve`. missing: ranges of the flat indices of all missing points.
+        prepare: function called before the first solve. Raises EnvironmentIncomplete if a journal cannot be
+        written.
         """
-        reasons = FailureReasons(self.where)
+        reasons = FailureReasons(self.point_text)
         solver = self.solver
         plan = self.plan
 
@@ -100,7 +104,7 @@ class PointWork:
         finally:
             shown.close()
         return RunContribution(
-            host=socket.gethostname(), failures=list(reasons.examples.values()), share=share
+            host=socket.gethostname(), failures=list(reasons.examples.values()), work=share
         )
 
     def _solve_item(
@@ -113,7 +117,7 @@ class PointWork:
         if solver.stretched:
             return StretchSolver(*solver.stretched, solver.solve, missing)
         if solver.chained:
-            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_of)
+            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_from_arrays)
             return ChainSolver(solver.chained, missing, kept, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 

@@ -16,11 +16,11 @@ from ...sweep.loop import RankWork
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
-from ...tasks.running.failures import parameters_in_words
-from ...tasks.running.job import Job, job_of, plan_of
+from ...tasks.running.failures import parameters_text
+from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
-from ..shared_computations import report_stop, shared_flutter_forces, with_shared_constants
+from ..shared_computations import report_stop, shared_flutter_forces, with_config_variables
 from .contribution import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
 from .joint import JointWork, PendingJointWork
 from .options import RunOptions
@@ -35,13 +35,13 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
     """Runs the config file `path`, or a shard of it, on all ranks; returns the exit status of the command."""
     require_directory()
     team = Team()
-    with team.aborting_together():
-        config, text = team.on_first(lambda: load_config(path, options.overrides))
+    with team.abort_all_ranks_on_error():
+        config, text = team.call_on_first_rank(lambda: load_config(path, options.overrides))
         flutter = shared_flutter_forces(config, team, stop)
         if flutter is None:
             report_stop(team, stop)
             return STOPPED_STATUS
-        job = team.on_first(lambda: job_of(path, config, text, flutter))
+        job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
         return _RankRun(team, job, output, options, stop).run()
 
@@ -64,12 +64,12 @@ class _RankRun:
         self.clock_at_start = time.monotonic()
         self.date_at_start = provenance.utc_time()
         self.seconds = 0.0
-        self.log = TracebackLog(output, team.rank, self._file_and_folder_text, options.strict)
+        self.log = TracebackLog(output, team.rank, self._point_text, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.merged_blas_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
-        self.work = PointWork(
+        self.point_work = PointWork(
             team=team,
             job=job,
             solver=self.solver,
@@ -78,7 +78,7 @@ class _RankRun:
             output=output,
             stop=stop,
             quiet=options.quiet,
-            where=self._file_and_folder_text,
+            point_text=self._point_text,
         )
         together = self.solver.joint_variables
         self.joint = together and JointWork(
@@ -88,32 +88,34 @@ class _RankRun:
     def run(self) -> int:
         """Solves the missing points, writes the results into the file, and returns the exit status."""
         replaces = self.options.fresh or self.options.extend
-        if self.team.on_first(lambda: replaces or not self.output.exists()):
-            plan = with_shared_constants(self.plan, self.job.task, self.team, self.stop)
+        if self.team.call_on_first_rank(lambda: replaces or not self.output.exists()):
+            plan = with_config_variables(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 report_stop(self.team, self.stop)
                 return STOPPED_STATUS
             self.plan = plan
-        missing = self.team.on_first(self._open_store)
-        items, count = self.work.items(missing)
+        missing = self.team.call_on_first_rank(self._open_store)
+        items, count = self.point_work.items_to_solve(missing)
         if self.team.is_first:
             points = self.job.points.count
-            shard = f"; shard {self.shard}" if self.shard.of > 1 else ""
+            shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
             if self.joint and self._lacks_joint_variables(index_count(missing) - count):
                 kept += ", then curves through all"
             self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[RunContribution] = []
         if count:
-            self.team.on_first(self._record_blas_kernels)
-            contributions = self.team.gather(self.work.solve(items, missing, count, self.prepare)) or []
-        joint = self.team.on_first(lambda: self._add_journals(count, contributions))
+            self.team.call_on_first_rank(self._record_blas_kernels)
+            contributions = self.team.gather(self.point_work.solve(items, missing, count, self.prepare)) or []
+        joint = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
         if self.joint and joint.work_items is not None:
             title = None if self.options.quiet else self.job.name
             shares = self.team.gather(self.joint.solve(joint.work_items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
-        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
+        return self.team.call_on_first_rank(
+            lambda: self._finish(count, contributions, joint, shares, exceptions)
+        )
 
     def _lacks_joint_variables(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank.
@@ -170,12 +172,12 @@ class _RankRun:
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _file_and_folder_text(self, index: int) -> str:
-        return parameters_in_words(self.job.points.values(index))
+    def _point_text(self, index: int) -> str:
+        return parameters_text(self.job.points.values(index))
 
     def _finish_file(self, joint: PendingJointWork) -> bool:
         """Writes the variables of all points into the file; returns whether these are still missing."""
-        if not joint.due:
+        if not joint.is_missing:
             return False
         variables = self.joint.variables(joint.work_items) if self.joint else ()
         if variables is None:
@@ -195,7 +197,7 @@ class _RankRun:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
-    def _outcome_text(self, counts: Mapping[str, int], left: int) -> str:
+    def _status_counts_text(self, counts: Mapping[str, int], left: int) -> str:
         """Text with the number of points of each status. counts: numbers by status. left: number of points of
         this run that are not solved.
         """
@@ -218,24 +220,24 @@ class _RankRun:
         self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
-        left = self.work.items(missing)[1]
+        left = self.point_work.items_to_solve(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,
-            requested=count,
-            unsolved=left,
-            stored=self.job.points.count - index_count(missing),
+            requested_points=count,
+            unsolved_points=left,
+            stored_points=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
-            interrupted=sum(contribution.share.was_interrupted for contribution in contributions),
-            followed_halves=sum(share.points for share in shares) if joint.due and self.joint else None,
+            interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
+            followed_halves=sum(s.solved_points for s in shares) if joint.is_missing and self.joint else None,
             stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
             self._print_message(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._print_message(f"{self.output}: {self._outcome_text(counts, left)}", amiss)
+        self._print_message(f"{self.output}: {self._status_counts_text(counts, left)}", amiss)
         self._print_failures(contributions, exceptions)
         if left or lacks_joint_variables_in:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

@@ -15,7 +15,7 @@ from ...model.arm.refusals import NotSlender
 from ...model.arm.section import BoreTooWide
 from ...model.parameters import PARAMETERS
 
-LOAD_AXES = (*LOADS, *RELATIVE_LOADS)
+LOAD_KEYS = (*LOADS, *RELATIVE_LOADS)
 """Names of the config keys for the load, absolute or relative to flutter. An arm has at most one load."""
 SINGLE_PARAMETER_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """Name of the only parameter that depends on a quantity of the arm, by name of the quantity. Quantities on
@@ -46,7 +46,7 @@ SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 10
 drag of slender bodies; F >= k1; the bore is as wide as the arm; the load is relative to a flutter threshold
 that does not exist; the load is relative to a flutter threshold that the search did not find. The codes from
 100 on are larger than the status codes of all tasks."""
-MOST_POINTS = 1_000_000
+MAX_ARM_GRID_POINTS = 1_000_000
 """Maximum number of points of a grid over an arm's quantities; larger grids are refused, because the
 parameters of all points are kept in memory."""
 
@@ -57,7 +57,7 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
     in_diagram: whether the points are the rows of a phase diagram.
     """
-    given = (name for name in (*NON_LOAD_KEYS, *LOAD_AXES) if name in sizes)
+    given = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
     quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE_LOADS]
     if all(name in (PARAMETER_STORED_ALONG if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
         return ()

@@ -15,7 +15,7 @@ RANGE_ENDS = ("start", "stop")
 """Keys of the ends of a range."""
 
 
-def as_quantities(value: Any, info: ValidationInfo) -> Axis:
+def quantity_axis(value: Any, info: ValidationInfo) -> Axis:
     """The `Axis`, in SI units, from a quantity, or a list or range of quantities, as the user wrote it;
     ValueError otherwise.
     """
@@ -31,14 +31,14 @@ def _axis_in_si(name: str, value: Any) -> Axis:
         try:
             return as_axis(value | ends)
         except ValueError as error:
-            remark = _without_unit(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
+            remark = _missing_unit_remark(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
             raise ValueError(f"{error}{remark}") from None
     if isinstance(value, list | tuple):
         return as_axis([_si_number(name, each) for each in value])
     return as_axis(_si_number(name, value))
 
 
-def _without_unit(name: str, span: dict[str, Any]) -> str:
+def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
     """Remark for error messages if only start or only stop of a range has a unit, else "". name: name of the
     quantity. span: the range as a mapping.
     """
@@ -69,7 +69,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     """
     found = dict(given)
     for name, load in RELATIVE_LOADS.items():
-        shares, is_relative = _loads_in_flutter_loads(given.get(load))
+        shares, is_relative = _loads_over_flutter_load(given.get(load))
         if not is_relative:
             continue
         if not all(each is not None for each in shares):
@@ -87,15 +87,15 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _loads_in_flutter_loads(value: Any) -> tuple[list[float | None], bool]:
-    """Returns (shares, is_relative). shares: each value of a load divided by the flutter load, None for an
+def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
+    """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
     shares = [None if one is None else share_of_flutter(one) for one in _written_values(value)]
     return shares, any(share is not None for share in shares)
 
 
-def as_drags(value: Any) -> Axis:
+def drag_axis(value: Any) -> Axis:
     """Axis of indices into DRAGS, from a drag's name, a list of names, or "range"; ValueError otherwise."""
     if isinstance(value, Axis):
         return value
@@ -153,7 +153,7 @@ def _written_values(written: Any) -> list[Any]:
 
 
 def _quantity_schema() -> dict[str, Any]:
-    """JSON schema of the values that `as_quantities` accepts: axes of numbers or of texts with a unit."""
+    """JSON schema of the values that `quantity_axis` accepts: axes of numbers or of texts with a unit."""
     each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
     ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
@@ -164,10 +164,10 @@ def _quantity_schema() -> dict[str, Any]:
 
 DRAG_NAME_SCHEMA = {"enum": list(DRAGS)}
 """JSON schema of the name of a drag estimate."""
-Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_quantity_schema())]
-Drags = Annotated[
+QuantityAxis = Annotated[Axis, BeforeValidator(quantity_axis), WithJsonSchema(_quantity_schema())]
+DragAxis = Annotated[
     Axis,
-    BeforeValidator(as_drags),
+    BeforeValidator(drag_axis),
     WithJsonSchema(
         {
             "anyOf": [

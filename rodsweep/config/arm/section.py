@@ -15,74 +15,74 @@ from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE_LOADS
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, names_except
 from ..material import LawName, SectionName
-from ..values import Axis, StrictSection, Values
-from .axes import LOAD_AXES, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
-from .quantities import Drags, Quantities, drag_names, with_relative_load
+from ..values import Axis, ParameterAxis, StrictSection
+from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
+from .quantities import DragAxis, QuantityAxis, drag_names, with_relative_load
 from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
-Allowed = Field(
+QuantityField = Field(
     description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
 )
-ShareAllowed = Field(description="a number from 0 on, a list or a range")
-DragAllowed = Field(description="range, the name of a drag, or a list of names")
-RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
+RelativeLoadField = Field(description="a number from 0 on, a list or a range")
+DragField = Field(description="range, the name of a drag, or a list of names")
+PoissonField = Field(description="a number above -1 and up to 0.5, a list or a range")
 NO_LOAD = {"pressure": 0.0}
 
 
 class ArmSection(StrictSection):
     """The arm in the quantities of `rodsweep arm`; each quantity is a value or an axis."""
 
-    length: Annotated[Quantities | None, Allowed] = None
+    length: Annotated[QuantityAxis | None, QuantityField] = None
     """Length from the clamp to the tip; for an arm in segments, the sum of their lengths."""
-    radius: Annotated[Quantities | None, Allowed] = None
+    radius: Annotated[QuantityAxis | None, QuantityField] = None
     """Radius of a circular section. Alternatives: width and height, or segments."""
-    inner_radius: Annotated[Quantities | None, Allowed] = None
+    inner_radius: Annotated[QuantityAxis | None, QuantityField] = None
     """Radius of the bore of a tube, which is closed at its tip."""
-    tip_radius: Annotated[Quantities | None, Allowed] = None
+    tip_radius: Annotated[QuantityAxis | None, QuantityField] = None
     """Radius at the tip of a solid cone, which has `radius` at its base."""
     segments: Annotated[Segments, Field(description=SEGMENTS_ALLOWED)] = None
     """Segments from the base to the tip, each with length, radius, and optionally inner_radius and young."""
-    width: Annotated[Quantities | None, Allowed] = None
+    width: Annotated[QuantityAxis | None, QuantityField] = None
     """Width of a rectangular section, across the plane of motion."""
-    height: Annotated[Quantities | None, Allowed] = None
+    height: Annotated[QuantityAxis | None, QuantityField] = None
     """Height of a rectangular section, in the plane of motion."""
-    young: Annotated[Quantities | None, Allowed] = None
+    young: Annotated[QuantityAxis | None, QuantityField] = None
     """Young's modulus at small strain; in an arm with segments, the modulus of every segment without a
     modulus of its own."""
-    poisson: Annotated[Values | None, RatioAllowed] = None
+    poisson: Annotated[ParameterAxis | None, PoissonField] = None
     """Poisson's ratio, by default 0.5."""
     law: Annotated[LawName | None, Field(description="linear or neo_hookean")] = None
     """Constitutive law, by default linear. For an arm, this key replaces `material.law`."""
     section: Annotated[SectionName | None, Field(description="fixed or swelling")] = None
     """Whether the cross-section is fixed (the default) or swelling. For an arm, this key replaces
     `material.section`."""
-    viscosity: Annotated[Quantities, Allowed]
+    viscosity: Annotated[QuantityAxis, QuantityField]
     """Viscosity of the fluid. The parameters do not depend on the viscosity; times are proportional to the
     viscosity."""
-    fluid_density: Annotated[Quantities | None, Allowed] = None
+    fluid_density: Annotated[QuantityAxis | None, QuantityField] = None
     """Density of the fluid, by default the density of water; used only to test whether the model applies."""
-    density_difference: Annotated[Quantities | None, Allowed] = None
+    density_difference: Annotated[QuantityAxis | None, QuantityField] = None
     """Density of the arm minus density of the fluid; used only to test whether the neglected weight is small.
     If this key is missing, the weight is not tested."""
-    drag: Annotated[Drags | None, DragAllowed] = None
+    drag: Annotated[DragAxis | None, DragField] = None
     """Drag estimates from the range in the literature, by name; by default the likeliest estimate."""
-    pressure: Annotated[Quantities | None, Allowed] = None
+    pressure: Annotated[QuantityAxis | None, QuantityField] = None
     """Pressure on the tip's cross section; alternative: force. Omit the load if the task solves for F."""
-    force: Annotated[Quantities | None, Allowed] = None
+    force: Annotated[QuantityAxis | None, QuantityField] = None
     """Follower force at the tip."""
-    pressure_over_flutter: Annotated[Values | None, ShareAllowed] = None
+    pressure_over_flutter: Annotated[ParameterAxis | None, RelativeLoadField] = None
     """Pressure divided by the flutter pressure at the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
-    force_over_flutter: Annotated[Values | None, ShareAllowed] = None
+    force_over_flutter: Annotated[ParameterAxis | None, RelativeLoadField] = None
     """Force divided by the flutter force at the likeliest drag: 1.2 is `force: 1.2 of flutter`."""
 
     @model_validator(mode="before")
     @classmethod
-    def _with_shares(cls, given: Any) -> Any:
+    def _with_relative_load_and_length(cls, given: Any) -> Any:
         """Moves a load relative to flutter to its own key, and adds the length of an arm with segments."""
         return with_length(with_relative_load(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
-    def _has_length_and_modulus(self) -> "ArmSection":
+    def _require_length_and_modulus(self) -> "ArmSection":
         for name in ("length", "young"):
             if getattr(self, name) is None and self.segments is None:
                 raise ValueError(f"parameters.arm.{name} is missing; give it, or give segments")
@@ -111,14 +111,14 @@ class ArmSection(StrictSection):
         return all(build.standard for build in builds_of(self))
 
     @property
-    def load_axis(self) -> str | None:
+    def load_key(self) -> str | None:
         """Key of the given load, absolute or relative to flutter; None if no load is given."""
-        return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
+        return next((name for name in LOAD_KEYS if getattr(self, name) is not None), None)
 
     @property
     def load(self) -> str | None:
         """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
-        return RELATIVE_LOADS.get(str(self.load_axis), self.load_axis)
+        return RELATIVE_LOADS.get(str(self.load_key), self.load_key)
 
     @property
     def varying_quantities(self) -> tuple[str, ...]:
@@ -132,22 +132,22 @@ class ArmSection(StrictSection):
 
         A quantity that varies between points has the value None.
         """
-        varied = SINGLE_PARAMETER_OF if self.is_grid else self.varying_quantities
+        varied = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
         numbers = {n: None if n in varied else value for n, value in self.first_values.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
 
     @property
-    def is_grid(self) -> bool:
+    def is_parameter_grid(self) -> bool:
         """Whether the points form a grid of parameters, that is, every axis changes exactly one parameter."""
         return all(name in SINGLE_PARAMETER_OF for name in self.varying_quantities)
 
     @property
     def quantity_axes(self) -> dict[str, Axis]:
         """Axes of the given quantities by name, the load last."""
-        names = (*NON_LOAD_KEYS, *LOAD_AXES)
+        names = (*NON_LOAD_KEYS, *LOAD_KEYS)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
-    def require_allowed_keys(self) -> None:
+    def require_allowed_values(self) -> None:
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
             low = float(axis.array()[0])
@@ -155,10 +155,10 @@ class ArmSection(StrictSection):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
             if name in UNITS and not (QUANTITIES[name].signed or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
-        if self.is_grid:
+        if self.is_parameter_grid:
             self.arm_of(self.first_values, loaded=True)
 
-    def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
+    def refuse_conflicting_keys(self, forced: bool, beside: Collection[str]) -> None:
         """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
         Poisson's ratio.
 
@@ -166,7 +166,7 @@ class ArmSection(StrictSection):
         values.
         """
         loads = ["parameters.F"] if "F" in beside else []
-        loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
+        loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(self, name) is not None]
         if loads[1:]:
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
         if "poisson" in self.varying_quantities and "k2" in beside:
@@ -192,7 +192,7 @@ class ArmSection(StrictSection):
         names = (*names_except("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
-            different = {getattr(self.arm_of(each), name) for each in self.sections()}
+            different = {getattr(self.arm_of(each), name) for each in self.values_of_arms()}
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
             axes = {"F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAME[self.load]))} | axes
@@ -217,7 +217,7 @@ class ArmSection(StrictSection):
         """Names of parameters that only cones have: ("taper",) for cones, else ()."""
         return () if self.tip_radius is None else ("taper",)
 
-    def count(self, beside: int) -> int:
+    def grid_point_count(self, beside: int) -> int:
         """Number of points of a grid. beside: number of combinations of the parameters given with the arm."""
         return int(np.prod([float(axis.size) for axis in self.quantity_axes.values()])) * beside
 
@@ -226,7 +226,7 @@ class ArmSection(StrictSection):
         """First value of every given quantity, in SI units, by name."""
         return {name: float(axis.array()[0]) for name, axis in self.quantity_axes.items()}
 
-    def sections(self) -> Iterator[dict[str, float]]:
+    def values_of_arms(self) -> Iterator[dict[str, float]]:
         """Yields all quantities of every arm except the load, in SI units by name, in row-major order."""
         names = [name for name in NON_LOAD_KEYS if name in self.quantity_axes]
         for values in product(*(self.quantity_axes[name].array() for name in names)):
@@ -239,8 +239,8 @@ class ArmSection(StrictSection):
         flutter is always left out. Raises UncoveredArm if the rod model does not apply to the arm.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
-        has_load = loaded and self.load_axis in LOADS
-        section |= {str(self.load_axis): values[str(self.load_axis)]} if has_load else NO_LOAD
+        has_load = loaded and self.load_key in LOADS
+        section |= {str(self.load_key): values[str(self.load_key)]} if has_load else NO_LOAD
         (drag,) = drag_names([section.pop("drag", 0.0)])
         try:
             return SlenderArm(**section, **self.material, drag=drag)

@@ -60,7 +60,7 @@ def build_of(arm: "ArmSection") -> Build:
         raise ValueError(f"parameters.arm.{error}") from None
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
         return alike
-    if arm.is_grid and len(set(builds_of(arm))) > 1:
+    if arm.is_parameter_grid and len(set(builds_of(arm))) > 1:
         raise ValueError(
             f"parameters.arm.{arm.varying_quantities[0]} has several values, and the ratios between "
             "the segments would differ from value to value; give one value"
@@ -72,7 +72,7 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
     """Yields the constitutive law and profile of every arm to which the rod model applies. arm: config
     section.
     """
-    for values in arm.sections():
+    for values in arm.values_of_arms():
         with suppress(UncoveredArm):
             yield arm.arm_of(values).build
 
@@ -115,7 +115,7 @@ def refuse_compressible(arm: "ArmSection", section: str) -> None:
         )
 
 
-_SEGMENT = {
+_SEGMENT_SCHEMA = {
     "anyOf": [
         {"type": "string", "pattern": r"^[^:]+:.*radius"},
         {
@@ -134,8 +134,8 @@ Segments = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"type": "array", "items": _SEGMENT, "minItems": 1, "maxItems": MAX_SEGMENTS},
-                *_SEGMENT["anyOf"],
+                {"type": "array", "items": _SEGMENT_SCHEMA, "minItems": 1, "maxItems": MAX_SEGMENTS},
+                *_SEGMENT_SCHEMA["anyOf"],
                 {"type": "null"},
             ]
         }

@@ -15,7 +15,7 @@ from ruamel.yaml.parser import Parser
 from ...errors import InputError
 from ..values import overflows_float, printable_name, short_repr
 
-LARGEST_FILE = 100_000
+MAX_CONFIG_BYTES = 100_000
 """Maximum size of a config file, in bytes: about 15,000 numbers, read in a second. Longer lists of points
 belong in CSV files."""
 MAX_TEXT_LENGTH = 1000
@@ -28,14 +28,14 @@ MAX_DEPTH = 20
 """Maximum depth of nested lists and mappings in a config."""
 
 
-def read_text(path: Path) -> str:
-    """Text of a UTF-8 file of at most LARGEST_FILE bytes; InputError if the file cannot be read."""
+def read_config_text(path: Path) -> str:
+    """Text of a UTF-8 file of at most MAX_CONFIG_BYTES bytes; InputError if the file cannot be read."""
     where = printable_name(path)
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):
             raise InputError(f"{where} is not a file")  # opening a pipe would wait for its writer
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
+            data = file.read(MAX_CONFIG_BYTES + 1)
     except OSError as error:
         raise InputError(f"{where} cannot be read: {error.strerror}") from error
     if data.startswith(HDF5_SIGNATURE):
@@ -44,10 +44,10 @@ def read_text(path: Path) -> str:
         raise InputError(
             f"{where} is a table, not a config; name the table in a config, as parameters.points"
         )
-    if len(data) > LARGEST_FILE:
+    if len(data) > MAX_CONFIG_BYTES:
         raise InputError(
-            f"{where} is larger than {LARGEST_FILE} bytes, which no config is; write many points into a CSV "
-            "file and name the file as parameters.points"
+            f"{where} is larger than {MAX_CONFIG_BYTES} bytes, which no config is; write many points into a "
+            "CSV file and name the file as parameters.points"
         )
     try:
         return data.decode("utf-8-sig")
@@ -55,14 +55,14 @@ def read_text(path: Path) -> str:
         raise InputError(f"{where} is not UTF-8 text") from None
 
 
-def parse(text: str, where: str) -> Any:
+def parsed_yaml(text: str, where: str) -> Any:
     """Value of a YAML text, as nested dicts and lists; InputError if the text is not valid or not allowed.
     where: name of the text, with which the message begins.
     """
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{where}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)
-    yaml.Parser = _DataOnly
+    yaml.Parser = _PlainDataParser
     try:
         return yaml.load(text)
     except InputError as error:
@@ -77,7 +77,7 @@ def parse(text: str, where: str) -> Any:
         raise InputError(f"{where}: not valid YAML: {printable_name(error)}") from None
 
 
-class _DataOnly(Parser):
+class _PlainDataParser(Parser):
     """YAML parser that raises InputError for an anchor, an alias, a tag, or too deep nesting."""
 
     depth = 0
@@ -101,8 +101,8 @@ class _DataOnly(Parser):
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
-    """Raises InputError for a YAML scalar that is too long or not printable, a merge key, or an overflowing
-    number."""
+    """Raises InputError for a YAML scalar that is too long or has characters that cannot be printed, for a
+    merge key (<<), and for a number too large for a float."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
         raise InputError(

@@ -20,10 +20,10 @@ from ..material import with_profile_read
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import Axis, axis_from_resolved, printable_name, short_repr
-from .parsing import MAX_DEPTH, parse, read_text
-from .refusals import MAX_KEY_LENGTH, dotted_key, sentence_of, similar_keys
+from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
+from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
-LONGEST_HEADER = 10_000
+MAX_HEADER_LENGTH = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
 line."""
 
@@ -34,9 +34,9 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     Raises InputError for any error in the file. overrides: texts "a.b=value" of --set, which change keys; the
     YAML text lists the overrides as comments.
     """
-    text = read_text(path)
+    text = read_config_text(path)
     where = printable_name(path)
-    tree = parse(text, where)
+    tree = parsed_yaml(text, where)
     if not isinstance(tree, dict):
         problem = "is empty" if tree is None else f"is {short_repr(tree)}, not a mapping of keys to values"
         raise InputError(f"{where}: the config {problem}; give task and parameters")
@@ -59,7 +59,7 @@ def validated_config(tree: dict[str, Any]) -> Config:
     except ValidationError as error:
         problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise InputError(f"{sentence_of(config, problems[0])}{more}") from None
+        raise InputError(f"{message_of_problem(config, problems[0])}{more}") from None
 
 
 def resolved_config(config: Config) -> dict[str, Any]:
@@ -72,20 +72,20 @@ def resolved_config(config: Config) -> dict[str, Any]:
     return tree
 
 
-def config_of(resolved: dict[str, Any]) -> Config:
+def config_from_resolved(resolved: dict[str, Any]) -> Config:
     """The config from a resolved config that `resolved_config` returned; ValueError if this version of
     rodsweep does not accept the config."""
     try:
         task = resolved["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
         fields = section.model_fields
-        parameters = _axes_of(resolved["parameters"])
+        parameters = _with_axes(resolved["parameters"])
         if "arm" in parameters:
-            given = parameters | {"arm": _axes_of(parameters["arm"])}
+            given = parameters | {"arm": _with_axes(parameters["arm"])}
             parameters = _without_arm_axes(given, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
         options = {
-            name: _axes_of(value) if isinstance(value, dict) else value
+            name: _with_axes(value) if isinstance(value, dict) else value
             for name, value in resolved[task].items()
             if name not in fields or value != fields[name].default
         }
@@ -94,7 +94,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
 
 
-def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
+def _with_axes(section: dict[str, Any]) -> dict[str, Any]:
     """Keys and values of a section of a resolved config, with axes as `Axis` objects."""
     return {
         name: axis_from_resolved(value) if name != "arm" and isinstance(value, dict) else value
@@ -108,7 +108,7 @@ def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str,
     in_diagram: whether the task is phase_diagram.
     """
     arm = ArmSection.model_validate(parameters["arm"])
-    made = arm.grid_axes() if in_diagram or arm.is_grid else {}
+    made = arm.grid_axes() if in_diagram or arm.is_parameter_grid else {}
     return {
         name: value
         for name, value in parameters.items()
@@ -174,7 +174,7 @@ def _apply_override(tree: dict, override: str) -> None:
             parent = dotted_key(path[: i + 1])
             rest = dotted_key(path[i + 1 :])
             raise InputError(f"{where}: {parent} is {short_repr(node)}, which has no key {rest}")
-    node[path[-1]] = parse(value, where)
+    node[path[-1]] = parsed_yaml(value, where)
 
 
 def _task_name(tree: dict) -> str:
@@ -216,18 +216,18 @@ def _with_optional_columns(tree: Any, directory: Path) -> Any:
         return tree
     if parameters.get("columns") is not None:
         return tree
-    header = _header(directory / parameters["points"])
+    header = _header_names(directory / parameters["points"])
     columns = [name for name in OPTIONAL_PARAMETERS if name in header]
     return tree | {"parameters": parameters | {"columns": columns}} if columns else tree
 
 
-def _header(path: Path) -> list[str]:
+def _header_names(path: Path) -> list[str]:
     """Names in the first line of a CSV file; empty for an unreadable file, which `read_points` refuses."""
     try:
         if not path.is_file():
             return []
         with path.open(newline="", encoding="utf-8-sig") as file:
-            line = file.readline(LONGEST_HEADER)
+            line = file.readline(MAX_HEADER_LENGTH)
         return [cell.strip() for cell in next(csv.reader([line]), [])]
     except (OSError, ValueError, csv.Error):
         return []

@@ -25,7 +25,7 @@ MIN_SUBSTRING_LENGTH = 4
 """Minimum number of letters of a substring that identifies a key, such as `density` for `fluid_density`."""
 
 
-def sentence_of(config: type[Config], problem: Any) -> str:
+def message_of_problem(config: type[Config], problem: Any) -> str:
     """Message for an error of pydantic: a sentence with key, value and allowed values. problem: one item of
     `ValidationError.errors()`.
     """
@@ -36,7 +36,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     if kind == "extra_forbidden":
         fields = _section_class(config, location[:-1]).model_fields
         known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
-        elsewhere = full_names_of(config, location)
+        elsewhere = keys_in_other_sections(config, location)
         hint = f"did you mean {elsewhere[0]}?" if elsewhere else unknown_key_hint(location[-1], known)
         return f"unknown key {key}; {hint}"
     if kind == "missing":
@@ -118,7 +118,7 @@ def _edit_distance(a: str, b: str) -> int:
     return rows[-1][-1]
 
 
-def full_names_of(config: type[Config], location: Sequence[str]) -> list[str]:
+def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> list[str]:
     """Full names, like "parameters.F", of the known keys in other sections whose name is the last name of
     `location`.
     """

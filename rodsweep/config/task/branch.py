@@ -40,7 +40,7 @@ class BranchOptions(StrictSection):
     """Confirm by winding numbers between the Hopf points that no Hopf point is missing."""
 
     @model_validator(mode="after")
-    def _range_of_the_parameter(self) -> "BranchOptions":
+    def _require_valid_range(self) -> "BranchOptions":
         allowed = PARAMETERS[self.along].allowed
         for key, value in (("start", self.start), ("stop", self.stop)):
             if not allowed.contains(value) or not isfinite(value):
@@ -66,11 +66,11 @@ class BranchConfig(Config):
     `accuracy` and 1e-9. The file has error estimates of all these numbers."""
     branch: BranchOptions = BranchOptions()
 
-    others_may_be_needed: ClassVar[bool] = True
-    of_cycles: ClassVar[bool] = True
+    parameters_depend_on_options: ClassVar[bool] = True
+    solves_nonlinear_motion: ClassVar[bool] = True
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def parameter_names(self) -> tuple[str, ...]:
         return (*names_except(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
 
     @classmethod
@@ -79,7 +79,7 @@ class BranchConfig(Config):
 
     @model_validator(mode="before")
     @classmethod
-    def _followed_has_no_default(cls, given: Any) -> Any:
+    def _without_default_of_followed(cls, given: Any) -> Any:
         """Returns the config without the default of the followed parameter, so that only a value given by the
         user is refused.
         """
@@ -96,14 +96,14 @@ class BranchConfig(Config):
         return sections | {"parameters": {along: None, **parameters}}
 
     @model_validator(mode="after")
-    def _follows_one_parameter(self) -> "BranchConfig":
+    def _require_one_followed_parameter(self) -> "BranchConfig":
         along = self.branch.along
         why = f"follows {along}; remove it and set branch.start and branch.stop, or another branch.along"
-        self.refuse_found(along, why)
+        self.refuse_solved_parameter(along, why)
         if self.parameters.arm is not None and along != "F":
             raise ValueError(
                 f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
                 "or give the parameters without an arm"
             )
-        self.parameters.require(self.names)
+        self.parameters.require_points(self.parameter_names)
         return self

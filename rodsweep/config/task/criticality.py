@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, names_except
 from ..axes import NonlinearParameters
-from ..schema import Config, Crossings
+from ..schema import Config, CrossingCount
 from ..values import Number, StrictSection
 
 
@@ -18,7 +18,7 @@ class CriticalityOptions(StrictSection):
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
     """Largest force of the search for Hopf points. If a smaller force crushes the rod, the search ends just
     below that crushing force."""
-    crossings: Crossings = 16
+    crossings: CrossingCount = 16
     """Maximum number of stored Hopf points."""
     certify: bool = True
     """Confirm by winding numbers between the Hopf points that no Hopf point is missing."""
@@ -37,14 +37,14 @@ class CriticalityConfig(Config):
     estimates."""
     criticality: CriticalityOptions = CriticalityOptions()
 
-    of_cycles: ClassVar[bool] = True
+    solves_nonlinear_motion: ClassVar[bool] = True
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return names_except("F", NONLINEAR_PARAMETERS)
 
     @model_validator(mode="after")
-    def _finds_the_force_itself(self) -> "CriticalityConfig":
-        self.refuse_found("F", f"finds F itself; remove it and set {self.task}.F_max")
-        self.parameters.require(self.names)
+    def _refuse_force(self) -> "CriticalityConfig":
+        self.refuse_solved_parameter("F", f"finds F itself; remove it and set {self.task}.F_max")
+        self.parameters.require_points(self.parameter_names)
         return self

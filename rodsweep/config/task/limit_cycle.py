@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from ..arm.axes import SINGLE_PARAMETER_OF
 from ..axes import NonlinearParameters, joined_names
-from ..schema import Config, Nodes
+from ..schema import Config, NodeCount
 from ..values import Number, StrictSection
 
 LONGEST_AXIS = "longest"
@@ -36,7 +36,7 @@ class LimitCycleOptions(StrictSection):
     """Number of times per period at which the tip and the energy are stored; 0 stores no samples."""
     shapes: Annotated[int, Field(ge=0, le=10_000)] = 0
     """Number of times per period at which the shape of the rod is stored; 0 stores no shapes."""
-    nodes: Nodes = 33
+    nodes: NodeCount = 33
     """Number of Lobatto nodes of each shape."""
     transient: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Number of times, from the start of the motion until the cycle is reached, at which the tip is stored; 0
@@ -58,10 +58,10 @@ class LimitCycleConfig(Config):
     hundred times larger, relative to the largest y. The file has error estimates of all these numbers."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
-    of_cycles: ClassVar[bool] = True
+    solves_nonlinear_motion: ClassVar[bool] = True
 
     @property
-    def along(self) -> str:
+    def chain_parameter(self) -> str:
         """Parameter along which the cycle of a point is the initial guess for the next point.
 
         By default the parameter with the most values; the first parameter if several have equally many
@@ -91,12 +91,12 @@ class LimitCycleConfig(Config):
     def settings_of_results(self) -> dict[str, Any]:
         meant = super().settings_of_results
         options = meant[self.task]
-        return meant | {self.task: options | ({"along": self.along} if "along" in options else {})}
+        return meant | {self.task: options | ({"along": self.chain_parameter} if "along" in options else {})}
 
     @model_validator(mode="after")
-    def _only_what_is_used(self) -> "LimitCycleConfig":
-        self.parameters.require(self.names)
-        self.refuse_unused()
+    def _refuse_unused_keys(self) -> "LimitCycleConfig":
+        self.parameters.require_points(self.parameter_names)
+        self.refuse_options_without_effect()
         arm = self.parameters.arm
         along = self.limit_cycle.along
         if along in SINGLE_PARAMETER_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
@@ -109,7 +109,10 @@ class LimitCycleConfig(Config):
                 "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
                 "give axes instead of parameters.points"
             )
-        if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.single_parameter_sizes:
+        if (
+            self.limit_cycle.start == "neighbour"
+            and self.chain_parameter not in self.parameters.single_parameter_sizes
+        ):
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
                 f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "

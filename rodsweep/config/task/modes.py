@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from ..schema import LinearConfig, Modes, Nodes
+from ..schema import LinearConfig, ModeCount, NodeCount
 from ..values import StrictSection
 
 
@@ -12,9 +12,9 @@ class ModesOptions(StrictSection):
     """Options of the task modes: numbers of modes and of nodes, numerical abscissa and transient growth,
     certificate."""
 
-    modes: Modes = 2
+    modes: ModeCount = 2
     """Number of leading modes at each point."""
-    nodes: Nodes = 65
+    nodes: NodeCount = 65
     """Number of Lobatto nodes of each mode."""
     growth: bool = True
     """Compute the numerical abscissa and the transient growth."""
@@ -31,6 +31,6 @@ class ModesConfig(LinearConfig):
     modes: ModesOptions = ModesOptions()
 
     @model_validator(mode="after")
-    def _whole_points(self) -> "ModesConfig":
-        self.parameters.require(self.names)
+    def _require_points(self) -> "ModesConfig":
+        self.parameters.require_points(self.parameter_names)
         return self

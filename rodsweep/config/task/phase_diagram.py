@@ -11,7 +11,7 @@ from ...model.arm.quantities import RELATIVE_LOADS
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axes import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
-from ..schema import Crossings, LinearConfig
+from ..schema import CrossingCount, LinearConfig
 from ..values import Axis, Number, StrictSection
 
 THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
@@ -26,7 +26,7 @@ class BautinAlong(LinearAxes):
 class PhaseDiagramOptions(StrictSection):
     """Options of the task phase_diagram, for the rows of the diagram and for the boundary curves."""
 
-    crossings: Crossings = 16
+    crossings: CrossingCount = 16
     """Maximum number of stored crossings per row."""
     certify: bool = True
     """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
@@ -57,7 +57,7 @@ class PhaseDiagramOptions(StrictSection):
         return next(((name, axis) for name, axis in given if axis is not None), None)
 
     @model_validator(mode="after")
-    def _one_third_parameter(self) -> "PhaseDiagramOptions":
+    def _require_one_third_parameter(self) -> "PhaseDiagramOptions":
         if self.bautin_along is None:
             return self
         given = [name for name in THIRD_PARAMETERS if getattr(self.bautin_along, name) is not None]
@@ -87,11 +87,11 @@ class PhaseDiagramConfig(LinearConfig):
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
     allows_crushed_rods: ClassVar[bool] = True
-    of_several_rods: ClassVar[bool] = True
-    beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+    needs_several_rods: ClassVar[bool] = True
+    nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ("gamma1",)
 
     @property
-    def plane(self) -> tuple[str, ...]:
+    def plane_parameters(self) -> tuple[str, ...]:
         """(parameter along a row, parameter across rows): names of the parameters with several values.
 
         The names are in the order of LINEAR_PARAMETERS and OPTIONAL_PARAMETERS.
@@ -99,8 +99,8 @@ class PhaseDiagramConfig(LinearConfig):
         return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
     @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(name for name in super().names if name != self.plane[0])
+    def parameter_names(self) -> tuple[str, ...]:
+        return tuple(name for name in super().parameter_names if name != self.plane_parameters[0])
 
     @property
     def gamma1(self) -> float:
@@ -124,7 +124,7 @@ class PhaseDiagramConfig(LinearConfig):
         """
         meant = super().settings_of_results
         axes = self.parameters.axes
-        line = self.plane[0]
+        line = self.plane_parameters[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
         meant |= {"parameters": meant["parameters"] | asked}
         # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
@@ -134,17 +134,21 @@ class PhaseDiagramConfig(LinearConfig):
         if self.phase_diagram.cycles:
             meant["phase_diagram"]["gamma1"] = self.gamma1
         if self.phase_diagram.curves:
-            meant |= {"together": {"logarithmic": [name for name in self.plane if axes[name].logarithmic]}}
+            meant |= {
+                "together": {
+                    "logarithmic": [name for name in self.plane_parameters if axes[name].is_logarithmic]
+                }
+            }
         if asked_of_curves:
             meant["together"]["criticality"] = {"gamma1": self.gamma1}
         if self.phase_diagram.bautin_parameter is not None:
             name, axis = self.phase_diagram.bautin_parameter
-            meant["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.logarithmic}
+            meant["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.is_logarithmic}
         return meant
 
     @model_validator(mode="after")
-    def _only_what_the_curves_use(self) -> "PhaseDiagramConfig":
-        self.refuse_unused()
+    def _refuse_unused_curve_keys(self) -> "PhaseDiagramConfig":
+        self.refuse_options_without_effect()
         options = self.phase_diagram
         if options.criticality and not options.curves:
             raise ValueError(
@@ -160,14 +164,14 @@ class PhaseDiagramConfig(LinearConfig):
         return self
 
     @model_validator(mode="after")
-    def _two_axes(self) -> "PhaseDiagramConfig":
+    def _require_two_axes(self) -> "PhaseDiagramConfig":
         every = joined_names(LINEAR_PARAMETERS, "and")
         if self.parameters.points is not None:
             raise ValueError(
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
                 f"{every}"
             )
-        self.parameters.require(LINEAR_PARAMETERS, or_points=False)
+        self.parameters.require_points(LINEAR_PARAMETERS, or_points=False)
         if self.parameters.arm_axes:
             several = next(
                 name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
@@ -183,7 +187,7 @@ class PhaseDiagramConfig(LinearConfig):
                 f"arm is over {joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given with "
                 "the arm"
             )
-        long = self.plane
+        long = self.plane_parameters
         names = joined_names((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
         if len(long) != 2:
             raise ValueError(
@@ -202,14 +206,14 @@ class PhaseDiagramConfig(LinearConfig):
         return self
 
     @model_validator(mode="after")
-    def _third_beside_the_plane(self) -> "PhaseDiagramConfig":
+    def _require_single_third_value(self) -> "PhaseDiagramConfig":
         if self.phase_diagram.bautin_parameter is None:
             return self
         name, axis = self.phase_diagram.bautin_parameter
         low, high = axis.array()[[0, -1]]
         given = self.parameters.axes.get(name)
         value = np.array([PARAMETERS[name].default]) if given is None else given.array()
-        if name in self.plane or not low <= value[0] <= high:
+        if name in self.plane_parameters or not low <= value[0] <= high:
             raise ValueError(
                 f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; parameters.{name} must "
                 f"have a single value in this range, but the number of values is {len(value)}, and the "

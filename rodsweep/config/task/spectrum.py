@@ -6,14 +6,14 @@ from typing import Any, ClassVar, Literal
 from pydantic import model_validator
 
 from ...model.parameters import LINEAR_PARAMETERS
-from ..schema import LinearConfig, Modes, Nodes
+from ..schema import LinearConfig, ModeCount, NodeCount
 from ..values import StrictSection
 
 
 class SpectrumOptions(StrictSection):
     """Options of the task spectrum: number of eigenvalues at each point, method, and stored eigenvectors."""
 
-    modes: Modes = 4
+    modes: ModeCount = 4
     """Number of leading eigenvalues at each point."""
     method: Literal["determinant", "krylov_schur"] = "determinant"
     """Method: roots of D, or Krylov-Schur on two meshes, which does not prove that no eigenvalue is
@@ -22,7 +22,7 @@ class SpectrumOptions(StrictSection):
     """Prove by the winding number of D that no eigenvalue is missing."""
     vectors: bool = False
     """Store the eigenvectors (Y, Theta), scaled to Y(1) = 1, with an error of about `accuracy`."""
-    nodes: Nodes = 33
+    nodes: NodeCount = 33
     """Number of Lobatto nodes of (Y, Theta); used if `vectors` is true."""
     follow: bool = True
     """Follow eigenvalues along the longest axis of a grid; needs `certify: true` and `vectors: false`."""
@@ -36,11 +36,15 @@ class SpectrumConfig(LinearConfig):
     task: Literal["spectrum"]
     spectrum: SpectrumOptions = SpectrumOptions()
 
-    beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+    nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ("gamma1",)
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return (*LINEAR_PARAMETERS, *cls.beyond) if options.get("longitudinal") else LINEAR_PARAMETERS
+        return (
+            (*LINEAR_PARAMETERS, *cls.nonlinear_parameters_used)
+            if options.get("longitudinal")
+            else LINEAR_PARAMETERS
+        )
 
     @property
     def options_without_effect(self) -> dict[str, str]:
@@ -73,8 +77,8 @@ class SpectrumConfig(LinearConfig):
         return meant
 
     @model_validator(mode="after")
-    def _only_what_is_used(self) -> "SpectrumConfig":
-        self.parameters.require(self.names)
+    def _refuse_unused_keys(self) -> "SpectrumConfig":
+        self.parameters.require_points(self.parameter_names)
         if "gamma1" in self.parameters.constant_parameters and not self.spectrum.longitudinal:
             raise ValueError(
                 "parameters.gamma1 is given but not used: the transverse spectrum does not depend on gamma1; "
@@ -82,5 +86,5 @@ class SpectrumConfig(LinearConfig):
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.constant_parameters:
             raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
-        self.refuse_unused()
+        self.refuse_options_without_effect()
         return self

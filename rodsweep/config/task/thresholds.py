@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import names_except
-from ..schema import Crossings, LinearConfig
+from ..schema import CrossingCount, LinearConfig
 from ..values import Number, StrictSection
 
 
@@ -17,7 +17,7 @@ class ThresholdsOptions(StrictSection):
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
     """Largest force of the search. If the arm is crushed at a smaller force (k1 for a uniform rod of linear
     material), the search ends just below the crushing force."""
-    crossings: Crossings = 16
+    crossings: CrossingCount = 16
     """Maximum number of stored crossings."""
     certify: bool = True
     """Confirm by winding numbers that no threshold is missing, and certify every spectrum."""
@@ -36,7 +36,7 @@ class ThresholdsConfig(LinearConfig):
         return names_except("F")
 
     @model_validator(mode="after")
-    def _finds_the_force_itself(self) -> "ThresholdsConfig":
-        self.refuse_found("F", f"finds F itself; remove it and set {self.task}.F_max")
-        self.parameters.require(self.names)
+    def _refuse_force(self) -> "ThresholdsConfig":
+        self.refuse_solved_parameter("F", f"finds F itself; remove it and set {self.task}.F_max")
+        self.parameters.require_points(self.parameter_names)
         return self

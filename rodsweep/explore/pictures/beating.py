@@ -21,9 +21,9 @@ from .card import (
     Card,
     empty_source,
     new_figure,
-    sentence_of,
     set_axis_range,
     source_columns,
+    status_sentence,
 )
 
 PERIOD_SECONDS = 2.0
@@ -37,39 +37,52 @@ number of nodes per shape."""
 
 
 class BeatingPicture:
-    """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`."""
+    """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`. The
+    attributes `..._source` are Bokeh data sources: `shapes` of the cycle, `motion` after a release, `reached`
+    shapes of the cycle that the motion approaches, the drawn `arm`, the `bent` arm that the user drags, the
+    `path` of the tip, the position of the mouse (`grip`).
+    """
 
     def __init__(self) -> None:
         figure = new_figure(
             "x (L)", "y (L)", x_range=Range1d(-0.1, 1.1), y_range=Range1d(-0.7, 0.7), match_aspect=True
         )
         names = ("shapes", "motion", "reached")
-        self.shapes, self.motion, self.reached = (
+        self.shapes_source, self.motion_source, self.reached_source = (
             empty_source(SHAPE_COLUMNS, f"{name}_source") for name in names
         )
         names = ("arm", "bent", "path")
-        self.arm, self.bent, self.path = (empty_source(("x", "y"), f"{name}_source") for name in names)
-        self.grip = empty_source(("x", "y", "phase"), "grip_source")
+        self.arm_source, self.bent_source, self.path_source = (
+            empty_source(("x", "y"), f"{name}_source") for name in names
+        )
+        self.grip_source = empty_source(("x", "y", "phase"), "grip_source")
         self.length = PictureAxis("L", 1.0)
-        figure.line("x", "y", color=NEUTRAL_COLOUR, line_width=1, source=self.path)
-        for source in (self.shapes, self.motion, self.reached, self.bent, self.grip):
+        figure.line("x", "y", color=NEUTRAL_COLOUR, line_width=1, source=self.path_source)
+        for source in (
+            self.shapes_source,
+            self.motion_source,
+            self.reached_source,
+            self.bent_source,
+            self.grip_source,
+        ):
             figure.scatter("x", "y", visible=False, source=source)  # sends the source to the browser
-        self.line = figure.line(
-            "x", "y", color=STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm, visible=False
+        self.arm_line = figure.line(
+            "x", "y", color=STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm_source,
+            visible=False,
         )  # fmt: skip
         figure.scatter([0], [0], marker="square", size=12, color=POINT_COLOUR)
         for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
-            arguments = {"figure": figure, "grip": self.grip, "phase": phase}
+            arguments = {"figure": figure, "grip": self.grip_source, "phase": phase}
             figure.js_on_event(event, CustomJS(args=arguments, code=template_text("grip.js")))
         self.card = Card("beating", figure)
         self.card.set_title("")
 
-    def animation(self) -> CustomJS:
+    def animation_script(self) -> CustomJS:
         """Browser script that animates the arm; the page runs this script once, when the document is
         ready.
         """
         names = ("shapes", "motion", "reached", "arm", "bent")
-        sources: dict[str, Any] = {name: getattr(self, name) for name in names}
+        sources: dict[str, Any] = {name: getattr(self, f"{name}_source") for name in names}
         more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE_COLOUR}
         return CustomJS(args=sources | more, code=template_text("beating.js"))
 
@@ -83,7 +96,7 @@ class BeatingPicture:
                 x, y = (float(new[name][0]) / self.length.factor for name in "xy")
                 drag("motion" if new["phase"][0] == "let go" else "bent", (x, y))
 
-        self.grip.on_change("data", dragged)
+        self.grip_source.on_change("data", dragged)
 
     def show(self, found: dict[str, Any], length: PictureAxis) -> None:
         """Draws the cycle of an answer `found` of the task `limit_cycle`, with a sentence if the cycle is not
@@ -95,9 +108,9 @@ class BeatingPicture:
         has_cycle = bool(np.isfinite(x).all())
         if not has_cycle:
             x, y = (found[name][None] * length.factor for name in "xy")
-        self.shapes.data = source_of(x, y)
+        self.shapes_source.data = source_of(x, y)
         self._draw_path(x[: len(x) * has_cycle], y[: len(y) * has_cycle], is_closed=True)
-        self._fit(x, y)
+        self._fit_axes(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
             f"{n} ({length.label})" for n in "xy"
         )
@@ -106,17 +119,17 @@ class BeatingPicture:
         if has_cycle:
             self.card.show_figure()
         else:
-            self.card.show_sentence_above(sentence_of(found))
+            self.card.show_sentence_above(status_sentence(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
         `dragged_equilibrium`.
         """
-        self.bent.data = {name: found[name] * self.length.factor for name in "xy"}
+        self.bent_source.data = {name: found[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, found: dict[str, Any]) -> None:
         """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
-        found: result of `motion`, and the position `tip`.
+        found: result of `released_motion_answer`, and the position `tip`.
         """
         factor = self.length.factor
         step = found["step"]
@@ -125,11 +138,11 @@ class BeatingPicture:
         shape_x = found["shape_x"] * factor
         shape_y = found["shape_y"] * factor
         turn = found["period"] if len(shape_x) else step * found["frames"]
-        self.motion.tags = [PERIOD_SECONDS * step / turn, PERIOD_SECONDS]
-        self.reached.data = source_of(shape_x, shape_y)
-        self.motion.data = source_of(x, y)
+        self.motion_source.tags = [PERIOD_SECONDS * step / turn, PERIOD_SECONDS]
+        self.reached_source.data = source_of(shape_x, shape_y)
+        self.motion_source.data = source_of(x, y)
         self._draw_path(x, y, is_closed=False)
-        self._fit(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
+        self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
         position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
         end = END_WORDS.get(found["status"], found["sentence"])
         part = "" if found["is_whole"] else "; this is the beginning"
@@ -137,23 +150,23 @@ class BeatingPicture:
 
     def remove_dragged_shape(self) -> None:
         """Removes the shape of a dragged arm and its motion after the release from the picture."""
-        for source in (self.motion, self.reached, self.bent):
+        for source in (self.motion_source, self.reached_source, self.bent_source):
             if len(source.data["x"]):
                 source.data = {name: [] for name in source.data}
 
-    def stop(self) -> None:
+    def remove_all_shapes(self) -> None:
         """Removes all shapes from the picture, so that the animation stops."""
         self.remove_dragged_shape()
-        self.shapes.data = {name: [] for name in SHAPE_COLUMNS}
+        self.shapes_source.data = {name: [] for name in SHAPE_COLUMNS}
 
     def _draw_path(self, x: Array, y: Array, is_closed: bool) -> None:
         """Draws the path of the tip through shapes, (shapes, nodes). is_closed: whether the last shape is
         followed by the first.
         """
         path = smooth_tip_path(np.stack([x[:, -1], y[:, -1]], axis=1), is_closed)
-        self.path.data = source_columns(x=path[:, 0], y=path[:, 1])
+        self.path_source.data = source_columns(x=path[:, 0], y=path[:, 1])
 
-    def _fit(self, x: Array, y: Array) -> None:
+    def _fit_axes(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit
         of the axes.
         """

@@ -41,15 +41,15 @@ class BranchPicture:
         figure = new_figure(
             "force F (k3/L^2)", "largest tip deflection (L)", x_range=Range1d(0, 1), y_range=Range1d(-0.05, 1)
         )
-        self.pieces = empty_source(("F", "y", "colour", "dash"), "branch_source")
-        self.cycles = empty_source(("F", "y", "colour"), "stored_cycle_source")
-        self.special = empty_source(("F", "y", "kind", "period"), "special_source")
+        self.branch_source = empty_source(("F", "y", "colour", "dash"), "branch_source")
+        self.cycle_source = empty_source(("F", "y", "colour"), "stored_cycle_source")
+        self.special_point_source = empty_source(("F", "y", "kind", "period"), "special_source")
         figure.multi_line(
-            "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.pieces
+            "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.branch_source
         )  # fmt: skip
-        figure.scatter("F", "y", size=5, color="colour", source=self.cycles)
+        figure.scatter("F", "y", size=5, color="colour", source=self.cycle_source)
         marks = figure.scatter(
-            "F", "y", size=9, color=NEUTRAL_COLOUR, line_color=POINT_COLOUR, source=self.special
+            "F", "y", size=9, color=NEUTRAL_COLOUR, line_color=POINT_COLOUR, source=self.special_point_source
         )
         figure.add_tools(
             HoverTool(
@@ -68,8 +68,8 @@ class BranchPicture:
             for text, key in zip(("stable", "unstable"), keys, strict=True)
         ]
         figure.add_layout(Legend(items=items, location="top_left"))
-        self.point = vertical_line(0, POINT_COLOUR)
-        figure.add_layout(self.point)
+        self.load_line = vertical_line(0, POINT_COLOUR)
+        figure.add_layout(self.load_line)
         self.card = Card("branches", figure)
         self.card.set_title("")
 
@@ -79,14 +79,14 @@ class BranchPicture:
         axis. length: vertical axis.
         """
         pieces = found["pieces"]
-        self.pieces.data = {
+        self.branch_source.data = {
             "F": [at * load.factor for at, _, _ in pieces],
             "y": [y * length.factor for _, y, _ in pieces],
             "colour": [STABILITY_COLOURS[stable] for _, _, stable in pieces],
             "dash": [STABILITY_DASHES[stable] for _, _, stable in pieces],
         }
         cycles = found.get("cycles", NO_CYCLE_COLUMNS)
-        self.cycles.data = {
+        self.cycle_source.data = {
             "F": cycles["F"] * load.factor,
             "y": cycles["y"] * length.factor,
             "colour": [STABILITY_COLOURS[stable] for stable in cycles["stable"]],
@@ -101,11 +101,11 @@ class BranchPicture:
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]
         names = ("F", "y", "kind", "period")
-        self.special.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
+        self.special_point_source.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
         title = found["sentence"] if found["status"] != "ok" else found.get("source", "")
         self.card.set_title(title)
         self.card.show_figure()
 
-    def move_point(self, F: float) -> None:
+    def move_load_line(self, F: float) -> None:
         """Moves the vertical line that marks the load of the page. F: load, in the unit of the axis."""
-        self.point.location = F
+        self.load_line.location = F

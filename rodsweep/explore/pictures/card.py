@@ -93,7 +93,7 @@ def set_axis_range(axis: Range1d, start: float, end: float) -> None:
     axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
-def sentence_of(found: dict[str, Any]) -> str:
+def status_sentence(found: dict[str, Any]) -> str:
     """Meaning of the status of the answer `found`, followed by the solver's message if there is one."""
     return "; ".join(filter(None, (found["sentence"], found["message"])))
 

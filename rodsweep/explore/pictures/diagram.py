@@ -60,7 +60,7 @@ def cell_edges(values: Array) -> Array:
     return np.exp(np.concatenate(([2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]])))
 
 
-def cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
+def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
     (rows,). counts: numbers of unstable modes, (rows, columns).
     """
@@ -103,21 +103,21 @@ class DiagramPicture:
             "force F (k3/L^2)", "k2", y_axis_type="log",
             x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
         )  # fmt: skip
-        self.cells = empty_source(
+        self.cell_source = empty_source(
             ("left", "right", "bottom", "top", "unstable", "words", "colour", "alpha"), "cell_source"
         )
-        self.curves = empty_source(("x", "y", "colour"), "curve_source")
-        self.of_cycles = empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
-        self.crossings = empty_source(("x", "y", "colour"), "crossing_source")
-        self.point = empty_source(("x", "y"), "point_source")
+        self.curve_source = empty_source(("x", "y", "colour"), "curve_source")
+        self.cycle_curve_source = empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
+        self.crossing_source = empty_source(("x", "y", "colour"), "crossing_source")
+        self.point_source = empty_source(("x", "y"), "point_source")
         areas = figure.quad(
             left="left", right="right", bottom="bottom", top="top", color="colour", alpha="alpha",
-            line_width=0, source=self.cells,
+            line_width=0, source=self.cell_source,
         )  # fmt: skip
         figure.add_tools(HoverTool(renderers=[areas], tooltips=[("", "@words")]))
-        figure.multi_line("x", "y", color="colour", line_width=2, source=self.curves)
+        figure.multi_line("x", "y", color="colour", line_width=2, source=self.curve_source)
         figure.multi_line(
-            "x", "y", color="colour", line_dash="dash", line_width=3, source=self.of_cycles
+            "x", "y", color="colour", line_dash="dash", line_width=3, source=self.cycle_curve_source
         )  # fmt: skip
         keys = [
             LegendItem(label=text, renderers=[figure.line([nan], [nan], color=c, line_dash=d, line_width=3)])
@@ -125,7 +125,7 @@ class DiagramPicture:
         ]
         self.legend = Legend(items=keys, location="top_left", visible=False)
         figure.add_layout(self.legend)
-        figure.scatter("x", "y", size=6, color="colour", source=self.crossings)
+        figure.scatter("x", "y", size=6, color="colour", source=self.crossing_source)
         figure.scatter(
             "x",
             "y",
@@ -133,7 +133,7 @@ class DiagramPicture:
             size=22,
             line_width=3,
             color=POINT_COLOUR,
-            source=self.point,
+            source=self.point_source,
             level="overlay",
         )
         self.card = Card("diagram", figure)
@@ -141,7 +141,7 @@ class DiagramPicture:
     @property
     def is_drawn(self) -> bool:
         """Whether the figure contains a diagram."""
-        return len(self.cells.data["left"]) > 0
+        return len(self.cell_source.data["left"]) > 0
 
     def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
         """Draws the answer `found` to the question "diagram". load, second: scales of the controls whose
@@ -149,15 +149,15 @@ class DiagramPicture:
         """
         x = found["x"] * load.factor
         y = found["y"] * second.factor
-        grid = cells(x, y, found["unstable_count"])
+        grid = diagram_cells(x, y, found["unstable_count"])
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [stability_colour(cell.unstable) for cell in grid]
         data["words"] = [unstable_count_words(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
-        self.cells.data = data
+        self.cell_source.data = data
         self._show_curves(found)
         kinds = found["crossing_kind"]
-        self.crossings.data = {
+        self.crossing_source.data = {
             "x": found["crossing_x"] * load.factor,
             "y": found["crossing_y"] * second.factor,
             "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
@@ -171,14 +171,14 @@ class DiagramPicture:
 
     def _show_curves(self, found: dict[str, Any]) -> None:
         x, y, kinds = _curves_of_answer(found, "curve")
-        self.curves.data = {
+        self.curve_source.data = {
             "x": x,
             "y": y,
             "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
         }
         x, y, kinds = _curves_of_answer(found, "cycle_curve")
         looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
-        self.of_cycles.data = {
+        self.cycle_curve_source.data = {
             "x": x,
             "y": y,
             "colour": [colour for _, colour, _ in looks],
@@ -188,7 +188,7 @@ class DiagramPicture:
 
     def move_point(self, x: float, y: float) -> None:
         """Moves the mark of the page's rod. x: load, y: second parameter, in the units of the axes."""
-        self.point.data = {"x": [x], "y": [y]}
+        self.point_source.data = {"x": [x], "y": [y]}
 
 
 def _curves_of_answer(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:

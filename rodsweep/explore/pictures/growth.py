@@ -45,17 +45,19 @@ class GrowthPicture:
         figure = new_figure(
             "force F (k3/L^2)", "growth rate (1/tau2)", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
         )
-        self.rates = empty_source(("F", "first", "second", "third"), "growth_source")
-        self.lines = empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
+        self.rate_source = empty_source(("F", "first", "second", "third"), "growth_source")
+        self.threshold_source = empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
         for name, width in (("third", 1), ("second", 1), ("first", 2.5)):
             figure.line(
                 "F",
                 name,
                 line_width=width,
                 color=NEUTRAL_COLOUR if width == 1 else STABLE_COLOUR,
-                source=self.rates,
+                source=self.rate_source,
             )
-        drawn = figure.vspan(x="F", line_color="colour", line_width=2, line_dash="dotted", source=self.lines)
+        drawn = figure.vspan(
+            x="F", line_color="colour", line_width=2, line_dash="dotted", source=self.threshold_source
+        )
         figure.add_tools(
             HoverTool(
                 renderers=[drawn],
@@ -63,9 +65,9 @@ class GrowthPicture:
             )
         )
         figure.add_layout(Span(location=0, dimension="width", line_color=NEUTRAL_COLOUR, line_dash="dashed"))
-        self.point = vertical_line(0, POINT_COLOUR)
-        self.point.line_width = 3
-        figure.add_layout(self.point)
+        self.load_line = vertical_line(0, POINT_COLOUR)
+        self.load_line.line_width = 3
+        figure.add_layout(self.load_line)
         self.card = Card("growth", figure, title_lines=2)
         self.card.set_title("")
 
@@ -74,7 +76,7 @@ class GrowthPicture:
         rates = found["growth_rate"]
         names = ("first", "second", "third")
         F = found["F"] * load.factor
-        self.rates.data = source_columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
+        self.rate_source.data = source_columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
         leading = rates[:, 0]
         set_axis_range(self.card.figure.y_range, *axis_limits(np.append(leading[np.isfinite(leading)], 0.0)))
         set_axis_range(self.card.figure.x_range, F[0], F[-1])
@@ -93,12 +95,12 @@ class GrowthPicture:
             if kind in THRESHOLD_LOOKS
         ]
         names = ("F", "kind", "colour", "frequency")
-        self.lines.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
+        self.threshold_source.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
         self.card.set_title(threshold_title(found, load))
 
-    def move_point(self, F: float) -> None:
+    def move_load_line(self, F: float) -> None:
         """Moves the thick line that marks the load of the page. F: load, in the unit of the axis."""
-        self.point.location = F
+        self.load_line.location = F
 
 
 def threshold_title(found: dict[str, Any], load: PictureAxis) -> str:

@@ -49,6 +49,7 @@ class NumbersTable:
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
         self.answers_by_kind: dict[str, dict[str, Any]] = {}
+        """Latest answer to each kind of question in the table."""
 
     def show(self, kind: str, found: dict[str, Any] | None) -> None:
         """Replaces the rows for the kind of question `kind` by numbers of the answer `found`; None removes

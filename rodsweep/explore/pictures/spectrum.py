@@ -13,9 +13,9 @@ from .card import (
     axis_limits,
     empty_source,
     new_figure,
-    sentence_of,
     set_axis_range,
     source_columns,
+    status_sentence,
     vertical_line,
 )
 from .numbers import SI_NAMES
@@ -46,12 +46,12 @@ class SpectrumPicture:
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
         if not known.any():
-            self.card.show_sentence_instead(sentence_of(found))
+            self.card.show_sentence_instead(status_sentence(found))
             return
         growth = growth[known]
         frequency = frequency[known]
-        colour_script = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
-        self.source.data = source_columns(growth=growth, frequency=frequency, colour=colour_script)
+        colours = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
+        self.source.data = source_columns(growth=growth, frequency=frequency, colour=colours)
         figure = self.card.figure
         set_axis_range(figure.x_range, *axis_limits(np.append(growth, 0.0)))
         set_axis_range(figure.y_range, *axis_limits(frequency))
@@ -99,7 +99,7 @@ class ModePicture:
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():
-            self.card.show_sentence_instead(sentence_of(found))
+            self.card.show_sentence_instead(status_sentence(found))
             return
         self.source.data = source_columns(u=found["u"], real=real, imaginary=imaginary)
         set_axis_range(self.card.figure.y_range, *axis_limits(np.append(real, imaginary)))

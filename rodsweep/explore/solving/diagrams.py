@@ -30,7 +30,7 @@ ARM_ROW_COUNT = 12
 ARM_SPAN_RATIO = 2.0
 """The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the present
 value; the ratio is small, so that all arms are slender."""
-KEPT_DIAGRAM_COUNT = 8
+CACHED_DIAGRAM_COUNT = 8
 """Number of solved diagrams that a solver process keeps, some 100 kB each: the search of folds and torus
 points adds to the diagram that is drawn."""
 CYCLE_ACCURACY = 1e-4
@@ -48,7 +48,7 @@ TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
 
-def diagram(state: PageState) -> dict[str, Any]:
+def diagram_answer(state: PageState) -> dict[str, Any]:
     """Stability diagram around the rod or arm of `state`, as arrays by name.
 
     x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_COUNT
@@ -62,8 +62,8 @@ def diagram(state: PageState) -> dict[str, Any]:
     return _diagram_of_rods(state) if has_uniform_rods(state) else _diagram_from_thresholds(state)
 
 
-def cycle_diagram(state: PageState) -> dict[str, Any]:
-    """The result of `diagram` with curves of folds and torus points of cycles, which are searched on
+def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
+    """The result of `diagram_answer` with curves of folds and torus points of cycles, which are searched on
     SLOW_ROW_COUNT rows. A diagram that this process has already solved is not solved again.
 
     Raises InputError for rods that are not uniform or not of linear material.
@@ -81,7 +81,7 @@ def cycle_diagram(state: PageState) -> dict[str, Any]:
 
 
 def can_follow_cycle_curves(state: PageState) -> bool:
-    """Whether `cycle_diagram` can follow folds and torus points of cycles for this state."""
+    """Whether `cycle_diagram_answer` can follow folds and torus points of cycles for this state."""
     return state.tab == "rod" and has_uniform_rods(state)
 
 
@@ -110,15 +110,15 @@ def _fixed_parameters(state: PageState) -> dict[str, Any]:
 def _diagram_of_rods(
     state: PageState, row_count: int = ROW_COUNT, cycles: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """Diagram of uniform rods, with the variables of `diagram`, from the task `phase_diagram`. cycles:
+    """Diagram of uniform rods, with the variables of `diagram_answer`, from the task `phase_diagram`. cycles:
     further keywords of the sweep, which request folds and torus points of cycles."""
     rows = tuple(second_parameter_values(state, row_count).tolist())
     keywords = {**_fixed_parameters(state), **(cycles or {})}
-    return _solved_phases(state.second, rows, state.largest_force(), tuple(keywords.items()))
+    return _cached_rod_diagram(state.second, rows, state.largest_force(), tuple(keywords.items()))
 
 
-@lru_cache(maxsize=KEPT_DIAGRAM_COUNT)
-def _solved_phases(
+@lru_cache(maxsize=CACHED_DIAGRAM_COUNT)
+def _cached_rod_diagram(
     second: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
     """Diagram up to the load `F_max` on the values `rows` of the parameter `second`; callers must not change
@@ -130,8 +130,8 @@ def _solved_phases(
 
 
 def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
-    """Diagram, with the variables of `diagram`, from a result of the task `phase_diagram` or `spectrum` over
-    F and the parameter `second`.
+    """Diagram, with the variables of `diagram_answer`, from a result of the task `phase_diagram` or
+    `spectrum` over F and the parameter `second`.
     """
     counts = data["unstable_count"].transpose(second, "F").values
     if "class" in data:
@@ -147,8 +147,8 @@ def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
 
 
 def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
-    """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram`, from
-    the task `thresholds`.
+    """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram_answer`,
+    from the task `thresholds`.
     """
     keywords: dict[str, Any] = {
         **_fixed_parameters(state),
@@ -163,8 +163,8 @@ def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
 
 
 def _diagram_of_arms(state: PageState) -> dict[str, Any]:
-    """Diagram of arms, with the variables of `diagram`, from the task `thresholds` for values around the
-    second quantity of `state`.
+    """Diagram of arms, with the variables of `diagram_answer`, from the task `thresholds` for values around
+    the second quantity of `state`.
     """
     given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
     quantity = QUANTITIES[state.second]
@@ -179,8 +179,8 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
 
 
 def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
-    """Diagram, with the variables of `diagram`, from a result of the task `thresholds` for arms. values:
-    values of the second quantity, (rows,).
+    """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` for arms.
+    values: values of the second quantity, (rows,).
 
     The load extends to twice the larger of `pressure`, in Pa, and the smallest flutter pressure. If there is
     neither a pressure nor flutter, the load extends to the largest searched pressure.
@@ -194,8 +194,8 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
 
 
 def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
-    """Diagram, with the variables of `diagram`, from a result of the task `thresholds` over a second
-    parameter.
+    """Diagram, with the variables of `diagram_answer`, from a result of the task `thresholds` over a second
+    parameter. Beyond the end of a row's search, and on rows without a search, the count is UNKNOWN_COUNT.
 
     values: second parameter, (rows,). name: name of the variable with the loads at the thresholds. largest:
     largest load of the diagram.

@@ -20,7 +20,7 @@ from ...errors import InputError
 from ...post.branch_curves import RodBranches
 from ..state import LAWS, PageState, rod_of
 from .branches import drawn_branches
-from .diagrams import Dataset, cycle_diagram, diagram, flag_words
+from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
 from .tip_release import Tip, dragged_equilibrium, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
@@ -54,9 +54,9 @@ class Reply(NamedTuple):
     """Message of a solver process to the page.
 
     outcome: "answer", "refused", "failed" or "cancelled"; "ready" once the process has started; "progress"
-    during a long solve. content: variables of the answer by name; for "progress", `words` and `share` of a
-    `SolvePosition`; for "refused" and "failed", an error message under the name `sentence`. seconds: time
-    since the start of the solve.
+    during a long solve. content: variables of the answer by name; for "progress", `words` and
+    `completed_fraction` of a `SolvePosition`; for "refused" and "failed", an error message under the name
+    `sentence`. seconds: time since the start of the solve.
     """
 
     outcome: str
@@ -75,19 +75,19 @@ def answer_variables(answer: Answer) -> AnswerVariables:
     }  # fmt: skip
 
 
-def spectrum(state: PageState) -> AnswerVariables:
+def spectrum_answer(state: PageState) -> AnswerVariables:
     """Leading eigenvalues and modes of the straight rod, and the number of unstable modes."""
     return answer_variables(state.subject().spectrum(modes=MODE_COUNT, vectors=True, progress=False))
 
 
-def thresholds(state: PageState) -> AnswerVariables:
+def thresholds_answer(state: PageState) -> AnswerVariables:
     """Thresholds of the straight rod along F, as variables by name. kinds: kind of each threshold, in
     words."""
     answer = state.subject().thresholds(F_max=state.largest_force(), progress=False)
     return answer_variables(answer) | {"kinds": flag_words(answer.data["crossing_kind"]).tolist()}
 
 
-def growth(state: PageState) -> AnswerVariables:
+def growth_answer(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes along F, as variables by name. unit: "1/tau2" for a rod, "1/s" for an
     arm.
     """
@@ -106,14 +106,14 @@ def growth(state: PageState) -> AnswerVariables:
     return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
 
-def cycle(state: PageState) -> AnswerVariables:
+def cycle_answer(state: PageState) -> AnswerVariables:
     """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm."""
     return answer_variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
         state, None
     )
 
 
-def film(state: PageState) -> AnswerVariables:
+def film_answer(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
     Raises InputError if the rod has no cycle.
     """
@@ -128,7 +128,7 @@ def film_of_cycle(cycle: Answer | Dataset) -> AnswerVariables:
     return {"gif": plot(cycle, what="animation").image}
 
 
-def branch(state: PageState) -> AnswerVariables:
+def branch_answer(state: PageState) -> AnswerVariables:
     """Branches of cycles along F.
 
     pieces: (F, y, stability) of each part of a branch or of the straight rod; stability is 1, 0, or -1 if
@@ -148,14 +148,14 @@ def crushing_force(rod: Mapping[str, float]) -> float:
 
 
 STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
-    "spectrum": spectrum,
-    "thresholds": thresholds,
-    "growth": growth,
-    "cycle": cycle,
-    "branch": branch,
-    "diagram": diagram,
-    "cycles": cycle_diagram,
-    "film": film,
+    "spectrum": spectrum_answer,
+    "thresholds": thresholds_answer,
+    "growth": growth_answer,
+    "cycle": cycle_answer,
+    "branch": branch_answer,
+    "diagram": diagram_answer,
+    "cycles": cycle_diagram_answer,
+    "film": film_answer,
 }
 """For each kind of question about the state of the page, the function that answers the question."""
 TIP_SOLVERS: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {

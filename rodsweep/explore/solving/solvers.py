@@ -48,13 +48,13 @@ compiled code."""
 class SolverTimeLimits:
     """Time limits of a solver process, in seconds.
 
-    interrupt: a solve of at least this age is cancelled when a newer question with the same key waits.
-    Younger solves finish, so that pictures follow a moving slider. kill: a process that has not replied this
-    time after a cancellation is killed, and restarted for the next question.
+    interrupt_seconds: a solve of at least this age is cancelled when a newer question with the same key
+    waits. Younger solves finish, so that pictures follow a moving slider. kill_seconds: a process that has
+    not replied this time after a cancellation is killed, and restarted for the next question.
     """
 
-    interrupt: float = 0.3
-    kill: float = 1.5
+    interrupt_seconds: float = 0.3
+    kill_seconds: float = 1.5
 
 
 class SolverProcess:
@@ -67,11 +67,11 @@ class SolverProcess:
         self.niceness = niceness
         self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
         self.current_question: tuple[Key, ReplyCallback, ReplyCallback] | None = None
-        self.number = 0
+        self.question_number = 0
         """Number of questions sent so far. A timer compares this number with the number at which the timer
         was set, and acts only if both are equal."""
         self.solve_start_time = 0.0
-        self.starts = 0
+        self.start_count = 0
         self.is_ready = False
         """Whether the process has installed its signal handlers. Before that, SIGINT would end the
         process."""
@@ -96,9 +96,9 @@ class SolverProcess:
             self._send_next()
         elif self.current_question[0] == key:
             age = time.monotonic() - self.solve_start_time
-            number = self.number
+            number = self.question_number
             IOLoop.current().call_later(
-                max(0.0, self.time_limits.interrupt - age), lambda: self._cancel(number, key)
+                max(0.0, self.time_limits.interrupt_seconds - age), lambda: self._cancel(number, key)
             )
 
     def cancel_session(self, session: str) -> None:
@@ -108,18 +108,18 @@ class SolverProcess:
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
         if self.current_question is not None and self.current_question[0][0] == session:
-            self._interrupt(self.number)
+            self._interrupt(self.question_number)
 
     def drop(self, key: Key) -> None:
         """Removes the question with the given key from the queue, and cancels its solve if it has started."""
         self.waiting.pop(key, None)
         if self.current_question is not None and self.current_question[0] == key:
-            self._interrupt(self.number)
+            self._interrupt(self.question_number)
 
     def close(self) -> None:
         """Ends the process and empties the queue."""
         self.waiting.clear()
-        self._end()
+        self._end_process()
 
     def start(self) -> None:
         """Starts the process if it is not running."""
@@ -132,7 +132,7 @@ class SolverProcess:
             target=worker.answer_questions, args=(theirs, watched, self.niceness), daemon=True
         )
         self._process.start()
-        self.starts += 1
+        self.start_count += 1
         self.is_ready = False
         theirs.close()
         watched.close()
@@ -147,7 +147,7 @@ class SolverProcess:
         assert self._connection is not None
         self.current_question = (key, done, progress)
         self.solve_start_time = time.monotonic()
-        self.number += 1
+        self.question_number += 1
         self._connection.send(question)
 
     def _receive_replies(self, descriptor: int, events: int) -> None:
@@ -155,7 +155,7 @@ class SolverProcess:
         try:
             reply: Reply = self._connection.recv()
         except (EOFError, OSError):
-            self._end()
+            self._end_process()
             reply = Reply("failed", {"sentence": "the solver ended unexpectedly"}, 0.0)
         if reply.outcome == "ready":
             self.is_ready = True
@@ -172,30 +172,30 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `number` if it is still being solved while a newer question with an equal key
-        waits.
+        """Cancels question `number` if it is still being solved while a newer question with an equal
+        key waits.
         """
-        if number == self.number and key in self.waiting:
+        if number == self.question_number and key in self.waiting:
             self._interrupt(number)
 
     def _interrupt(self, number: int) -> None:
-        if self.current_question is None or number != self.number or self._process is None:
+        if self.current_question is None or number != self.question_number or self._process is None:
             return
         if not self.is_ready:
             IOLoop.current().call_later(INTERRUPT_RETRY_SECONDS, lambda: self._interrupt(number))
             return
         if self._process.is_alive() and self._process.pid is not None:
             os.kill(self._process.pid, signal.SIGINT)
-        IOLoop.current().call_later(self.time_limits.kill, lambda: self._kill(number))
+        IOLoop.current().call_later(self.time_limits.kill_seconds, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
-        if self.current_question is None or number != self.number:
+        if self.current_question is None or number != self.question_number:
             return
-        self._end()
+        self._end_process()
         self.current_question = None
         self._send_next()
 
-    def _end(self) -> None:
+    def _end_process(self) -> None:
         if self._process is None or self._connection is None or self._lifetime_pipe is None:
             return
         IOLoop.current().remove_handler(self._connection.fileno())

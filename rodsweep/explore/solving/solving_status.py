@@ -15,9 +15,9 @@ def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
     return f"solving {', '.join(names)} ..." if names else ""
 
 
-def progress_text(words: str, share: float | None) -> str:
-    """Progress of a solve as text in parentheses. words: present step of the solve. share: completed fraction
-    of the work; None if unknown.
+def progress_text(words: str, completed_fraction: float | None) -> str:
+    """Progress of a solve as text in parentheses. words: present step of the solve. completed_fraction:
+    completed fraction of the work; None if unknown.
     """
-    percent = "" if share is None else f", {share:.0%}"
+    percent = "" if completed_fraction is None else f", {completed_fraction:.0%}"
     return f" ({escape(words)}{percent})"

@@ -73,4 +73,4 @@ def _film_shapes(found: ReleasedMotion) -> dict[str, Any]:
 def _motion_job(state: PageState, **options: int) -> Job:
     rod = dict(rod_of(state.subject()))
     request = PortraitRequest(rod=DescribedRod(parameters=rod, material=LAWS[state.law]))
-    return request.job("limit_cycle", options, rod["F"])
+    return request.job_of_task("limit_cycle", options, rod["F"])

@@ -62,8 +62,8 @@ def _style_context(look: FigureLook) -> AbstractContextManager[None]:
 class FigureChoices(TypedDict, total=False):
     """Options that choose the content of a figure.
 
-    roots: choice of roots in a figure of spectra, see ROOTS. what: kind of figure, see KINDS. points: numbers
-    of the drawn points, from 1.
+    roots: choice of roots in a figure of spectra, one of ROOT_CHOICES. what: kind of figure, one of
+    FIGURE_KINDS. points: numbers of the drawn points, from 1.
     """
 
     roots: str | None
@@ -109,7 +109,7 @@ def draw(
     taken = output.exists() and (
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
-    request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, keep=keep, **choices)
+    request = FigureRequest(views, output, is_taken=taken, look=look, shapes=shapes, keep=keep, **choices)
     with _style_context(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
         try:
             shown = _draw_and_describe(request)
@@ -123,12 +123,12 @@ def draw(
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
             ) from error
-    return f"wrote {output}: {shown}{_omitted_points(views)}"
+    return f"wrote {output}: {shown}{_omitted_points_clause(views)}"
 
 
-def _omitted_points(views: Sequence[View]) -> str:
+def _omitted_points_clause(views: Sequence[View]) -> str:
     """Clause on the number of points that the figure omits; empty if the figure shows all points."""
-    words = np.concatenate([view.outcomes for view in views])
+    words = np.concatenate([view.status_names for view in views])
     counts = (
         f"{np.count_nonzero(words == word)} {text}"
         for word, text in OMITTED_STATUSES.items()

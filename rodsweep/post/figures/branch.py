@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...results.layouts.variables import MISSING_STATUS
-from ...wording import counted, has_or_have, some_of
+from ...wording import count_of_total, counted, has_or_have
 from ..branch_curves import (
     ParameterRange,
     RodBranches,
@@ -78,7 +78,7 @@ def draw_branch(request: FigureRequest) -> str:
     upper, lower, *third = figure.subplots(2 + beside, 1)
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
-    marked = draw_curves(upper, lower, curves, colours)
+    marked = draw_branch_curves(upper, lower, curves, colours)
     if alone:
         draw_straight_rod(upper, drawn[0])
     upper.set_ylabel("largest $y/L$ of the tip")
@@ -98,7 +98,7 @@ def draw_branch(request: FigureRequest) -> str:
     return request.write(figure, shown + _omissions_clause(rods, len(beating), len(drawn)))
 
 
-def draw_curves(
+def draw_branch_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
 ) -> dict[str, Line2D]:
     """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
@@ -140,7 +140,9 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())
     without = computed - beating
     return more + (
-        f"; {some_of(without, computed, 'rod')} {has_or_have(without)} no branch" if without > 0 else ""
+        f"; {count_of_total(without, computed, 'rod')} {has_or_have(without)} no branch"
+        if without > 0
+        else ""
     )
 
 
@@ -165,7 +167,7 @@ def _draw_pieces(
 
 
 def _mark_special_points(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
-    """Marks the special points of a branch in two panels, as in `draw_curves`; adds legend entries to
+    """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
     `marked`.
     """
     for special in curve.special:

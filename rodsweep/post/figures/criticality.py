@@ -69,7 +69,7 @@ def draw_criticality(request: FigureRequest) -> str:
         return request.write(*draw_predictions(view))
     points = point_map(view)
     shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
-    return request.write(_maps_figure(view, points, request.look.narrow), shown, MAP_ASPECT)
+    return request.write(_maps_figure(view, points, request.look.is_narrow), shown, MAP_ASPECT)
 
 
 def _curves_figure(view: View, name: str) -> Figure:
@@ -91,7 +91,7 @@ def _curves_figure(view: View, name: str) -> Figure:
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.fixed_text(view, name)))
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, name)))
     return figure
 
 
@@ -122,7 +122,7 @@ def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
     norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
     colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
     panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
-    style.colour_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
+    style.draw_coloured_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
     entries = [

@@ -40,16 +40,16 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     name = figure_name(request)
     view = _with_needed_variables(request, name)
     if name == "animation":
-        request.check_output(*FILM_SUFFIXES)
+        request.require_output(*FILM_SUFFIXES)
         if request.keep is not None:
             raise InputError("an animation is not a single figure; save it as a .gif")
         return write_animation(view, points, request.output)
-    request.check_output()
+    request.require_output()
     if name == "amplitude":
-        return request.write(*draw_amplitude(request.views, request.look.narrow))
+        return request.write(*draw_amplitude(request.views, request.look.is_narrow))
     if name == "maps":
-        return request.write(*draw_maps(view, request.look.narrow), MAP_ASPECT)
-    return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.narrow), STRIP_ASPECT)
+        return request.write(*draw_maps(view, request.look.is_narrow), MAP_ASPECT)
+    return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.is_narrow), STRIP_ASPECT)
 
 
 def _with_needed_variables(request: FigureRequest, name: str) -> View:
@@ -61,7 +61,7 @@ def _with_needed_variables(request: FigureRequest, name: str) -> View:
         variable in view.variables for variable in NEEDED_VARIABLES.get(name, ())
     ):
         return view
-    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.outcomes == "cycle")]
+    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.status_names == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
     return request.shapes(view, numbers[:MAX_CYCLES])
 
@@ -95,7 +95,7 @@ def _default_figure_kind(request: FigureRequest) -> str:
         return "animation"
     if others:
         return "amplitude"
-    beats = first.outcomes == "cycle"
+    beats = first.status_names == "cycle"
     chosen = [number - 1 for number in request.points]
     few_cycles = len(chosen) > 0 or beats.sum() <= MAX_CYCLES
     few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES

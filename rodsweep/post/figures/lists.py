@@ -50,7 +50,7 @@ def shared_parameters(view: View) -> dict[str, float]:
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
-def number_points(axes: Axes, view: View, count: int) -> None:
+def label_point_numbers(axes: Axes, view: View, count: int) -> None:
     """Labels the horizontal axis with the numbers of the points of a list, from 1. count: number of points.
 
     For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the

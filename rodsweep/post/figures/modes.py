@@ -30,7 +30,7 @@ def draw_modes(request: FigureRequest) -> str:
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     require_content(view, points.size, "computed point")
-    narrow = request.look.narrow
+    narrow = request.look.is_narrow
     drawn = points[: 1 if narrow else MAX_RODS]
     rows, columns = (len(drawn) * len(MODE_PANELS), 1) if narrow else (len(drawn), len(MODE_PANELS))
     size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)

@@ -18,12 +18,12 @@ from ...model.parameters import CRUSHING_PARAMETERS, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.variables import flag_number
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
-from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
+from .stability.diagram_curves import draw_boundary_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .style import (
     LABELS,
@@ -69,7 +69,7 @@ class Palette:
     colours: dict[str, str]
 
     @property
-    def colours_of_numbers(self) -> dict[str, Any]:
+    def colour_keywords(self) -> dict[str, Any]:
         """Keywords for matplotlib with which an array of the integers is drawn in the colours."""
         numbers = [number for number, _ in self.words]
         return {
@@ -77,7 +77,7 @@ class Palette:
             "norm": BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers)),
         }
 
-    def patches(self, table: Array) -> list[Patch]:
+    def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
         shown = (word for number, word in self.words if (table == number).any())
         return [
@@ -103,12 +103,12 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     """
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
+    row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
     require_content(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
-    y = view.axes[row]
+    y = view.parameter_values[row]
     keep = np.isfinite(y)
     if keep.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
@@ -120,14 +120,14 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes = figure.subplots()
     pixels = _class_of_pixels(view, palette, line, row, table)
     unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
-    axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colours_of_numbers)
+    axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     scale_axis(axes, "x", x)
     scale_axis(axes, "y", y)
-    edge = _draw_crushing(axes, x, y) if _crushed_at_k1(view, line, row) else []
+    edge = _draw_crushing(axes, x, y) if _is_crushed_at_k1(view, line, row) else []
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
-    handles: list = palette.patches(table)
+    handles: list = palette.legend_entries(table)
     if "curve_number" in view.variables:
-        handles += draw_curves(axes, view, line, row, palette is STATE_PALETTE)
+        handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
         handles += draw_cycle_curves(axes, view, line, row)
     if "cycle_special_kind" in view.variables:
@@ -145,7 +145,7 @@ def _constant_parameters_text(view: View, line: str, row: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
     criticality. line, row: parameters on the axes.
     """
-    fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
+    fixed = {name: values[0] for name, values in view.parameter_values.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
@@ -153,11 +153,11 @@ def _constant_parameters_text(view: View, line: str, row: str) -> str:
     return parameter_text(fixed)
 
 
-def _crushed_at_k1(view: View, line: str, row: str) -> bool:
+def _is_crushed_at_k1(view: View, line: str, row: str) -> bool:
     """Whether the axes `line` and `row` are F and k1 and the rods are crushed at F = k1, as uniform rods of
     linear material are.
     """
-    return (line, row) == CRUSHING_PARAMETERS and has_covering(view.config)
+    return (line, row) == CRUSHING_PARAMETERS and has_standard_rods(view.config)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
@@ -174,17 +174,17 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """Figure with a bar for each row of a diagram, for a diagram with fewer than two rows at finite values.
-    line, row: parameters along a row, and constant on a row.
+    """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
+    parameter. line, row: parameters along a row, and constant on a row.
     """
     x = view.variables[line]
-    y = view.axes[row]
+    y = view.parameter_values[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
     share = np.linspace(0, 1, PIXEL_COUNT + 1)
     edges = x[0] * (x[-1] / x[0]) ** share if is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
     table = np.array([class_along_row(view, palette.variable, line, row, n, edges) for n in range(len(y))])
-    looks: dict[str, Any] = {"rasterized": True} | palette.colours_of_numbers
+    looks: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **looks)
     for between in np.arange(len(y) - 1) + 0.5:
         axes.axhline(between, color="white", lw=4)
@@ -192,7 +192,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.set_yticks(np.arange(len(y)), [f"${SYMBOLS[row]} = {number_text(value)}$" for value in y])
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
-    legend_below(figure, palette.patches(table), columns=3)
+    legend_below(figure, palette.legend_entries(table), columns=3)
     figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
     return figure
 
@@ -204,15 +204,15 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     line, row: parameters along a row, and constant on a row. table: classes at the computed points, (rows
     with a finite value, columns).
     """
-    y = view.axes[row]
+    y = view.parameter_values[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
-    known = (table != flag_number("crushed", palette.words)) | (not _crushed_at_k1(view, line, row))
-    computed = ClassifiedPoints(plane.unit(columns[known], rows[known]), table[known])
+    known = (table != flag_number("crushed", palette.words)) | (not _is_crushed_at_k1(view, line, row))
+    computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), table[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
         x, at, found = classes_between_crossings(view, row)
-        further = ClassifiedPoints(plane.unit(x, at), found)
+        further = ClassifiedPoints(plane.fractions_of_axes(x, at), found)
     curves = []
     v = view.variables
     for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in v):
@@ -220,8 +220,8 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
         if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
             number = np.where(v["curve_kind"] == 1, number, 0)
         ones = [number == one for one in np.unique(number[number > 0])]
-        curves += [plane.unit(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
-    if _crushed_at_k1(view, line, row):
+        curves += [plane.fractions_of_axes(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
+    if _is_crushed_at_k1(view, line, row):
         edge = np.linspace(plane.y[0], plane.y[-1], 1000)
-        curves += [plane.unit(share * edge, edge) for share in BARRIER_RATIOS]
+        curves += [plane.fractions_of_axes(share * edge, edge) for share in BARRIER_RATIOS]
     return pixel_classes(computed, further, curves)

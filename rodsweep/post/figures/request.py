@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...model.units import in_si
 from ...results.file.view import View
 from .arm.axes import add_si_scales
-from .arm.validity import add_validity
+from .arm.validity import hatch_invalid_points
 from .layout.fitting import MIN_ASPECT, fit_layout
 
 Shapes = Callable[[View, Sequence[int]], View]
@@ -55,24 +55,26 @@ class FigureLook:
     title: bool = False
     width: str | None = None
     style: str | None = None
-    inches: float | None = field(init=False)
+    width_in_inches: float | None = field(init=False)
     """Width of the figure, in inches; None for the natural width."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "inches", None if self.width is None else _inches(self.width))
+        object.__setattr__(self, "width_in_inches", None if self.width is None else _inches(self.width))
 
     @property
-    def narrow(self) -> bool:
+    def is_narrow(self) -> bool:
         """Whether the figure is so narrow that its panels are stacked."""
-        return self.inches is not None and self.inches < NARROW_WIDTH
+        return self.width_in_inches is not None and self.width_in_inches < NARROW_WIDTH
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-        """Scales a figure to the width `inches` and lays out the figure, see `fitting.fit`. min_aspect:
-        smallest ratio of height to width of a panel.
+        """Scales a figure to the width `width_in_inches`, if given, and lays out the figure, see
+        `fit_layout`. min_aspect: smallest ratio of height to width of a panel.
         """
-        if self.inches is not None:
+        if self.width_in_inches is not None:
             across, down = figure.get_size_inches()
-            figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)
+            figure.set_size_inches(
+                self.width_in_inches, down * min(1.0, self.width_in_inches / across) ** HEIGHT_POWER
+            )
         fit_layout(figure, min_aspect)
 
 
@@ -95,8 +97,8 @@ def _inches(width: str) -> float:
 
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
-    """Result files to draw, output file, and options of `rodsweep plot` (roots, what, points: see
-    `FigureChoices`).
+    """Result files `views` to draw, output file, and options of `rodsweep plot` (roots, what, points: see
+    `FigureChoices`; look: appearance).
     """
 
     views: Sequence[View]
@@ -104,7 +106,7 @@ class FigureRequest:
     roots: str | None = None
     what: str | None = None
     points: Sequence[int] = ()
-    taken: bool = False
+    is_taken: bool = False
     """Whether `output` is one of the files to draw, or exists and is not a regular file."""
     look: FigureLook = FigureLook()
     shapes: Shapes | None = None
@@ -117,7 +119,7 @@ class FigureRequest:
         of --what that is not in `kinds`, and for an invalid output name.
         """
         self.refuse_choices(self.views[0], kinds)
-        self.check_output()
+        self.require_output()
         return self.views[0]
 
     def refuse_choices(self, view: View, kinds: Sequence[str] = ()) -> None:
@@ -146,14 +148,14 @@ class FigureRequest:
                 f"{view.task}"
             )
 
-    def check_output(self, *suffixes: str) -> None:
+    def require_output(self, *suffixes: str) -> None:
         """Raises InputError if the name of the output file has none of the suffixes (by default suffixes of
-        images), or if `taken` is true.
+        images), or if `is_taken` is true.
         """
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
-        if self.taken:
+        if self.is_taken:
             raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
@@ -164,7 +166,7 @@ class FigureRequest:
         add_si_scales(figure, self.views)
         # Figures over an arm's quantities show the validity themselves.
         if not any(view.arm_axes for view in self.views):
-            add_validity(figure, self.views)
+            hatch_invalid_points(figure, self.views)
         if self.keep is not None:
             self.look.fit(figure, min_aspect)
             self.keep(figure)

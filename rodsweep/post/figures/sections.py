@@ -97,7 +97,7 @@ def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
 
 def without_infinite_values(view: View) -> View:
     """View of a grid without the infinite values of its axes, which a figure cannot show."""
-    for name, values in view.axes.items():
+    for name, values in view.parameter_values.items():
         finite = np.isfinite(values)
         if len(values) > 1 and not finite.all():
             view = _grid_at(view, name, finite)

@@ -60,7 +60,7 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     stable = curve.stable[moves]
     if len(own) <= MIRRORED_CYCLE_COUNT:
         return curve.at, curve.y, curve.period, curve.stable
-    corners = corners_of(own, extent)
+    corners = branch_corners(own, extent)
     for i in sorted(corners, reverse=True):
         own = np.insert(own, i + 1, corners[i], axis=0)
         stable = np.insert(stable, i, stable[i])
@@ -94,7 +94,7 @@ def _smooth_vertices(own: Array, extent: Array) -> Array:
     return places
 
 
-def corners_of(own: Array, extent: Array) -> dict[int, Array]:
+def branch_corners(own: Array, extent: Array) -> dict[int, Array]:
     """Corners of a branch through the cycles `own`, (n, 3), as {index of the previous cycle: (parameter, y,
     log period), (3,)}. extent: ranges of the branch, (3,).
 

@@ -19,7 +19,7 @@ from .request import FigureRequest
 from .sections import section_at_values, without_infinite_values
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
-    FOLLOWED_ROOTS,
+    ROOT_CHOICE_TEXTS,
     THRESHOLD_LINE,
     THRESHOLD_LOOKS,
     draw_line,
@@ -28,7 +28,15 @@ from .spectra.line import (
     roots_to_follow,
     threshold_text,
 )
-from .style import LABELS, fixed_text, heading_text, legend_below, require_content, scale_axis, varied_axes
+from .style import (
+    LABELS,
+    constant_parameters_text,
+    heading_text,
+    legend_below,
+    require_content,
+    scale_axis,
+    varied_axes,
+)
 
 MAX_PANELS = 12
 """Largest number of panels in one figure."""
@@ -69,14 +77,14 @@ def draw_spectrum(request: FigureRequest) -> str:
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
     long = varied_axes(view)
-    few = min(long, key=lambda name: len(view.axes[name]))
-    if len(long) > 1 and len(view.axes[few]) <= MAX_LINE_PANELS:
+    few = min(long, key=lambda name: len(view.parameter_values[name]))
+    if len(long) > 1 and len(view.parameter_values[few]) <= MAX_LINE_PANELS:
         return _draw_line_per_value(view, few, request)
     view = without_infinite_values(view)
     long = varied_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
-        return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
+        return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots])
     return request.write(_growth_map(view, long), "the leading growth rate", MAP_ASPECT)
 
 
@@ -84,7 +92,8 @@ def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map;
     returns a sentence."""
     lines = [
-        without_infinite_values(section_at_values(view, {few: float(value)})) for value in view.axes[few]
+        without_infinite_values(section_at_values(view, {few: float(value)}))
+        for value in view.parameter_values[few]
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     return _draw_line_panels(views, request, few)
@@ -93,8 +102,8 @@ def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
 def _draw_line_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
     """Draws a panel for each view, a line of spectra; returns a sentence. each: noun for a view."""
     roots = roots_to_follow(views, request.roots)
-    figure = draw_panels(views, roots, request.look.narrow)
-    return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {each}")
+    figure = draw_panels(views, roots, request.look.is_narrow)
+    return request.write(figure, f"{ROOT_CHOICE_TEXTS[roots]}, in a panel for each {each}")
 
 
 def _draw_files(request: FigureRequest) -> str:
@@ -102,7 +111,7 @@ def _draw_files(request: FigureRequest) -> str:
     spectra.
     """
     request.refuse_points(request.views[0])
-    request.check_output()
+    request.require_output()
     if len(request.views) > MAX_PANELS:
         raise InputError(
             f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
@@ -120,7 +129,7 @@ def _line_of_spectra(view: View, request: FigureRequest) -> View:
     view = as_grid_if_possible(view)
     require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite_values(view) if view.is_grid else view
-    if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
+    if not view.is_grid or sum(len(values) > 1 for values in view.parameter_values.values()) != 1:
         raise InputError(
             f"{view.path} is not a line of spectra, along which one parameter varies; only lines of spectra "
             "can share a figure"
@@ -132,8 +141,8 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     """Map of the largest growth rate over the two parameters `names`."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
-    x = view.axes[horizontal]
-    y = view.axes[vertical]
+    x = view.parameter_values[horizontal]
+    y = view.parameter_values[vertical]
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
     reach = float(np.nanmax(np.abs(growth)))
@@ -152,9 +161,13 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _note_points(axes, view.axes[horizontal], view.axes[vertical], growth)
+    _note_points(axes, view.parameter_values[horizontal], view.parameter_values[vertical], growth)
     figure.suptitle(
-        heading_text(view, fixed_text(view, *names), "black: zero growth, interpolated between the points")
+        heading_text(
+            view,
+            constant_parameters_text(view, *names),
+            "black: zero growth, interpolated between the points",
+        )
     )
     return figure
 
@@ -190,10 +203,12 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
             word = THRESHOLD_WORDS[threshold.kind]
             _, style = THRESHOLD_LOOKS[threshold.kind]
             handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
-        text = heading_text(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
+        text = heading_text(
+            view, constant_parameters_text(view, name), ", ".join(map(threshold_text, thresholds))
+        )
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()
     legend_below(figure, list(handles.values()), 2 if narrow else 3)
-    figure.suptitle(FOLLOWED_ROOTS[roots])
+    figure.suptitle(ROOT_CHOICE_TEXTS[roots])
     return figure

@@ -57,10 +57,10 @@ FIGURE_STYLE = {
     "ps.fonttype": 42,
 }
 """Settings of matplotlib for all figures."""
-FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
+FONT_SIZE_SETTINGS = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
 """Names of matplotlib's settings of font sizes."""
-PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZES, 8)
+PRINT_STYLE = FIGURE_STYLE | dict.fromkeys(FONT_SIZE_SETTINGS, 8)
 """Settings of matplotlib for a figure with a given width; all text has a size of 8 points."""
 
 
@@ -126,16 +126,18 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     )
 
 
-def fixed_text(view: View, *drawn: str) -> str:
+def constant_parameters_text(view: View, *drawn: str) -> str:
     """Constant parameters with their values, as text. drawn: names of the parameters on axes."""
-    return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
+    return parameter_text(
+        {name: values[0] for name, values in view.parameter_values.items() if name not in drawn}
+    )
 
 
 def varied_axes(view: View) -> list[str]:
     """Names of the one or two parameters of a grid that have several values. Raises InputError if no
     parameter, or more than two, have several values.
     """
-    long = [name for name, values in view.axes.items() if len(values) > 1]
+    long = [name for name, values in view.parameter_values.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
         raise InputError(
             f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
@@ -206,7 +208,7 @@ def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
         axes.set_ylabel(ylabel)
 
 
-def colour_cells(
+def draw_coloured_cells(
     axes: Axes,
     edges: tuple[np.ndarray, np.ndarray],
     values: np.ndarray,

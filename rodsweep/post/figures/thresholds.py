@@ -53,13 +53,13 @@ def draw_thresholds(request: FigureRequest) -> str:
     long = style.varied_axes(view)
     found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
     style.require_content(view, found, "threshold")
-    few = min(len(view.axes[name]) for name in long) <= MAX_LINES
+    few = min(len(view.parameter_values[name]) for name in long) <= MAX_LINES
     if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
-        figure, left_out = _threshold_maps(view, found, request.look.narrow)
+        figure, left_out = _threshold_maps(view, found, request.look.is_narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
     if len(long) == 1 or few:
         return request.write(*draw_all_lines(view, long, searched_range_clause(view)))
-    return request.write(*draw_lines_of_some(view, long, request.look.narrow, searched_range_clause(view)))
+    return request.write(*draw_lines_of_some(view, long, request.look.is_narrow, searched_range_clause(view)))
 
 
 def _draw_files(request: FigureRequest) -> str:
@@ -67,7 +67,7 @@ def _draw_files(request: FigureRequest) -> str:
     sentence. Raises InputError if the files do not vary in one common parameter only.
     """
     request.refuse_points(request.views[0], ("lines",))
-    request.check_output()
+    request.require_output()
     views = request.views
     along = style.varied_axes(views[0])
     if len(views) > len(FILE_COLOURS):
@@ -103,7 +103,9 @@ def _threshold_maps(view: View, names: list[str], narrow: bool) -> tuple[Figure,
     ):
         values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
-        style.colour_cells(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
+        style.draw_coloured_cells(
+            axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$"
+        )
         axes.set_facecolor(NO_THRESHOLD)
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)

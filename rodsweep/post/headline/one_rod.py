@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
-from ..summary.ranges import error_text, number_and_error, rounded
+from ..summary.ranges import error_text, number_and_error, rounded_text
 from ..tables import Tables
 from ..tables.columns import Column
 from ..tables.contents import POINTS
@@ -39,12 +39,12 @@ class ColumnTexts:
     def _numbers(column: Column) -> Array:
         return np.where(column.absent, np.nan, column.values.astype(float))
 
-    def error(self, name: str) -> Array:
+    def absolute_error(self, name: str) -> Array:
         """Absolute error of the variable `name`, (rows,); NaN where the error is unknown."""
         base = self._base.get(name)
         if base in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
-                return self.error(base) * np.abs(self._values[name] / self._values[base])
+                return self.absolute_error(base) * np.abs(self._values[name] / self._values[base])
         if name in EXACT_VARIABLES:
             return np.zeros_like(self._values[name])
         if name in self._beside:
@@ -53,7 +53,7 @@ class ColumnTexts:
         has_error = any(table.get(name, "") in self.columns for table in (RELATIVE_ERRORS, ABSOLUTE_ERRORS))
         return known if has_error else np.where(known > 0, known, np.nan)
 
-    def pairs(self, name: str) -> list[tuple[str, str]]:
+    def value_and_error_texts(self, name: str) -> list[tuple[str, str]]:
         """Pairs (value, absolute error) of the variable `name` as text, one per row. An unknown error is an
         empty text.
         """
@@ -61,12 +61,12 @@ class ColumnTexts:
         if column.is_boolean:
             return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
         if column.words or column.values.dtype.kind != "f":
-            return [(text, "") for text in column.text()]
+            return [(text, "") for text in column.texts()]
         if column.is_estimate:
             stated = self._values[name] + self._rounding(name)
             texts = (error_text(float(value)) if value else "0" for value in stated)
             return [("" if none else text, "") for text, none in zip(texts, column.absent, strict=True)]
-        rows = zip(self._values[name], self.error(name), column.absent, strict=True)
+        rows = zip(self._values[name], self.absolute_error(name), column.absent, strict=True)
         return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
 
     def _rounding(self, error: str) -> Array:
@@ -85,14 +85,14 @@ class ColumnTexts:
 
     def texts(self, name: str) -> list[str]:
         """Values of the variable `name` as text, one per row."""
-        return [text for text, _ in self.pairs(name)]
+        return [text for text, _ in self.value_and_error_texts(name)]
 
-    def short(self, name: str, row: int = 0) -> str:
+    def short_text(self, name: str, row: int = 0) -> str:
         """Value of the variable `name` in the given row as text: at most six digits, with the unit."""
         column = self.columns[name]
         value = float(self._values[name][row])
-        error = float(np.nan_to_num(self.error(name)[row]))
-        return f"{rounded(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
+        error = float(np.nan_to_num(self.absolute_error(name)[row]))
+        return f"{rounded_text(value, error)} {'' if column.unit == '1' else column.unit}".rstrip()
 
 
 FIRST_THRESHOLD_KINDS = ("onset", "hopf", "restabilization")
@@ -109,20 +109,21 @@ class OneRod:
     def __init__(self, view: View):
         self.view = view
         self.tables = Tables(view)
-        self.si = _si_variable_names(view)
-        own = [column for column in self.tables.table(POINTS).columns if not column.given]
-        self.lists: dict[str, ColumnTexts] = {
-            name: ColumnTexts(self.tables.items(name), self.si) for name in self.tables.contents.tables[1:]
+        self.si_names = _si_variable_names(view)
+        own = [column for column in self.tables.table(POINTS).columns if not column.is_input]
+        self.list_texts: dict[str, ColumnTexts] = {
+            name: ColumnTexts(self.tables.list_columns(name), self.si_names)
+            for name in self.tables.contents.tables[1:]
         }
-        self.points = ColumnTexts(own, self.si, self._threshold_errors())
+        self.point_texts = ColumnTexts(own, self.si_names, self._threshold_errors())
 
     def _threshold_errors(self) -> Mapping[str, np.ndarray]:
         """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
         crossings. Empty if the result has no list of crossings.
         """
-        if CROSSINGS not in self.lists or "crossing_error" not in self.lists[CROSSINGS].columns:
+        if CROSSINGS not in self.list_texts or "crossing_error" not in self.list_texts[CROSSINGS].columns:
             return {}
-        columns = self.lists[CROSSINGS].columns
+        columns = self.list_texts[CROSSINGS].columns
         at = next((columns[name] for name in ("crossing_F", "crossing_at") if name in columns), None)
         found = {}
         for event in FIRST_THRESHOLD_KINDS:
@@ -136,28 +137,28 @@ class OneRod:
         """Name of the variable that is printed for the variable `name`: the corresponding SI variable if
         `digits` has such a column, else `name`.
         """
-        return self.si.get(name, name) if self.si.get(name) in digits.columns else name
+        return self.si_names.get(name, name) if self.si_names.get(name) in digits.columns else name
 
     def column(self, name: str) -> Column | None:
         """The variable `name` of the rod as a column of one row; None if the variable or its value is
         missing.
         """
-        column = self.points.columns.get(self.preferred_name(self.points, name))
+        column = self.point_texts.columns.get(self.preferred_name(self.point_texts, name))
         return None if column is None or column.absent[0] else column
 
     def text(self, name: str) -> str:
         """The variable `name` of the rod as text with its unit; empty for a missing value."""
         column = self.column(name)
-        return "" if column is None else self.points.short(column.name)
+        return "" if column is None else self.point_texts.short_text(column.name)
 
     def count(self, name: str) -> int | None:
         """The integer variable `name` of the rod; None if its value is missing."""
-        column = self.points.columns.get(name)
+        column = self.point_texts.columns.get(name)
         return None if column is None or column.absent[0] else int(column.values[0])
 
     def words(self, table: str, name: str) -> list[str]:
         """Words in the column `name` of the table `table`, one for each row."""
-        return self.lists[table].columns[name].text()
+        return self.list_texts[table].columns[name].texts()
 
 
 def _si_variable_names(view: View) -> dict[str, str]:

@@ -34,11 +34,13 @@ def eigenvalue_sentence(rod: OneRod) -> str:
     count = rod.count("unstable_count")
     stability = "the straight rod is stable" if count == 0 else f"{counted(count or 0, 'unstable mode')}"
     stability = "number of unstable modes not known" if count is None else stability
-    modes = rod.lists["modes"]
+    modes = rod.list_texts["modes"]
     rate, frequency = (rod.preferred_name(modes, name) for name in ("growth_rate", "frequency"))
     if not len(modes.columns[rate].values):
         return ""
-    return f"{stability}: leading growth rate {modes.short(rate)}, frequency {modes.short(frequency)}"
+    return (
+        f"{stability}: leading growth rate {modes.short_text(rate)}, frequency {modes.short_text(frequency)}"
+    )
 
 
 def threshold_sentence(rod: OneRod) -> str:
@@ -60,11 +62,11 @@ def threshold_sentence(rod: OneRod) -> str:
 def _later_flutter(rod: OneRod) -> list[str]:
     """Clauses on the starts and ends of all windows of flutter after the first."""
     verbs = {"hopf": "flutters again from", "restabilization": "stable again from"}
-    crossings = rod.lists["crossings"]
+    crossings = rod.list_texts["crossings"]
     kinds = rod.words("crossings", "crossing_kind")
     name = rod.preferred_name(crossings, "crossing_F")
     load = name.removeprefix("crossing_")
-    return [f"{verbs[kinds[i]]} {load} = {crossings.short(name, i)}" for i in later_flutter_changes(kinds)]
+    return [f"{verbs[kinds[i]]} {load} = {crossings.short_text(name, i)}" for i in later_flutter_changes(kinds)]
 
 
 def hopf_sentence(rod: OneRod) -> str:
@@ -90,20 +92,20 @@ def branch_sentence(rod: OneRod) -> str:
     along, start, stop = (rod.view.config["branch"][key] for key in ("along", "start", "stop"))
     if not branches:
         return f"no branch of cycles: no Hopf point for {along} from {start:g} to {stop:g}"
-    cycles = rod.lists["cycles"]
+    cycles = rod.list_texts["cycles"]
     begin = counted(rod.count("hopf_count") or 0, "Hopf point")
     text = f"{counted(branches, 'branch')} of cycles from {begin}"
     y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
-    largest = cycles.short(y, int(np.nanargmax(cycles.columns[y].values)))
+    largest = cycles.short_text(y, int(np.nanargmax(cycles.columns[y].values)))
     return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest}"
 
 
 def cycle_sentence(rod: OneRod) -> str:
     """Sentence on the period and the amplitude of the cycle; empty if the result has no period."""
     if period := rod.text("period"):
-        status = str(rod.view.outcomes[0])
+        status = str(rod.view.status_names[0])
         beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
         return f"{beats}: period {period}, largest tip y {rod.text('tip_y_max')}"
     return ""
@@ -118,7 +120,7 @@ def _search_end_text(rod: OneRod) -> str:
 def _early_end_clause(rod: OneRod) -> str:
     """Clause that says at which load a search ended early; empty for a complete search."""
     early = "; not known beyond {}, where the search ended early"
-    return early.format(_search_end_text(rod)) if rod.view.with_status("ended_early").all() else ""
+    return early.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""
 
 
 EIGENVALUES = ("mode", "growth_rate", "frequency")

@@ -38,8 +38,8 @@ FRAME_MARGIN = 1.0
 
 @dataclass(frozen=True, slots=True)
 class HoverPoint:
-    """Text for a value in a figure. x, y: position relative to the upper left corner of the figure, in
-    points.
+    """A value in a figure with the text shown for it. x, y: position relative to the upper left corner of the
+    figure, in points.
     """
 
     x: float

@@ -84,7 +84,7 @@ def _is_constant(column: Column) -> bool:
 
 def _cells(column: Column) -> list[Cell]:
     """Cells for all values of a column."""
-    return [_cell(column, text, value) for text, value in zip(column.text(), column.values, strict=True)]
+    return [_cell(column, text, value) for text, value in zip(column.texts(), column.values, strict=True)]
 
 
 def _cell(column: Column, text: str, value: float) -> Cell:

@@ -84,7 +84,7 @@ def _with_parameter_ranges(view: View, statuses: TextTable) -> TextTable:
     listed = view.as_list
     rows = []
     for word, count, meaning in statuses.rows:
-        where = region_text(listed, listed.with_status(word)) if word in view.flags.values() else ""
+        where = region_text(listed, listed.has_status(word)) if word in view.flags.values() else ""
         rows.append((word, count, where, meaning))
     first, second, last = statuses.headings
     return TextTable((first, second, "where", last), tuple(rows))

@@ -13,9 +13,9 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
 from ..summary.arm.validity import plane_lines, validity_sentence
-from ..summary.branch import SPECIAL_WORDS
+from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
-from ..summary.ranges import rounded
+from ..summary.ranges import rounded_text
 from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
 
@@ -41,8 +41,8 @@ def paragraph(results: RodResults) -> str:
     """All results about the rod as one paragraph of text."""
     sentences = [
         *_rod_sentence(results),
-        *_thresholds(results),
-        *_branches(results),
+        *_threshold_sentences(results),
+        *_branch_sentences(results),
         *_cycle_sentences(results),
         *_missing_result_sentences(results),
     ]
@@ -50,22 +50,24 @@ def paragraph(results: RodResults) -> str:
 
 
 def _rod_sentence(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the parameters of the rod, and on the searched range of the load."""
-    end = float(results.views["thresholds"].of_point(0)["F_end"])
+    """Yields a sentence on the parameters of the rod and the searched range of the load, and for an arm
+    further sentences.
+    """
+    end = float(results.views["thresholds"].point_values(0)["F_end"])
     units = results.units
-    reached = units.force_at(end)
-    requested_force = units.force_at(results.F_max)
+    reached = units.load_text(end)
+    requested_force = units.load_text(results.F_max)
     kind = results.rod.kind
     searched = f"was searched up to {reached}"
     if not isfinite(end):
         searched = "could not be searched"
     elif reached != requested_force:
-        early = results.views["thresholds"].with_status("ended_early").all()
+        early = results.views["thresholds"].has_status("ended_early").all()
         ends = "the search ended early: the list was full, or modes could not be counted"
         searched += (
             f", not to {requested_force}: {ends if early else f'just above {reached} the {kind} is crushed'}"
         )
-    yield f"The {kind} with {results.rod.words} {searched}."
+    yield f"The {kind} with {results.rod.description} {searched}."
     if results.rod.arm:
         yield from _arm_sentence(results)
 
@@ -84,17 +86,17 @@ def _arm_sentence(results: RodResults) -> Iterator[str]:
     yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 
 
-def _thresholds(results: RodResults) -> Iterator[str]:
+def _threshold_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on the thresholds of the straight rod, with the criticality of the Hopf points."""
     view = results.views["thresholds"]
-    v = view.of_point(0)
+    v = view.point_values(0)
     places = np.flatnonzero(v["crossing_kind"] > 0)
     units = results.units
-    end = units.force_at(float(v["F_end"]))
+    end = units.load_text(float(v["F_end"]))
     clauses = []
     for i in places:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        clause = THRESHOLD_CLAUSES[kind].format(F=units.force_at(v["crossing_F"][i], v["crossing_error"][i]))
+        clause = THRESHOLD_CLAUSES[kind].format(F=units.load_text(v["crossing_F"][i], v["crossing_error"][i]))
         if frequency := float(v["crossing_frequency"][i]):
             clause += f" (frequency {units.frequency_text(frequency)}"
             clause += f"{_criticality_clause(results, float(v['crossing_F'][i]))})"
@@ -104,7 +106,7 @@ def _thresholds(results: RodResults) -> Iterator[str]:
     elif v["crossing_count"] == 0:
         yield f"The straight {results.rod.kind} has no threshold up to {end}."
     if v["crossing_count"] >= 0:
-        range_ = f" up to {end}" if view.with_status(ENDED_EARLY).all() else ""
+        range_ = f" up to {end}" if view.has_status(ENDED_EARLY).all() else ""
         proof = "proved complete" if v["certified"] else "not proved complete"
         yield f"This list of thresholds{range_} is {proof}."
 
@@ -114,7 +116,7 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     view = results.views.get("criticality")
     if view is None:
         return ""
-    v = view.of_point(0)
+    v = view.point_values(0)
     same = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
     sides = v["criticality"][same & np.isfinite(v["criticality"])]
     if not sides.size:
@@ -123,7 +125,7 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     return f"; {CRITICALITY_WORDS[int(sides[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
 
 
-def _branches(results: RodResults) -> Iterator[str]:
+def _branch_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on the branches of cycles, their special points, and the ranges in which cycles are
     stable.
     """
@@ -142,8 +144,8 @@ def _branches(results: RodResults) -> Iterator[str]:
     units = results.units
     cycles = sum(int(curve.cycles.sum()) for curve in curves)
     special = [
-        f"{counted(len(at), word)} at {units.at(', '.join(at))}"
-        for kind, word in SPECIAL_WORDS.items()
+        f"{counted(len(at), word)} at {units.load_phrase(', '.join(at))}"
+        for kind, word in SPECIAL_POINT_WORDS.items()
         if (at := _special_point_loads(curves, kind, units.force.factor))
     ]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
@@ -153,13 +155,13 @@ def _branches(results: RodResults) -> Iterator[str]:
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
     no_cycle = "none" if is_decided and not rod.hidden else "none is known"
-    yield f"Stable cycles: {units.forces_at(stable, rod.errors) if stable else no_cycle}."
+    yield f"Stable cycles: {units.load_ranges_text(stable, rod.errors) if stable else no_cycle}."
     if not rod.hidden:
         beside = rod.coexistence
-        ranges = units.forces_at(beside, rod.errors) if beside else ""
+        ranges = units.load_ranges_text(beside, rod.errors) if beside else ""
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycles:
-            yield f"Two different cycles are stable at {units.forces_at(pairs, rod.errors)}."
+            yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.errors)}."
 
 
 def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
@@ -180,7 +182,7 @@ def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: floa
     branches of the rod.
     """
     found = {
-        rounded(factor * special.at, factor * special.error): None
+        rounded_text(factor * special.at, factor * special.error): None
         for curve in curves
         for special in curve.special
         if special.kind == kind
@@ -193,11 +195,11 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
     units = results.units
     clauses = []
     for F, view in results.cycles:
-        v = view.of_point(0)
-        word = str(view.outcomes[0])
+        v = view.point_values(0)
+        word = str(view.status_names[0])
         if word not in CYCLE_WORDS:
             clauses.append(
-                f"at {units.force_at(F)} a motion from a small deflection leads to no cycle that is drawn "
+                f"at {units.load_text(F)} a motion from a small deflection leads to no cycle that is drawn "
                 f"({word.replace('_', ' ')})"
             )
             continue
@@ -210,7 +212,7 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
         )
         unstable = ", unstable," if word == "unstable" else ""
         clauses.append(
-            f"at {units.force_at(F)}{unstable} the period is {period} and the largest y of the tip {y}"
+            f"at {units.load_text(F)}{unstable} the period is {period} and the largest y of the tip {y}"
         )
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."
@@ -221,5 +223,5 @@ def _missing_result_sentences(results: RodResults) -> Iterator[str]:
     for task, reason in results.missing.items():
         yield f"Not solved, {task.replace('_', ' ')}: {reason}."
     for task in SEARCH_TASKS:
-        if (view := results.views.get(task)) and (word := str(view.outcomes[0])) != SUCCESS_STATUS:
+        if (view := results.views.get(task)) and (word := str(view.status_names[0])) != SUCCESS_STATUS:
             yield f"About {task}, {word.replace('_', ' ')}: {view.sentences.get(word, word)}."

@@ -15,9 +15,9 @@ from matplotlib.lines import Line2D
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ..figures import style
-from ..figures.branch import BRANCH_COLOURS, draw_curves, draw_straight_rod, stability_entries
+from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, force_arrow
-from ..figures.stability.class_bars import class_entries, draw_class_bar, mark_thresholds_on_bars
+from ..figures.stability.class_bars import class_legend_entries, draw_class_bar, mark_thresholds_on_bars
 from .paragraph import paragraph
 from .results import RodResults
 from .units import rescale_panel
@@ -88,7 +88,7 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     """Draws the stability of the straight rod along F, with the thresholds; returns legend entries."""
     view = results.views["thresholds"]
-    v = view.of_point(0)
+    v = view.point_values(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
     axes.spines["left"].set_visible(False)
     axes.tick_params(labelbottom=False)
@@ -99,7 +99,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     seen = draw_class_bar(axes, view, 0, upright=False)
     force = results.units.force
     marks = mark_thresholds_on_bars(axes, view, upright=False, unit=force.name, factor=force.factor)
-    return [*class_entries(seen), *marks]
+    return [*class_legend_entries(seen), *marks]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
@@ -115,7 +115,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
         return []
     handles: list[Artist] = [
         *stability_entries(rod.curves),
-        *draw_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
+        *draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
     ]
     draw_straight_rod(upper, rod)
     if not rod.hidden:
@@ -138,7 +138,7 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
     entry.
     """
-    beating = [(F, view.of_point(0)) for F, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
+    beating = [(F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
         values = [float(v[name]) for _, v in beating]
@@ -154,7 +154,7 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
         _write_sentence(axes, f"no mode: {results.missing['modes']}", PANEL_TEXT_WIDTH)
         return
     F, view = results.modes[kind]
-    v = view.of_point(0)
+    v = view.point_values(0)
     axes.set_title(results.units.mode_title(kind, F))
     if not np.isfinite(v["Y_real"][0]).all():
         _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
@@ -175,14 +175,14 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_axis_off()
         _write_sentence(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
-    drawn = [view.of_point(0) for _, view in results.cycles if view.with_status(*CYCLE_WORDS).all()]
+    drawn = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
     units = results.units
     length = units.length.factor
     reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
-        v = view.of_point(0)
+        v = view.point_values(0)
         force = units.force_title(F)
-        if not view.with_status(*CYCLE_WORDS).all():
+        if not view.has_status(*CYCLE_WORDS).all():
             axes.set_title(force)
             _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue
@@ -195,13 +195,13 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
         ends = length * np.array([-0.1, 1 + ARROW_LENGTH])
         axes.set(xlim=ends, ylim=(-length * reach, length * reach), aspect="equal")
-        axes.set(xlabel=units.along("x"), ylabel=units.along("y") if axes is panels[0] else "")
+        axes.set(xlabel=units.axis_label("x"), ylabel=units.axis_label("y") if axes is panels[0] else "")
         axes.tick_params(labelleft=axes is panels[0])
 
 
 def _status_meaning(view: View) -> str:
     """Meaning of the status of the only point in `view`."""
-    word = str(view.outcomes[0])
+    word = str(view.status_names[0])
     return view.sentences.get(word, word)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from ...results.file.view import View
 from ..branch_curves import RodBranches
-from .units import PortraitUnits, units_of
+from .units import PortraitUnits, portrait_units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,7 +29,7 @@ class DescribedRod:
         return "arm" if self.arm else "rod"
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Description of the rod as text: quantities of an arm, parameters other than F, and material."""
         words = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
         words += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
@@ -59,7 +59,7 @@ class RodResults:
     def units(self) -> PortraitUnits:
         """Units of the portrait, with prefixes suitable for the largest force of the search."""
         view = self.views["thresholds"]
-        return units_of(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
+        return portrait_units(view, self.rod.load, float(view.variables["F_end"].ravel()[0]))
 
     @property
     def branches(self) -> RodBranches | None:

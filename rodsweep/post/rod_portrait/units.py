@@ -14,7 +14,7 @@ from ...results.file.view import View
 from ..branch_curves import ParameterRange
 from ..figures import style
 from ..summary.arm.arm import printing_unit
-from ..summary.ranges import ranges_text, rounded
+from ..summary.ranges import ranges_text, rounded_text
 
 THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""
@@ -33,12 +33,14 @@ class Unit:
 
     def text(self, value: float, error: float) -> str:
         """`value` as text with the unit, rounded according to `error`. value, error: dimensionless."""
-        return f"{rounded(self.factor * value, self.factor * error)} {self.name}"
+        return f"{rounded_text(self.factor * value, self.factor * error)} {self.name}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitUnits:
-    """Units of the portrait of a rod or an arm. load: kind of the arm's load; empty for a rod."""
+    """Units of force, length, time and frequency in the portrait of a rod or an arm. load: kind of the arm's
+    load; empty for a rod.
+    """
 
     force: Unit
     length: Unit
@@ -46,27 +48,29 @@ class PortraitUnits:
     frequency: Unit
     load: str = ""
 
-    def along(self, axis: str) -> str:
+    def axis_label(self, axis: str) -> str:
         """Label of an axis for a coordinate of shapes. axis: "x" or "y"."""
         return f"${axis}$ ({self.length.name})" if self.load else f"${axis}/L$"
 
-    def at(self, text: str) -> str:
+    def load_phrase(self, text: str) -> str:
         """Phrase for the load: "F = 50" for a rod, "a pressure of 400 Pa" for an arm. text: one or more
         loads, as numbers in the unit of the portrait.
         """
         return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
 
-    def force_at(self, F: float, error: float = 0.0) -> str:
+    def load_text(self, F: float, error: float = 0.0) -> str:
         """The load at the dimensionless force F as text, rounded according to the absolute error of F."""
-        return self.at(rounded(self.force.factor * F, self.force.factor * error))
+        return self.load_phrase(rounded_text(self.force.factor * F, self.force.factor * error))
 
-    def forces_at(self, ranges: Sequence[ParameterRange], errors: Mapping[float, float]) -> str:
+    def load_ranges_text(self, ranges: Sequence[ParameterRange], errors: Mapping[float, float]) -> str:
         """Ranges of the load as text. ranges: ranges of the dimensionless force. errors: absolute errors of
         the ends, by end.
         """
         factor = self.force.factor
         own = [(factor * low, factor * high) for low, high in ranges]
-        return self.at(ranges_text(own, {factor * end: factor * error for end, error in errors.items()}))
+        return self.load_phrase(
+            ranges_text(own, {factor * end: factor * error for end, error in errors.items()})
+        )
 
     def frequency_text(self, omega: float) -> str:
         """Angular frequency `omega`, in 1/tau2, as text; for an arm, as a frequency in Hz."""
@@ -99,7 +103,7 @@ ROD_UNITS = PortraitUnits(
 """Units of the portrait of a rod; forces are in k3/L^2."""
 
 
-def units_of(view: View, load: str, largest: float) -> PortraitUnits:
+def portrait_units(view: View, load: str, largest: float) -> PortraitUnits:
     """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, for which
     the prefix of the load is chosen.
     """

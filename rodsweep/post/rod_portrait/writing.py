@@ -47,14 +47,14 @@ def portrait_page(results: RodResults) -> str:
     """Portrait as the text of an HTML page that needs no network."""
     picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
     views = [*results.views.items()]
-    at = results.units.force_at
+    at = results.units.load_text
     views += [(f"modes at {at(F)}", view) for F, view in results.modes.values()]
     views += [(f"limit cycle at {at(F)}", view) for F, view in results.cycles]
     return rendered_template(
         "portrait.html",
         [picture],
         kind=results.rod.kind,
-        title=f"{results.rod.kind.capitalize()} with {results.rod.words}",
+        title=f"{results.rod.kind.capitalize()} with {results.rod.description}",
         paragraph=paragraph(results),
         pictures=Pictures((CaptionedPicture(CAPTION, picture),)),
         tables=[

@@ -14,7 +14,7 @@ from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
-from ...results.file.provenance import FAILURE_REASONS
+from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
@@ -63,14 +63,18 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     a = view.attributes
     return Summary(
         answer=_answer_lines(view, done, lines),
-        trust=[*_unfinished_lines(view, int((~done).sum()), noun), *lines.trust, *_failure_sentences(view)],
+        reliability=[
+            *_unfinished_lines(view, int((~done).sum()), noun),
+            *lines.reliability,
+            *_failure_sentences(view),
+        ],
         statuses=TextTable(
             ("status", plural(noun), "meaning"), tuple(_status_rows(view, status, every_status))
         ),
         details=lines.details,
         axes=_axes_table(view),
         numbers=lines.numbers,
-        origin=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
+        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
     )
 
 
@@ -89,10 +93,10 @@ def show_summary(view: View, every_status: bool = False) -> None:
     if summary.numbers is not None:
         _print_numbers(console, summary.numbers)
     groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
-        ("Reliability", summary.trust, summary.statuses),
+        ("Reliability", summary.reliability, summary.statuses),
         ("Further results", summary.details, None),
         ("Parameters", (), summary.axes),
-        ("Provenance", summary.origin, None),
+        ("Provenance", summary.provenance, None),
     )
     for heading, lines, table in groups:
         if not lines and table is None:
@@ -133,7 +137,7 @@ def _answer_lines(view: View, done: np.ndarray, summary: SummaryLines) -> list[s
     """
     if not view.quantities or not done.any():
         return [*summary.answer]
-    lines = [*arm_answer(view, done), *summary.of_arm, *arm_lines(view, done)]
+    lines = [*arm_answer(view, done), *summary.arm_sentences, *arm_lines(view, done)]
     return [*lines, "", "the rods without dimension:", *summary.answer] if summary.answer else lines
 
 
@@ -157,7 +161,7 @@ def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )
-    if waiting := view.journalled:
+    if waiting := view.journalled_count:
         verb = "is" if waiting == 1 else "are"
         lines.append(
             f"{waiting} of the computed {plural(noun)} {verb} in the journal until the run writes the file"
@@ -170,10 +174,10 @@ def _failure_sentences(view: View) -> Iterable[str]:
     example.
     """
     columns = view.point_columns
-    for line in str(view.attributes.get(FAILURE_REASONS, "")).splitlines():
+    for line in str(view.attributes.get(FAILURE_REASONS_ATTRIBUTE, "")).splitlines():
         where, _, outcome = line.partition(": ")
         name, _, reason = outcome.partition(" ")
-        here = view.with_status(name).ravel()
+        here = view.has_status(name).ravel()
         for parameter, _, text in (pair.partition("=") for pair in where.split(", ")):
             here &= columns.get(parameter, float(text)) == float(text)
         if here.any() and reason:  # a later run may have computed the point anew
@@ -196,7 +200,7 @@ def _axes_table(view: View) -> TextTable:
     rows = []
     for name, values in view.quantities.items():
         si = ALL_QUANTITIES[name].unit
-        unit = view.typed.get(name, si)
+        unit = view.typed_units.get(name, si)
         rows.append(
             (
                 name,
@@ -204,7 +208,10 @@ def _axes_table(view: View) -> TextTable:
                 unit,
             )
         )
-    rows += [(name, *_count_and_range(values), DIMENSIONS[name][0]) for name, values in view.axes.items()]
+    rows += [
+        (name, *_count_and_range(values), DIMENSIONS[name][0])
+        for name, values in view.parameter_values.items()
+    ]
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))

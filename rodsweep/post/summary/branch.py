@@ -6,11 +6,11 @@ import numpy as np
 
 from ...arrays import Array
 from ...results.file.view import View
-from ...wording import counted, is_or_are, some_of
+from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import ParameterRange, RodBranches, StoredBranch, branch_ends, followed_parameter
 from ..uncrushed_range import uncrushed_range
 from .errors import known_range_text
-from .ranges import number_with_error, ranges_text, rounded, span_text
+from .ranges import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
 
@@ -20,7 +20,7 @@ COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES_WORDS = "stable cycles of two branches"
 """Phrase for a range in which stable cycles of two branches coexist."""
-SPECIAL_WORDS = {
+SPECIAL_POINT_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
@@ -48,7 +48,8 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
-    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes_text(view, done)}"
+    at = count_of_total((counts > 0).sum(), len(rods), "rod")
+    line = f"{branches} at {at}, {cycles}{_sizes_text(view, done)}"
     along = followed_parameter(view)
     answer = [line, *_special_lines(rods, along), *_coexistence_lines(rods, along)]
     return SummaryLines(answer, [_searched_range_line(view, done)])
@@ -59,7 +60,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     along = followed_parameter(rod.view)
     v = rod.view.variables
     if rod.hidden:
-        part = some_of(rod.hidden, rod.hidden + len(rod.curves), "branch")
+        part = count_of_total(rod.hidden, rod.hidden + len(rod.curves), "branch")
         yield f"{part} {is_or_are(rod.hidden)} not shown: {FULL_LIST_REASON}"
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known"
@@ -128,7 +129,7 @@ def _ends_phrase(curve: StoredBranch, along: str) -> str:
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
         return f"{start} to a cycle with h1 = 0, {end}"
-    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
+    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded_text(last.at, last.error)}"
 
 
 def _sizes_text(view: View, done: np.ndarray) -> str:
@@ -146,7 +147,9 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods.
     along: followed parameter.
     """
-    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *BRANCH_END_WORDS)}
+    found: dict[str, list[tuple[float, float]]] = {
+        word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
+    }
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     for _, number, curve in curves:
         for special in curve.special:
@@ -158,13 +161,13 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
         if not located:
             continue
         where = f"{along} = {span_text(*np.array(located).T)}"
-        if kind in SPECIAL_WORDS:
-            yield f"{counted(len(located), SPECIAL_WORDS[kind])}: {where}"
+        if kind in SPECIAL_POINT_WORDS:
+            yield f"{counted(len(located), SPECIAL_POINT_WORDS[kind])}: {where}"
         else:
             verb = "leads" if len(located) == 1 else "lead"
             yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
-        f"{point_text(rod.view, rod.rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
+        f"{point_text(rod.view, rod.rod)}: branch {number}, at {along} = {rounded_text(end.at, end.error)}"
         for rod, number, curve in curves
         if (end := curve.special[-1]).reason == "no_cycle_found"
     ]
@@ -199,7 +202,7 @@ def _lines_on_rods_with(
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]
-    yield f"{words} at {some_of(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
+    yield f"{words} at {count_of_total(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(having, "rod")
 
 
@@ -211,7 +214,7 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     start, stop = branch_ends(view)
     ranges = np.array([uncrushed_range(view, int(rod)) for rod in np.flatnonzero(done.ravel())])
     crushed = "" if (ranges == (start, stop)).all() else ", where the force does not crush the rod"
-    proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
+    proved = count_of_total(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
         f"followed in {along} from {start:g} to {stop:g}{crushed}; the list of Hopf points "
         f"{proof_clause(view)} at {proved}; cycles that lie on no branch from a Hopf point are not found"

@@ -7,10 +7,10 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
-from .ranges import number_and_error, rounded, span_text
+from .ranges import number_and_error, rounded_text, span_text
 from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region_text
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
@@ -38,19 +38,21 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         none = "the Hopf points of this rod are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span_text(v['F_end'])}"
-        of_rod = view.of_point(0)
+        of_rod = view.point_values(0)
         lines = list(_hopf_lines(of_rod)) or [none]
         lines[0] += unknown_beyond_clause(view, float(of_rod["F_end"]))
-        trust = [_searched_range_line(view, done)]
-        return SummaryLines(lines, trust, of_arm=crossings_of_arm(view), numbers=_hopf_table(of_rod))
+        reliability = [_searched_range_line(view, done)]
+        numbers = _hopf_table(of_rod)
+        return SummaryLines(lines, reliability, arm_sentences=crossings_of_arm(view), numbers=numbers)
     side = v["criticality"][done]
     first = side[:, 0]
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region_text(view, done & with_hopf)) if (done & with_hopf).any() else ""
-    unknown = int(((v["crossing_count"] < 0) | (view.with_status(ENDED_EARLY) & ~with_hopf))[done].sum())
+    unknown = int(((v["crossing_count"] < 0) | (view.has_status(ENDED_EARLY) & ~with_hopf))[done].sum())
     lines = [
-        f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}{unknown_clause(unknown)}"
+        f"Hopf points at {count_of_total(with_hopf[done].sum(), done.sum(), 'rod')}"
+        f"{where}{unknown_clause(unknown)}"
     ]
     if not known.any():
         return SummaryLines(lines, [_searched_range_line(view, done)])
@@ -61,7 +63,7 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         f"first Hopf point: {_count_text(first)}; F = {F}, a = {span_text(*(table[:, 0] for table in a))} L",
         *_subcritical_lines(view),
     ]
-    trust = [
+    reliability = [
         _searched_range_line(view, done),
         f"worst relative errors: c {_maximum(v['landau_error'][done])}, dw/dF "
         f"{_maximum(v['growth_slope_error'][done])}, a {_maximum(v['amplitude_coefficient_error'][done])}, b "
@@ -69,13 +71,13 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     ]
     which = "stored" if (v["crossing_count"][done] > known.sum(axis=-1)).any() else "all"
     sizes = f"a = {span_text(*a)} L, b = {span_text(*b)} L^2/(k3 tau2)"
-    return SummaryLines(lines, trust, [f"{which} Hopf points: {_count_text(side)}; {sizes}"])
+    return SummaryLines(lines, reliability, [f"{which} Hopf points: {_count_text(side)}; {sizes}"])
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
     """Yields one line for each Hopf point of the only rod in a file. v: variables of this rod."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
-        F = rounded(v["crossing_F"][i], v["crossing_error"][i])
+        F = rounded_text(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         form = "its normal form is not known"
         if np.isfinite(v["landau_error"][i]):
@@ -131,7 +133,7 @@ def _subcritical_lines(view: View) -> Iterator[str]:
         names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
         forces, a, relative, absolute = (view.by_point(name)[rod][places] for name in names)
         each = ", ".join(
-            f"F = {rounded(F, dF)} (Hopf point {i + 1}, a = {rounded(x, abs(x) * dx)} L)"
+            f"F = {rounded_text(F, dF)} (Hopf point {i + 1}, a = {rounded_text(x, abs(x) * dx)} L)"
             for F, dF, i, x, dx in zip(forces, absolute, places, a, relative, strict=True)
         )
         yield f"subcritical for {name}: {each}"
@@ -157,7 +159,7 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
         f"searched up to F = {span_text(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
-        f"{some_of(certified, rods, 'rod')}{unstored_clause(hidden)}"
+        f"{count_of_total(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 
 

@@ -8,7 +8,7 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from ..hopf_points import StoredChanges
 from .arm.arm import region_of_arms
 from .errors import absolute_errors, known_range_text
@@ -37,17 +37,17 @@ CYCLE_NUMBERS = (
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of limit cycles. done: mask of the computed points, of the shape of the points."""
     v = view.variables
-    beats = done & view.with_status("cycle")
-    orbit = done & view.with_status(*CYCLE_WORDS)
-    stability, of_arm = _threshold_lines(view)
+    beats = done & view.has_status("cycle")
+    orbit = done & view.has_status(*CYCLE_WORDS)
+    stability, arm_sentences = _threshold_lines(view)
     answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(v, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
-        of_arm.insert(0, outcome_line(view, done, region_of_arms))
-    trust = _proof_lines(view)
+        arm_sentences.insert(0, outcome_line(view, done, region_of_arms))
+    reliability = _proof_lines(view)
     rate, frequency = (known_range_text(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
-    on_torus = done & view.with_status("torus")
+    on_torus = done & view.has_status("torus")
     if on_torus.any():
         details.append(
             f"tori: the cycles inside have multipliers {known_range_text(v, 'multiplier', on_torus)}"
@@ -58,9 +58,9 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     elif beats.any():
         period, y = (known_range_text(v, name, beats) for name in ("period", "tip_y_max"))
         answer.insert(1, f"period: {period} tau2; largest y of the tip: {y} L")
-        trust.insert(0, _error_line(v, beats))
+        reliability.insert(0, _error_line(v, beats))
     details += _cycle_lines(v, beats) if beats.any() else []
-    return SummaryLines(answer, trust, details, of_arm, numbers)
+    return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
@@ -90,12 +90,14 @@ def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     """
     names = [name for name in LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
-    of_arm = list[str]()
+    arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
-        found, found_of_arm = stability_lines(view, name, StoredChanges(view, name).up_to)
+        found, found_arm_sentences = stability_lines(
+            view, name, StoredChanges(view, name).thresholds_up_to_end
+        )
         lines += found
-        of_arm += found_of_arm
-    return lines, of_arm
+        arm_sentences += found_arm_sentences
+    return lines, arm_sentences
 
 
 def _proof_lines(view: View) -> list[str]:
@@ -106,7 +108,7 @@ def _proof_lines(view: View) -> list[str]:
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
         return []
-    proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
+    proved = count_of_total(int(v["hopf_lines_proved"]), lines, "line")
     return [f"the list of Hopf points between neighbouring points {proof_clause(view)} on {proved}"]
 
 
@@ -155,7 +157,7 @@ def _at_count(some: np.ndarray, done: np.ndarray) -> str:
     """Clause on the number of points in the mask `done` that are also in the mask `some`; empty if `done` has
     a single point.
     """
-    return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
+    return "" if done.sum() == 1 else f" at {count_of_total(some.sum(), done.sum(), 'point')}"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:

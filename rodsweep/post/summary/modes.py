@@ -3,11 +3,10 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
 from .ranges import NONE_TEXT, span_text
 from .spectrum import (
-    count_line,
     eigenvalue_table,
     error_lines,
     leading_line,
@@ -15,6 +14,7 @@ from .spectrum import (
     stable_line,
     threshold_lines,
     unknowns_lines,
+    unstable_count_line,
 )
 from .summary_lines import SummaryLines
 
@@ -23,22 +23,22 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of modes. done: mask of the computed points, of the shape of the points."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
-        answer = [count_line(view)]
-        trust = []
+        answer = [unstable_count_line(view)]
+        reliability = []
         details = unknowns
-        of_arm = list[str]()
+        arm_sentences = list[str]()
     else:
-        lines, how, of_arm = threshold_lines(view)
+        lines, how, arm_sentences = threshold_lines(view)
         answer = [stable_line(view, done), *lines]
-        trust = [*error_lines(view, done), stability_line(view, done), *how]
+        reliability = [*error_lines(view, done), stability_line(view, done), *how]
         details = [leading_line(view, done), *unknowns]
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
         unknown = int((~np.isfinite(errors)).any(axis=-1).sum())
-        where = f"; not known at {some_of(unknown, len(errors), 'point')}" if unknown else ""
-        trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
+        where = f"; not known at {count_of_total(unknown, len(errors), 'point')}" if unknown else ""
+        reliability.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{where}")
     numbers = eigenvalue_table(view) if done.size == 1 else None
-    return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm, numbers)
+    return SummaryLines([*answer, *growth_lines(view, done)], reliability, details, arm_sentences, numbers)
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:

@@ -6,10 +6,10 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import span_text
@@ -33,18 +33,18 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of a phase diagram. done: mask of the computed rows, of the shape of the rows."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next(name for name in view.parameters if len(view.axes[name]) > 1)
+    row = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
     answer = [*class_share_lines(v["class"][done]), *lines_about_rows(view, done, line, row)]
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
-    trust = search_lines(view, done, "row")
+    reliability = search_lines(view, done, "row")
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
-        trust += [*agreement_lines(view, line), *cut_lines(view, line, row)]
+        reliability += [*agreement_lines(view, line), *cut_lines(view, line, row)]
     if "curve_criticality" in v:
         details += criticality_lines(view)
-    return SummaryLines(answer, trust, details, crossings_of_arms(view, done))
+    return SummaryLines(answer, reliability, details, crossings_of_arms(view, done))
 
 
 def count_lines(found: np.ndarray) -> list[str]:
@@ -60,7 +60,7 @@ def cost_saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
     done: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
     """
-    if not has_covering(view.config):
+    if not has_standard_rods(view.config):
         return []
     v = view.variables
     rows = int(done.sum())
@@ -97,7 +97,7 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     for words, (rows, where) in found_on.items():
         if rows.any():
             lines.append(
-                f"{words}: on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
+                f"{words}: on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
                 f"{row} = {span_text(of_row[rows])}"
             )
     return lines
@@ -139,7 +139,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
             again = of_kind & ~first
             at, later = (span_text(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
             least = "at least " * bool((unknown & ~on_row).any())
-            text = f"{word}: on {least}{some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
+            text = f"{word}: on {least}{count_of_total(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
             text += f", {row} = {span_text(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
@@ -150,7 +150,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
     if undecided.any():
         rows = undecided.any(axis=-1)
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
-        on_rows = f"on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
+        on_rows = f"on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
         lines.append(f"undecided: {on_rows}, {row} = {span_text(of_row[rows])}")
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
@@ -173,6 +173,6 @@ def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
         of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
         if number and of_kind.any():
             forces = v["crossing_at"][of_kind]
-            rows = some_of(of_kind.any(axis=-1).sum(), done.sum(), "row")
+            rows = count_of_total(of_kind.any(axis=-1).sum(), done.sum(), "row")
             lines.append(f"{word}: on {rows}, at {loads_at(view, forces, np.zeros(len(forces), int))}")
     return lines

@@ -27,7 +27,7 @@ NONE_TEXT = "none"
 
 
 def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
-    """Range of the finite `values`, of any shape, as text; NONE if no value is finite.
+    """Range of the finite `values`, of any shape, as text; NONE_TEXT if no value is finite.
 
     errors: absolute errors, of the shape of the values, which limit the number of digits. most: largest
     number of digits.
@@ -40,13 +40,13 @@ def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = 
     flat = values[is_finite]
     known = np.nan_to_num(known[is_finite], nan=0.0)
     ends = (int(flat.argmin()), int(flat.argmax()))
-    low, high = (rounded(flat[i], known[i], most) for i in ends)
+    low, high = (rounded_text(flat[i], known[i], most) for i in ends)
     return low if low == high else f"{low} to {high}"
 
 
 def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
-    """Ranges of a parameter as text; NONE for an empty list. errors: absolute errors of ends of ranges, by
-    end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS
+    """Ranges of a parameter as text; NONE_TEXT for an empty list. errors: absolute errors of ends of ranges,
+    by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS
     digits at most.
     """
     ends = [[_rounded_to_error(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
@@ -57,7 +57,7 @@ def number_with_error(value: float, error: float) -> str:
     """A number with its absolute error, as text: "1.234 (+- 2e-03)". The last printed digit of the number has
     the decimal place of the error.
 
-    If the error is not finite, the number has six digits. NaN gives NONE, and 0 has no error.
+    If the error is not finite, the number has six digits. NaN gives NONE_TEXT, and 0 has no error.
     """
     value = float(value)
     error = float(error)
@@ -109,9 +109,9 @@ def error_text(error: float) -> str:
     return f"{ceil(error / unit * (1 - ROUNDING_EXCESS)) * unit:.0e}"
 
 
-def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
+def rounded_text(value: float, error: float, most: int = RANGE_DIGITS) -> str:
     """A number as text with at most `most` significant digits, chosen such that `error` is at most half a
-    unit of the last digit; NONE for a number that is not finite.
+    unit of the last digit; NONE_TEXT for a number that is not finite.
     """
     return _rounded_to_error(float(value), 2 * float(error), most) if isfinite(value) else NONE_TEXT
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.rods import estimates_counts, has_covering
+from ...results.layouts.rods import estimates_counts, has_standard_rods
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, some_of
+from ...wording import count_of_total, counted
 from ..hopf_points import StoredChanges
 from .ranges import number_and_error, span_text
 from .stability import stability_lines
@@ -27,11 +27,13 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of spectra. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
-        return SummaryLines([count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view))
-    lines, how, of_arm = threshold_lines(view)
-    trust = [*error_lines(view, done), stability_line(view, done), *how]
+        return SummaryLines(
+            [unstable_count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view)
+        )
+    lines, how, arm_sentences = threshold_lines(view)
+    reliability = [*error_lines(view, done), stability_line(view, done), *how]
     details = [leading_line(view, done), *unknowns_lines(view, done)]
-    return SummaryLines([stable_line(view, done), *lines], trust, details, of_arm)
+    return SummaryLines([stable_line(view, done), *lines], reliability, details, arm_sentences)
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
@@ -64,9 +66,9 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
     empty lists if F does not vary.
     """
-    lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
-    how = LOCATION_EXPLANATION if has_covering(view.config) else NOT_LOCATED_NOTE
-    return lines, [f"thresholds: {how}"] if lines else [], of_arm
+    lines, arm_sentences = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    how = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
+    return lines, [f"thresholds: {how}"] if lines else [], arm_sentences
 
 
 def eigenvalue_table(view: View) -> TextTable | None:
@@ -81,7 +83,7 @@ def eigenvalue_table(view: View) -> TextTable | None:
     return TextTable(headings, tuple(rows)) if rows else None
 
 
-def count_line(view: View) -> str:
+def unstable_count_line(view: View) -> str:
     """Line on the number of unstable modes at the only point of a file."""
     v = view.variables
     unstable = int(v["unstable_count"].max())
@@ -125,6 +127,6 @@ def stability_line(view: View, done: np.ndarray) -> str:
     certified = int(view.variables["certified"][done].sum())
     how = "counted by an estimate" if estimates_counts(view.config) else "proved"
     text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, {how} at "
-    text += some_of(certified, points, "point")
+    text += count_of_total(certified, points, "point")
     unknown = int((unstable < 0).sum())
     return text + (f", not known at {unknown}" if unknown else "")

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ...results.file.view import View
-from ...sweep.points.points import ParameterLine, lines_over
-from ...wording import counted, some_of
+from ...sweep.points.points import ParameterLine, lines_along
+from ...wording import count_of_total, counted
 from ..hopf_points import BracketedChange, LocatedChange
 from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
@@ -41,20 +41,20 @@ def stability_lines(
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
         return [], []
-    lines = list(lines_over(view.point_columns, name))
+    lines = list(lines_along(view.point_columns, name))
     varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
     names = [", ".join(f"{n} = {line.parameters[n]:.6g}" for n in varied) for line in lines]
     along = [found_on(line) for line in lines]
     texts = list[str]()
-    of_arm = list[str]()
+    arm_sentences = list[str]()
     for kind, words in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions_text(found, names, name)}")
-            every = [(point, lines[i].at) for i, points in found.items() for point in points]
+            every = [(point, lines[i].indices) for i, points in found.items() for point in points]
             located = [(point, at) for point, at in every if isinstance(point, LocatedChange)]
-            of_arm += thresholds_of_arm(view, kind, located) if name == "F" else []
-    return texts, of_arm
+            arm_sentences += thresholds_of_arm(view, kind, located) if name == "F" else []
+    return texts, arm_sentences
 
 
 def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
@@ -65,8 +65,12 @@ def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], alon
     located = [point for point in points if isinstance(point, LocatedChange)]
     stated = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(stated))})" if stated else ""
-    some = f", on {some_of(len(found), len(names), 'line')} over {along}" if len(found) < len(names) else ""
-    if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
+    some = (
+        f", on {count_of_total(len(found), len(names), 'line')} over {along}"
+        if len(found) < len(names)
+        else ""
+    )
+    if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _position_text(located[0]) + error + some + beats

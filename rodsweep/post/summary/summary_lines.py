@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...wording import counted
 from .ranges import span_text
 
@@ -28,11 +28,11 @@ class SummaryLines:
 
     answer: Sequence[str]
     """Lines with the main results of the task."""
-    trust: Sequence[str] = ()
+    reliability: Sequence[str] = ()
     """Lines about accuracy and proved completeness."""
     details: Sequence[str] = ()
     """Lines about further results."""
-    of_arm: Sequence[str] = ()
+    arm_sentences: Sequence[str] = ()
     """Sentences of the answer in the units of an arm."""
     numbers: TextTable | None = None
     """Table of numbers below the answer."""
@@ -44,7 +44,7 @@ class Summary:
 
     answer: Sequence[str]
     """Lines with the main results of the task."""
-    trust: Sequence[str]
+    reliability: Sequence[str]
     """Lines about unfinished points, accuracy and proved completeness."""
     statuses: TextTable
     """Number of points with each status, and the meaning of the status."""
@@ -52,7 +52,7 @@ class Summary:
     """Lines about further results."""
     axes: TextTable
     """Values or ranges of the parameters."""
-    origin: Sequence[str]
+    provenance: Sequence[str]
     """Lines about computing time, MPI ranks, dates and versions."""
     numbers: TextTable | None = None
     """Table of numbers below the answer."""
@@ -101,4 +101,6 @@ def proof_clause(view: View) -> str:
     """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
     material, else "is confirmed by counts of unstable modes".
     """
-    return "is proved complete" if has_covering(view.config) else "is confirmed by counts of unstable modes"
+    return (
+        "is proved complete" if has_standard_rods(view.config) else "is confirmed by counts of unstable modes"
+    )

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from ...results.file.view import View
-from ...wording import some_of
+from ...wording import count_of_total
 from .summary_lines import in_brackets
 
 TREND_ROUNDING = 1e-12
@@ -41,9 +41,9 @@ def monotony_lines(view: View) -> list[str]:
     """Lines on whether the first thresholds rise or fall with each parameter that has more than two values
     (for gamma3: with 1/gamma3); empty for a list of points."""
     lines = []
-    long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
+    long = [name for name, values in view.parameter_values.items() if len(values) > 2] if view.is_grid else []
     for name, force in product(long, ("F_onset", "F_hopf")):
-        along = np.moveaxis(view.variables[force], list(view.axes).index(name), -1)
+        along = np.moveaxis(view.variables[force], list(view.parameter_values).index(name), -1)
         label = name
         if name == "gamma3":
             along = along[..., ::-1]
@@ -53,16 +53,16 @@ def monotony_lines(view: View) -> list[str]:
         if not known.any():
             continue
         rising = int((trends == Trend.rises).sum())
-        text = f"{force} rises with {label} on {some_of(rising, known.sum(), 'line')}"
+        text = f"{force} rises with {label} on {count_of_total(rising, known.sum(), 'line')}"
         for trend, verb in ((Trend.falls, "falls"), (Trend.constant, "is constant")):
             if number := int((trends == trend).sum()):
                 text += f", {verb} on {number}"
         mixed = trends == Trend.rises_and_falls
-        others = [n for n in view.axes if n != name]
+        others = [n for n in view.parameter_values if n != name]
         where = []
         for other, places in zip(others, np.argwhere(mixed).T, strict=True):
-            if len(view.axes[other]) > 1 and places.size:
-                values = view.axes[other][places]
+            if len(view.parameter_values[other]) > 1 and places.size:
+                values = view.parameter_values[other][places]
                 low = values.min()
                 high = values.max()
                 where.append(f"{other} = {low:.6g}" + (f" to {high:.6g}" if high > low else ""))

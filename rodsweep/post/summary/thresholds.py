@@ -6,12 +6,12 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.rods import has_covering
+from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
-from ...wording import counted, plural, some_of
+from ...wording import count_of_total, counted, plural
 from .arm.arm import crossings_of_arm
-from .ranges import error_text, number_and_error, rounded, span_text
+from .ranges import error_text, number_and_error, rounded_text, span_text
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
 from .threshold_trends import monotony_lines
 
@@ -53,16 +53,16 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of thresholds. done: mask of the computed points, of the shape of the points."""
     if done.size == 1:
         details = cost_lines(view, done)
-        of_arm = crossings_of_arm(view)
+        arm_sentences = crossings_of_arm(view)
         return SummaryLines(
-            crossing_lines(view), completeness_lines(view), details, of_arm, crossing_table(view)
+            crossing_lines(view), completeness_lines(view), details, arm_sentences, crossing_table(view)
         )
     answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
-    trust = [
+    reliability = [
         *search_lines(view, done, "rod"),
         f"searched up to F = {span_text(view.variables['F_end'][done])}",
     ]
-    return SummaryLines(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
+    return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, done)])
 
 
 def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
@@ -76,16 +76,20 @@ def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
     found = np.isfinite(F)
     rods = int(done.sum())
     searched = v["crossing_count"].ravel() >= 0
-    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.with_status(ENDED_EARLY).ravel()
+    decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.has_status(ENDED_EARLY).ravel()
     unknown = unknown_clause(int((done.ravel() & ~found & ~decided).sum()))
     if not found.any():
         return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
     low = int(np.nanargmin(F))
     high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
-    places = [f"{rounded(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
+    places = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
-    where = f"all {counted(rods, 'rod')}" if found.sum() == rods else some_of(int(found.sum()), rods, "rod")
+    where = (
+        f"all {counted(rods, 'rod')}"
+        if found.sum() == rods
+        else count_of_total(int(found.sum()), rods, "rod")
+    )
     return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span_text(v[rate][done])} {unit}"
 
 
@@ -94,7 +98,7 @@ def unknown_beyond_clause(view: View, F: float) -> str:
     search.
     """
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
-    return clause if view.with_status(ENDED_EARLY).all() else ""
+    return clause if view.has_status(ENDED_EARLY).all() else ""
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
@@ -108,7 +112,7 @@ def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
 def crossing_lines(view: View) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
     of the kinds of crossings."""
-    v = view.of_point(0)
+    v = view.point_values(0)
     end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
@@ -126,7 +130,7 @@ def crossing_lines(view: View) -> list[str]:
 
 def crossing_table(view: View) -> TextTable | None:
     """Table of the crossings of the only rod in a file; None if there is no crossing."""
-    v = view.of_point(0)
+    v = view.point_values(0)
     rows = []
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = number_and_error(float(v["crossing_F"][i]), float(v["crossing_error"][i]))
@@ -150,9 +154,9 @@ def completeness_lines(view: View) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
     the only rod in a file.
     """
-    v = view.of_point(0)
+    v = view.point_values(0)
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
-    proof = "proved complete" if has_covering(view.config) else "confirmed by counts of unstable modes"
+    proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"] else f"not {proof}"
     lines = [
         f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{unstored_clause(hidden)}"
@@ -189,7 +193,7 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     known = errors[np.isfinite(errors)]
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
-    proved = some_of(int(v["certified"][done].sum()), searches, noun)
+    proved = count_of_total(int(v["certified"][done].sum()), searches, noun)
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
@@ -205,7 +209,7 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
 
     The list is empty for searches that count unstable modes, which store no cost.
     """
-    if not has_covering(view.config):
+    if not has_standard_rods(view.config):
         return []
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))

@@ -25,7 +25,7 @@ class Table:
     name: str
     columns: tuple[Column, ...]
     empty_points: int
-    others: tuple[str, ...]
+    other_tables: tuple[str, ...]
     """Names of the other tables of the same result."""
 
     @property
@@ -36,7 +36,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Tables:
-    """All tables of a result; a table is made when it is requested."""
+    """All tables of the result `view`; a table is made when it is requested."""
 
     view: View
 
@@ -58,20 +58,22 @@ class Tables:
         """
         name = chosen_table(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)
-        beside = [] if points is None else list(point_columns(self.view, self.contents.of_points, points))
+        beside = (
+            [] if points is None else list(point_columns(self.view, self.contents.point_variables, points))
+        )
         if name == GRID:  # move the first column, a parameter, to its place among the other parameters
             before = list(PARAMETERS)[: list(PARAMETERS).index(found[0].name)]
             beside.insert(sum(column.name in before for column in beside), found.pop(0))
         by_name = {column.name: column for column in (*beside, *found)}
         refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
         if not columns:
-            hidden = {v.name for v in self.contents.of_points if v.name != "status"}
+            hidden = {v.name for v in self.contents.point_variables if v.name != "status"}
             columns = [each for each in by_name if name == POINTS or each not in hidden]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
         others = tuple(other for other in self.contents.tables if other != name)
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
 
-    def items(self, name: str) -> tuple[Column, ...]:
+    def list_columns(self, name: str) -> tuple[Column, ...]:
         """Columns of the list `name`, without the columns of the points."""
         return tuple(self._rows(name)[1])
 
@@ -84,13 +86,13 @@ class Tables:
         if name == BRANCHES:
             return self._branches()
         rows, columns = self._list(name)
-        return None if name in self.contents.joint else rows[0], columns
+        return None if name in self.contents.joint_lists else rows[0], columns
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
         """Returns (rows, columns) of the list `name`. rows: indices of the items. columns: columns, including
         columns in SI units.
         """
-        joint = name in self.contents.joint
+        joint = name in self.contents.joint_lists
         variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, joint)
         columns = list(list_columns(self.view, variables, rows, joint))

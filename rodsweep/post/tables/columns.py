@@ -24,7 +24,9 @@ range."""
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Column of a table. values: (rows,). absent: mask of missing values, (rows,)."""
+    """Column of a table, with its name, unit and meaning. values: (rows,). absent: mask of missing values,
+    (rows,).
+    """
 
     name: str
     unit: str
@@ -33,7 +35,7 @@ class Column:
     absent: NDArray[np.bool_]
     words: Mapping[int, str] = field(default_factory=dict)
     """Words by integer value; empty for a column of numbers."""
-    given: bool = False
+    is_input: bool = False
     """Whether the values are input, such as parameters, and not results."""
     is_boolean: bool = False
     """Whether the values are 1 for true and 0 for false."""
@@ -53,7 +55,7 @@ class Column:
         values = np.append(self.values, np.zeros(1, self.values.dtype))[which]
         return replace(self, values=values, absent=np.append(self.absent, True)[which])
 
-    def text(self) -> list[str]:
+    def texts(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number from which the value can be
         recovered.
         """
@@ -75,7 +77,7 @@ class Column:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
         texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
-        if not self.given:
+        if not self.is_input:
             return texts
         return [_without_rounding_error(value, text) for value, text in zip(self.values, texts, strict=True)]
 
@@ -95,7 +97,7 @@ def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Co
     """Column of a parameter or another coordinate, with its name, unit and meaning. values: (rows,); NaN, a
     missing value, stands for an arm to which no rod corresponds.
     """
-    return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
+    return Column(name, unit, meaning, values, np.isnan(values.astype(float)), is_input=True)
 
 
 def _without_rounding_error(value: float, text: str) -> str:

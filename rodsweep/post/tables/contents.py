@@ -10,7 +10,7 @@ from ...config.document.refusals import unknown_key_hint
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import beside_points, layout_of
+from ...results.layouts import joint_variables_of_config, layout_of
 from ...results.layouts.variables import Variable
 
 LIST_INTRO = "there are"
@@ -60,13 +60,14 @@ DEFAULT_TABLE = {
 class Contents:
     """Variables of a result, divided into tables.
 
-    of_points: variables with one value per point, which are columns of all tables. lists: variables of each
-    list, by name of the table. joint: names of lists that belong to the whole file, not to single points.
+    point_variables: variables with one value per point, which are columns of all tables. lists: variables of
+    each list, by name of the table. joint_lists: names of lists that belong to the whole file, not to single
+    points.
     """
 
-    of_points: tuple[Variable, ...]
+    point_variables: tuple[Variable, ...]
     lists: dict[str, tuple[Variable, ...]]
-    joint: frozenset[str]
+    joint_lists: frozenset[str]
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -90,7 +91,7 @@ def contents_of(view: View) -> Contents:
         else:
             own.append(variable)
     with_points = set(lists)
-    for variable in beside_points(config, view.is_grid):
+    for variable in joint_variables_of_config(config, view.is_grid):
         if variable.name not in view.variables:
             continue
         of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))
@@ -129,7 +130,7 @@ def chosen_table(view: View, contents: Contents, table: str | None, columns: tup
         raise InputError(
             f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; name columns of one table"
         )
-    every = (*(v.name for v in contents.of_points), *holding, *view.point_columns, *view.quantities)
+    every = (*(v.name for v in contents.point_variables), *holding, *view.point_columns, *view.quantities)
     refuse_unknown_columns(view.path, columns, every, "")
     if lists:
         return lists[0]

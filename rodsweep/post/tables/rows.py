@@ -127,7 +127,7 @@ def _is_of_points(view: View, variable: Variable) -> bool:
 
 def _axis_indices(view: View, parameter: str) -> NDArray[np.int64]:
     """Index of each point along the axis of `parameter`, (points,)."""
-    return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
+    return np.searchsorted(view.parameter_values[parameter], view.point_columns[parameter])
 
 
 def quantities_at_points(view: View) -> dict[str, NDArray]:

@@ -20,7 +20,7 @@ SEAL_ATTRIBUTE = "seal"
 """Name of the attribute that holds the digests of all variables and attributes."""
 USER_PREFIX = "user_"
 """Prefix of the names of variables and attributes that the user adds to a result file."""
-DIGITS = 16
+DIGEST_DIGITS = 16
 """Number of hexadecimal digits of a digest: one change in 2^64 is not detected."""
 UNDIGESTED_ATTRIBUTES = frozenset(
     {
@@ -32,7 +32,7 @@ UNDIGESTED_ATTRIBUTES = frozenset(
 variables. The digest of a variable covers its dimensions."""
 NUMBER_KINDS = "iuf"
 """NumPy type kinds allowed for variables of a result file: integers and floating-point numbers."""
-BYTES_A_READ = 1 << 18
+BYTES_PER_READ = 1 << 18
 """Number of bytes per read of a variable, which bounds the memory."""
 XARRAY_FILL_ATTRIBUTE = ("_FillValue", "[nan]")
 """(name, value as text) of an attribute that xarray adds when it writes a file, and that has no effect."""
@@ -59,13 +59,15 @@ def variable_digest(
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
         digest.update(block)
-    return digest.hexdigest()[:DIGITS]
+    return digest.hexdigest()[:DIGEST_DIGITS]
 
 
 def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Digest of every attribute of a file by name, except attributes of HDF5, netCDF and the user."""
     plain = _plain_attributes(attributes)
-    return {name: sha256(json.dumps(value).encode()).hexdigest()[:DIGITS] for name, value in plain.items()}
+    return {
+        name: sha256(json.dumps(value).encode()).hexdigest()[:DIGEST_DIGITS] for name, value in plain.items()
+    }
 
 
 def digests_of(file: h5py.File) -> Digests:
@@ -167,15 +169,17 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
 
 
 def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
-    """Yields the numbers of a variable as buffers; contiguous numbers are read from the file without HDF5."""
+    """Yields the numbers of a variable as buffers. Contiguous numbers are read from the file without HDF5;
+    other numbers, and big-endian numbers, come as one buffer of little-endian numbers.
+    """
     start = data.id.get_offset()
     size = data.id.get_storage_size()
     if start is None or data.dtype.byteorder == ">":
         yield np.ascontiguousarray(data[...], data.dtype.newbyteorder("<"))
         return
     handle = data.file.id.get_vfd_handle()
-    for at in range(start, start + size, BYTES_A_READ):
-        yield os.pread(handle, min(BYTES_A_READ, start + size - at), at)
+    for at in range(start, start + size, BYTES_PER_READ):
+        yield os.pread(handle, min(BYTES_PER_READ, start + size - at), at)
 
 
 def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:

@@ -38,14 +38,14 @@ class Plan:
     coordinates: dict[str, Array]
     """Coordinates, (n,) each, of extra dimensions such as u, by name of the dimension. All other extra
     dimensions have the coordinates 1, 2, ..."""
-    constants: Callable[[], tuple[FilledVariable, ...]]
+    config_variables: Callable[[], tuple[FilledVariable, ...]]
     """Returns the variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
     """The resolved config."""
     attributes: dict[str, Any]
     """Attributes of the file, in addition to the attributes that every result file has."""
     flags: tuple[tuple[int, str], ...]
-    """(value, name) of every status except MISSING."""
+    """(value, name) of every status except MISSING_STATUS."""
     quantities: tuple[FilledVariable, ...] = ()
     """Quantities of an arm, with values: axes of a grid over these quantities, or additional coordinates of
     the points."""
@@ -53,7 +53,7 @@ class Plan:
     """Chains of points; None if no point starts from the state of another point."""
     stretches: Stretches | None = None
     """Stretches of points that are solved together; None if no points are solved together."""
-    afterwards: Callable[[Mapping[str, Any]], tuple[FilledVariable, ...]] = lambda values: ()
+    variables_from_points: Callable[[Mapping[str, Any]], tuple[FilledVariable, ...]] = lambda values: ()
     """Returns variables computed from the variables of all points; called when no point is missing."""
 
     @property
@@ -64,13 +64,13 @@ class Plan:
     @property
     def fingerprint(self) -> str:
         """Fingerprint of config and points; a run can continue a file with an equal fingerprint."""
-        return fingerprint_of(self.config, self.points.identity)
+        return fingerprint_of(self.config, self.points.identifying_arrays)
 
 
 def create_file(path: Path, plan: Plan) -> None:
     """Creates the file of a plan at `path`; all points are missing."""
     # Constants may need a solve: a process that MPI starts would inherit the open file with its lock.
-    constants = plan.constants()
+    constants = plan.config_variables()
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
         for name, extent in plan.layout.extents.items():

@@ -16,7 +16,7 @@ from ...sweep.points.ranges import index_count
 from ..layouts.variables import MISSING_STATUS
 from ..run.journal import journal_directory, read_journals, read_reasons
 from .exchange import FileReplacement, disk_refusals, file_identity
-from .points import missing_ranges, write_points
+from .points import missing_ranges, write_records
 from .provenance import utc_time, with_failure_reasons
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file, read_header
 
@@ -50,7 +50,7 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
     status: statuses in the file, (points,).
     """
-    found = np.empty(0, header.layout.record)
+    found = np.empty(0, header.layout.record_dtype)
     directory = journal_directory(header.path)
     if not directory.is_dir():
         return found
@@ -62,8 +62,8 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:
-    """Dict with the attribute FAILURE_REASONS, including failed points in the journals; empty if no point
-    failed.
+    """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, including failed points in the journals; empty if no
+    point failed.
     """
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
@@ -105,7 +105,7 @@ def _write_new_snapshot(path: Path, exchange: FileReplacement) -> tuple[int, int
     header = read_header(path)
     with disk_refusals(exchange.path), exchange.replacing(path) as copy:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
-        write_points(copy, blocks, header.layout)
+        write_records(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
             file.attrs.update(journalled_reasons(header) | {SNAPSHOT_ATTRIBUTE: utc_time()})
         missing = index_count(missing_ranges(copy))

@@ -52,10 +52,10 @@ class FileReplacement:
     def __init__(self, path: Path):
         """Takes the lock; raises InputError if the lock is taken."""
         self.path = path
-        self.journals = journal_directory(path)
-        self.copy_path = self.journals / "next.h5"
+        self.journal_directory = journal_directory(path)
+        self.copy_path = self.journal_directory / "next.h5"
         path.parent.mkdir(parents=True, exist_ok=True)
-        self.lock = Lock(self.journals, path)
+        self.lock = ResultFileLock(self.journal_directory, path)
         self.last_identity: FileIdentity = ()
         """Identity of the file at the last check or exchange."""
 
@@ -66,7 +66,7 @@ class FileReplacement:
         Yields the path of the new file: a copy of `source`, or no file for None.
         """
         # The directory may have been moved or deleted meanwhile.
-        self.journals.mkdir(parents=True, exist_ok=True)
+        self.journal_directory.mkdir(parents=True, exist_ok=True)
         self.copy_path.unlink(missing_ok=True)  # a link would redirect the writing
         if source:
             shutil.copyfile(source, self.copy_path)
@@ -88,7 +88,7 @@ class FileReplacement:
         self.lock.release()
 
 
-class Lock:
+class ResultFileLock:
     """Lock on a result file: a file in the journal directory. The lock creates and removes this directory."""
 
     def __init__(self, directory: Path, path: Path):

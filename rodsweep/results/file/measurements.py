@@ -15,8 +15,8 @@ UNITS = {"seconds": "s", "error": "1"}
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes the table of every benchmark study to `path`, as /STUDY/COLUMN, (measurement,) each, and
-    `attributes` as attributes of the file.
+    """Writes the table of every benchmark study to `path`, a group for each study with a dataset for each
+    column, (measurements,) each, and `attributes` as attributes of the file.
 
     Raises EnvironmentIncomplete if writing fails. tables: by name of the study.
     """

@@ -25,7 +25,7 @@ MAX_BLOCK_BYTES = 1 << 26
 large."""
 
 
-def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
+def iterate_statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
     """Yields (flat index of the first point, statuses of n consecutive points, (n,)) until all points are
     read.
 
@@ -46,16 +46,16 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
 def missing_ranges(path: Path) -> list[IndexRange]:
     """Ranges of the flat indices of missing points of a result file, in order."""
     ranges: list[IndexRange] = []
-    for start, status in statuses(path):
+    for start, status in iterate_statuses(path):
         edges = start + np.flatnonzero(np.diff(status == MISSING_STATUS, prepend=False, append=False))
         ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
     return merged_ranges(ranges)
 
 
-def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
+def records_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of points that the file `other` has and the file `path` lacks."""
     at_once = _block_points(layout)
-    pairs = zip(statuses(path, at_once), statuses(other, at_once), strict=True)
+    pairs = zip(iterate_statuses(path, at_once), iterate_statuses(other, at_once), strict=True)
     yield from _selected_records(
         other,
         layout,
@@ -66,9 +66,9 @@ def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarra
     )
 
 
-def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
+def stored_records(path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of all computed points of a file with the given layout."""
-    blocks = statuses(path, _block_points(layout))
+    blocks = iterate_statuses(path, _block_points(layout))
     yield from _selected_records(
         path, layout, ((first, status != MISSING_STATUS) for first, status in blocks)
     )
@@ -76,7 +76,7 @@ def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
 
 def _block_points(layout: Layout) -> int:
     """Number of points in a block that is read at once, for the record size of a layout."""
-    return min(MAX_BLOCK_POINTS, MAX_BLOCK_BYTES // layout.record.itemsize + 1)
+    return min(MAX_BLOCK_POINTS, MAX_BLOCK_BYTES // layout.record_dtype.itemsize + 1)
 
 
 def _selected_records(
@@ -87,37 +87,37 @@ def _selected_records(
     with path.open("rb") as stream:
         for first, selected in blocks:
             if selected.any():
-                records = np.empty(selected.sum(), layout.record)
+                records = np.empty(selected.sum(), layout.record_dtype)
                 records["index"] = first + np.flatnonzero(selected)
                 for name, offset in offsets.items():
-                    kind = layout.record[name]
+                    kind = layout.record_dtype[name]
                     stream.seek(offset + first * kind.itemsize)
                     values = np.fromfile(stream, kind.base, len(selected) * prod(kind.shape))
                     records[name] = values.reshape(len(selected), *kind.shape)[selected]
                 yield records
 
 
-def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
+def records_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
     """Records, (n,), of a file with the given layout at flat indices, (n,)."""
-    records = np.empty(len(index), layout.record)
+    records = np.empty(len(index), layout.record_dtype)
     records["index"] = index
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
         for name, offset in offsets.items():
-            kind = layout.record[name]
+            kind = layout.record_dtype[name]
             for i, place in enumerate(index):
                 stream.seek(offset + int(place) * kind.itemsize)
                 records[name][i] = np.fromfile(stream, kind.base, prod(kind.shape)).reshape(kind.shape)
     return records
 
 
-def parameters_of(path: Path, layout: Layout) -> Points:
+def points_of_file(path: Path, layout: Layout) -> Points:
     """All points of the sweep of a result file, computed or missing."""
     with h5py.File(path, "r") as file:
-        return points_in(file, layout)
+        return points_of_open_file(file, layout)
 
 
-def points_in(file: h5py.File, layout: Layout) -> Points:
+def points_of_open_file(file: h5py.File, layout: Layout) -> Points:
     """All points of the sweep of an open result file, computed or missing."""
     names = layout.parameters
     over = {name: file[name][...] for name in layout.arm_axes}
@@ -142,7 +142,7 @@ def grid_parameter_values(variables: Mapping[str, Any], layout: Layout) -> Itera
         yield table.reshape(along) if name in layout.arm_axes else table
 
 
-def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
+def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
     """Writes records into a result file; returns whether there were any records. blocks: arrays of records,
     (n,) each, in any order; of several records of a point the last one counts.
 

@@ -15,19 +15,19 @@ import numpy as np
 
 from ... import __version__
 
-MAX_RANK_SHARES = 10_000
+MAX_RANK_STATISTICS = 10_000
 """Maximum number of ranks whose work statistics are stored, because an attribute is limited to 64 kB."""
-LONGEST_ATTRIBUTE = 60_000
+MAX_ATTRIBUTE_LENGTH = 60_000
 """Maximum number of characters of an attribute; HDF5 allows 64 kB."""
-RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
+RANK_STATISTICS = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 """Names of the attributes with the work statistics of each rank of the last run."""
 KERNELS_ATTRIBUTE = "blas_kernels"
 """Name of the attribute with the BLAS kernels that computed the points of a file in all runs, a kernel per
 line, named by `rodsweep.solve.backend.blas_kernel`."""
-FAILURE_REASONS = "failure_reasons"
+FAILURE_REASONS_ATTRIBUTE = "failure_reasons"
 """Name of the attribute with one example point for each distinct reason of failure, in all runs; each line
 has parameters, status and reason."""
-NUMBER = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
+NUMBER_PATTERN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?")
 """Matches a number in a message. Messages that differ only in numbers are treated as the same reason of
 failure."""
 MAX_FAILURE_REASONS = 20
@@ -70,29 +70,29 @@ def merged_blas_kernels(*several: Iterable[str]) -> str:
 
 def failure_kind(line: str) -> str:
     """Status and reason in a line "parameters: status reason", with every number replaced by #."""
-    return NUMBER.sub("#", line.partition(": ")[2])
+    return NUMBER_PATTERN.sub("#", line.partition(": ")[2])
 
 
 def joined_failure_reasons(*several: str) -> dict[str, str]:
-    """Dict with the attribute FAILURE_REASONS, joined from several values of this attribute; empty if there
-    are no reasons.
+    """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, joined from several values of this attribute; empty
+    if there are no reasons.
 
     Only the first line with each reason is included.
     """
     lines: dict[str, str] = {}
     for line in "\n".join(several).splitlines():
         lines.setdefault(failure_kind(line), line)
-    kept = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:LONGEST_ATTRIBUTE]
-    return {FAILURE_REASONS: kept} if kept else {}
+    kept = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:MAX_ATTRIBUTE_LENGTH]
+    return {FAILURE_REASONS_ATTRIBUTE: kept} if kept else {}
 
 
 def with_failure_reasons(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
-    """Dict with the attribute FAILURE_REASONS after new failures.
+    """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures.
 
     lines: lines of the new failures. before: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
-    return joined_failure_reasons(*lines, str(before.get(FAILURE_REASONS, "")))
+    return joined_failure_reasons(*lines, str(before.get(FAILURE_REASONS_ATTRIBUTE, "")))
 
 
 def kernels_sentence(attribute: str) -> str:
@@ -114,9 +114,9 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """
     history: dict[str, Any] = {
         "shard": "",
-        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, several))[:LONGEST_ATTRIBUTE],
+        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, several))[:MAX_ATTRIBUTE_LENGTH],
     }
-    history |= joined_failure_reasons(*(str(each.get(FAILURE_REASONS, "")) for each in several))
+    history |= joined_failure_reasons(*(str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in several))
     runs = [attributes for attributes in several if "ranks" in attributes]
     if not runs:
         return history
@@ -124,12 +124,12 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     history |= {
         "stopped": "",
         "ranks": sum(int(run["ranks"]) for run in runs),
-        "hosts": " ".join(sorted(hosts))[:LONGEST_ATTRIBUTE],
+        "hosts": " ".join(sorted(hosts))[:MAX_ATTRIBUTE_LENGTH],
         "started": min(str(run["started"]) for run in runs),
     }
-    for name in RANK_SHARES:
+    for name in RANK_STATISTICS:
         values = [np.atleast_1d(run[name]) for run in runs if name in run]
-        history |= {name: np.concatenate(values)[:MAX_RANK_SHARES]} if values else {}
+        history |= {name: np.concatenate(values)[:MAX_RANK_STATISTICS]} if values else {}
     return history
 
 

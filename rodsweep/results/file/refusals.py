@@ -8,19 +8,19 @@ from ..run.journal import journals_with_fingerprint
 from .combination.extension import extension_of
 from .combination.identity import config_change_text
 from .creation import Plan
-from .points import parameters_of
+from .points import points_of_file
 from .validation import IncompleteFile, ResultHeader, read_header
 
 SPACE_FACTOR = 3
 """Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
 the file."""
-SPACE_FIXED = 300_000
+EXTRA_SPACE_BYTES = 300_000
 """Additional disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
 
 
 def require_room(path: Path, plan: Plan) -> None:
     """Raises EnvironmentIncomplete unless the disk has space for the file of a plan, journals and a copy."""
-    size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + SPACE_FIXED
+    size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + EXTRA_SPACE_BYTES
     free = shutil.disk_usage(path.parent).free
     if free < size:
         raise EnvironmentIncomplete(
@@ -48,7 +48,7 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
     change = config_change_text(header.config, plan.config)
     ways = _remedies_clause(plan, journals)
     try:
-        extension_of(header, parameters_of(header.path, header.layout), plan)
+        extension_of(header, points_of_file(header.path, header.layout), plan)
         ways += "; --extend computes only the missing points"
     except InputError:  # the plan lacks points or results of the file
         pass

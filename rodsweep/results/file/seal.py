@@ -27,7 +27,7 @@ END_OFFSETS = {0: 40, 1: 44, 2: 28, 3: 28}
 """Offset of the eight bytes with HDF5's end of the file, by version of HDF5's superblock."""
 MAX_CHECKSUM_TEXT_BYTES = 100_000
 """Maximum size, in bytes, of the text with the checksum and the byte ranges that the checksum omits."""
-BYTES_A_READ = 1 << 20
+BYTES_PER_READ = 1 << 20
 """Number of bytes per read of a file, which bounds the memory."""
 MAX_INCLUDED_BYTES = 1 << 16
 """Size of a variable, in bytes, up to which the checksum of HDF5's structures includes its numbers."""
@@ -55,7 +55,7 @@ def seal(path: Path) -> None:
         stream.write(CHECKSUM_HEAD + json.dumps(frame).encode() + b"\n")
 
 
-def check_frame(path: Path) -> bool:
+def has_valid_structure_checksum(path: Path) -> bool:
     """Whether the HDF5 structures of the file match its checksum; False if the file has no checksum.
 
     Another program that writes the file removes the checksum. Raises BrokenSeal for a wrong checksum, or
@@ -116,7 +116,7 @@ def _checksum(stream: BinaryIO, pieces: Iterator[ByteRange]) -> int:
     for start, size in pieces:
         stream.seek(start)
         left = size
-        while left and (block := stream.read(min(left, BYTES_A_READ))):
+        while left and (block := stream.read(min(left, BYTES_PER_READ))):
             checksum = zlib.crc32(block, checksum)
             left -= len(block)
     return checksum

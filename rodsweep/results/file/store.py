@@ -35,7 +35,7 @@ from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
 from .current_state import SNAPSHOT_ATTRIBUTE
 from .exchange import FileReplacement, disk_refusals, file_identity
-from .points import missing_ranges, parameters_of, statuses, write_points
+from .points import iterate_statuses, missing_ranges, points_of_file, write_records
 from .provenance import merged_history, with_failure_reasons
 from .refusals import header_of_existing_file, require_room, require_same_config
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file
@@ -57,9 +57,9 @@ class Store:
         self.plan = plan
         self.notes: list[str] = []
         """Notes for the user, on points that are computed again, on journals, and on a moved file."""
-        with disk_refusals(path, self._kept):
-            self.exchange = FileReplacement(path)
-            self.journals = self.exchange.journals
+        with disk_refusals(path, self._journalled_points_clause):
+            self.replacement = FileReplacement(path)
+            self.journal_directory = self.replacement.journal_directory
             try:
                 self._open(fresh, extend)
             except BaseException:
@@ -74,26 +74,26 @@ class Store:
             header = self._header()
             if header.fingerprint == self.plan.fingerprint:
                 snapshot = {SNAPSHOT_ATTRIBUTE: ""} if self.attributes().get(SNAPSHOT_ATTRIBUTE) else {}
-                self.add_journals(self._new_title() | snapshot)
+                self.add_journals(self._changed_title_attributes() | snapshot)
             elif extend:
                 self._extend(header)
             else:
-                require_same_config(header, self.plan, self.journals)
-        other = journals_without_fingerprint(self.journals, self.plan.fingerprint)
+                require_same_config(header, self.plan, self.journal_directory)
+        other = journals_without_fingerprint(self.journal_directory, self.plan.fingerprint)
         self._set_aside(other, "journals that do not match the config and its points")
-        delete_matching_files(self.journals, JOURNALS)  # the remaining journals have no points
+        delete_matching_files(self.journal_directory, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
         """Creates the file of the plan, with the points of its journals unless `fresh`; raises InputError."""
         if self.path.exists() and not is_rodsweep_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_room(self.path, self.plan)
-        own = journals_with_fingerprint(self.journals, self.plan.fingerprint)
+        own = journals_with_fingerprint(self.journal_directory, self.plan.fingerprint)
         if fresh:
-            delete_matching_files(self.journals, CHECKPOINTS)
+            delete_matching_files(self.journal_directory, CHECKPOINTS)
             self._set_aside(own, "journals that --fresh does not use")
-        self._set_aside(sorted(self.journals.glob(BACKUPS)), "points from before an extension")
-        with self.exchange.replacing(None) as copy:
+        self._set_aside(sorted(self.journal_directory.glob(BACKUPS)), "points from before an extension")
+        with self.replacement.replacing(None) as copy:
             create_file(copy, self.plan)
         if own and not fresh:
             self.add_journals({})
@@ -101,41 +101,41 @@ class Store:
 
     def _extend(self, header: ResultHeader) -> None:
         """Replaces the file of a smaller config by the plan's file, with all points that can be reused."""
-        extension = extension_of(header, parameters_of(self.path, header.layout), self.plan)
+        extension = extension_of(header, points_of_file(self.path, header.layout), self.plan)
         require_room(self.path, self.plan)
-        blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
+        blocks = read_journals(self.journal_directory, header.layout, header.fingerprint, header.points)
         self._add_blocks(blocks, header.layout, header.fingerprint, {})
         done = header.points - index_count(self.missing())
         history = merged_history([header.attributes])
-        with self.exchange.replacing(None) as copy:
+        with self.replacement.replacing(None) as copy:
             create_file(copy, self.plan)
-            any_kept = write_points(copy, extension.reused_records(), self.plan.layout)
+            any_kept = write_records(copy, extension.reused_records(), self.plan.layout)
             anew = done - (self.plan.points.count - index_count(missing_ranges(copy)))
             if any_kept:
                 with h5py.File(copy, "r+") as file:
                     file.attrs.update(history)
             if anew:
-                before = self._backup_path()
+                before = self._back_up_file()
                 self.notes.append(
                     f"{anew} of {done} stored points are computed anew; until all are done, {before} has them"
                 )
-        delete_matching_files(self.journals, CHECKPOINTS)
+        delete_matching_files(self.journal_directory, CHECKPOINTS)
         self.add_journals({})
 
-    def _backup_path(self) -> Path:
+    def _back_up_file(self) -> Path:
         """Copies the file into the journal directory; returns the path of the copy, which is kept until the
         extension is complete."""
-        number = 1 + sum(1 for _ in self.journals.glob(BACKUPS))
-        copy = self.journals / BACKUPS.replace("*", str(number))
+        number = 1 + sum(1 for _ in self.journal_directory.glob(BACKUPS))
+        copy = self.journal_directory / BACKUPS.replace("*", str(number))
         shutil.copyfile(self.path, copy)
         return copy
 
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
         """Moves `paths` out of the journal directory, and notes the new place. what: noun for the files."""
         if paths:
-            self.notes.append(f"{what} are kept in {move_journals_aside(self.journals, paths)}")
+            self.notes.append(f"{what} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
-    def _new_title(self) -> dict[str, Any]:
+    def _changed_title_attributes(self) -> dict[str, Any]:
         """Attributes to change if config and file differ in title; empty otherwise."""
         names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
         if names["title"] == self.attributes().get("title", ""):
@@ -154,7 +154,7 @@ class Store:
 
     def finish(self, attributes: dict[str, Any], variables: Sequence[FilledVariable] = ()) -> None:
         """Stores journalled points, attributes, `variables`, and variables computed from all points."""
-        self.add_journals(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
+        self.add_journals(attributes, lambda file: (*variables, *self.plan.variables_from_points(file)))
 
     def add_journals(
         self,
@@ -166,30 +166,30 @@ class Store:
         additions: function from the open file to complete variables.
         """
         plan = self.plan
-        self.restore()
-        blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
+        self.restore_missing_file()
+        blocks = read_journals(self.journal_directory, plan.layout, plan.fingerprint, plan.points.count)
         self._add_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINTS, BACKUPS):
-                delete_matching_files(self.journals, pattern)
+                delete_matching_files(self.journal_directory, pattern)
 
-    def restore(self) -> None:
+    def restore_missing_file(self) -> None:
         """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
-        with disk_refusals(self.path, self._kept):
+        with disk_refusals(self.path, self._journalled_points_clause):
             self._restore_missing_file()
 
     def _restore_missing_file(self) -> None:
-        if file_identity(self.path) == self.exchange.last_identity:
+        if file_identity(self.path) == self.replacement.last_identity:
             return
         if not self.path.exists():
-            with self.exchange.replacing(None) as copy:
+            with self.replacement.replacing(None) as copy:
                 create_file(copy, self.plan)
             self.notes.append("the file was moved or deleted; a new file holds the points since then")
             return
         try:
             header = self._header()
             if header.fingerprint != self.plan.fingerprint:
-                require_same_config(header, self.plan, self.journals)
+                require_same_config(header, self.plan, self.journal_directory)
         except InputError as error:
             raise EnvironmentIncomplete(
                 f"the result file was changed or replaced during the run: {error}"
@@ -208,14 +208,14 @@ class Store:
 
         layout: layout of the records. attributes, additions: as in `add_journals`.
         """
-        with disk_refusals(self.path, self._kept):
-            journals = journals_with_fingerprint(self.journals, fingerprint)
+        with disk_refusals(self.path, self._journalled_points_clause):
+            journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first = next(blocks, None)
-            reasons = read_reasons(self.journals, layout, fingerprint)
+            reasons = read_reasons(self.journal_directory, layout, fingerprint)
             if first is not None or attributes:
-                with self.exchange.replacing(self.path) as copy:
+                with self.replacement.replacing(self.path) as copy:
                     if first is not None:
-                        write_points(copy, chain([first], blocks), layout)
+                        write_records(copy, chain([first], blocks), layout)
                     if attributes or reasons:
                         with h5py.File(copy, "r+") as file:
                             add_variables(file, additions(file) if additions else ())
@@ -223,7 +223,7 @@ class Store:
             for journal in journals:
                 journal.unlink(missing_ok=True)
 
-    def _kept(self) -> str:
+    def _journalled_points_clause(self) -> str:
         """Clause for messages with the directory of journalled points; empty if no points are in journals."""
         return journalled_points_clause(journal_directory(self.path), self.plan.fingerprint)
 
@@ -232,7 +232,7 @@ class Store:
         names = {MISSING_STATUS: "missing", **dict(self.plan.flags)}
         counts: dict[str, int] = {}
         with damage_refusals(self.path):
-            for _, status in statuses(self.path):
+            for _, status in iterate_statuses(self.path):
                 for value, n in zip(*np.unique(status, return_counts=True), strict=True):
                     name = names.get(int(value), f"unknown ({value})")
                     counts[name] = counts.get(name, 0) + int(n)
@@ -240,11 +240,11 @@ class Store:
 
     def close(self) -> None:
         """Releases the lock on the file, so that another run can use it."""
-        self.exchange.close()
+        self.replacement.close()
 
     def _header(self) -> ResultHeader:
         """Header of the existing file; raises InputError if the file is not a complete result."""
         left = file_identity(self.path)
-        header = header_of_existing_file(self.path, self.plan, self.journals)
-        self.exchange.last_identity = left
+        header = header_of_existing_file(self.path, self.plan, self.journal_directory)
+        self.replacement.last_identity = left
         return header

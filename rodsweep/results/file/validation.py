@@ -17,8 +17,8 @@ from ..layouts import layout_of
 from ..layouts.variables import Layout
 from .combination.identity import fingerprint_of
 from .content import refuse_changed
-from .points import points_in
-from .seal import HDF5_SIGNATURE, check_frame
+from .points import points_of_open_file
+from .seal import HDF5_SIGNATURE, has_valid_structure_checksum
 
 PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
@@ -42,7 +42,7 @@ class IncompleteFile(InputError):
 
 @contextmanager
 def damage_refusals(path: Path) -> Iterator[None]:
-    """Context that turns the exceptions DAMAGES, for a damaged or foreign file, into IncompleteFile."""
+    """Context that turns DAMAGE_EXCEPTIONS, which a damaged or foreign file raises, into IncompleteFile."""
     try:
         yield
     except DAMAGE_EXCEPTIONS as error:
@@ -60,7 +60,8 @@ def one_line_message(error: Exception) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ResultHeader:
-    """Description of a complete result file.
+    """Description of a complete result file at `path`. attributes: attributes of the file. layout: its
+    variables.
 
     config: the resolved config. fingerprint: of config and points. points: number of points.
     """
@@ -86,7 +87,7 @@ def open_checked(path: Path, values: bool = True) -> tuple[h5py.File, ResultHead
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
     with damage_refusals(path):
-        is_framed = check_frame(path)
+        is_framed = has_valid_structure_checksum(path)
         file = h5py.File(path, "r")
         try:
             return file, header_of(path, file, check_content=values or not is_framed)
@@ -109,7 +110,7 @@ def refuse_absent(path: Path) -> None:
 
 
 def header_of(path: Path, file: h5py.File, check_content: bool = True) -> ResultHeader:
-    """Header of an open file; raises one of DAMAGES unless the file is a rodsweep result.
+    """Header of an open file; raises one of DAMAGE_EXCEPTIONS unless the file is a rodsweep result.
 
     check_content: whether the content is compared with the seal. Raises InputError for a format that this
     version does not read.
@@ -124,7 +125,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
     require_variables_of_layout(file, layout)
-    fingerprint = fingerprint_of(config, points_in(file, layout).identity)
+    fingerprint = fingerprint_of(config, points_of_open_file(file, layout).identifying_arrays)
     return ResultHeader(path, attributes, config, fingerprint, layout, file["status"].size)
 
 
@@ -154,7 +155,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
-    """Raises one of the exceptions DAMAGES unless the file has the variables of a layout.
+    """Raises one of DAMAGE_EXCEPTIONS unless the file has the variables of a layout.
 
     Every variable must be contiguous and have the type and shape of the layout.
     """
@@ -177,7 +178,7 @@ def is_rodsweep_file(path: Path) -> bool:
         if stream.read(8) != HDF5_SIGNATURE:
             return False
     try:
-        check_frame(path)
+        has_valid_structure_checksum(path)
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("program") == PROGRAM)
     except DAMAGE_EXCEPTIONS:

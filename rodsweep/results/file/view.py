@@ -22,7 +22,7 @@ MAX_CHECKED_BYTES = 10**9
 only HDF5's structures are checked, because the comparison of the numbers takes a second for each GB."""
 
 
-class Variables(Mapping[str, np.ndarray]):
+class FileVariables(Mapping[str, np.ndarray]):
     """Variables of an open file as NumPy arrays, each read on first access."""
 
     def __init__(self, path: Path, file: h5py.File, recent: np.ndarray):
@@ -31,6 +31,7 @@ class Variables(Mapping[str, np.ndarray]):
         self.file = file
         self.recent = recent
         self.values_read: dict[str, np.ndarray] = {}
+        """Arrays that were already read, by name of the variable."""
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.values_read:
@@ -54,7 +55,9 @@ class Variables(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Contents of a result file and its journals: attributes, and variables as NumPy arrays."""
+    """Contents of a result file and its journals. path: the file. attributes: its attributes. variables: its
+    variables as NumPy arrays, by name.
+    """
 
     path: Path
     attributes: dict[str, Any]
@@ -63,12 +66,12 @@ class View:
     """Names of the parameters of a point: dimensions of a grid, or variables along the dimension `point`."""
     flags: dict[int, str]
     """Name of the status, by value of the variable `status`."""
-    journalled: int
+    journalled_count: int
     """Number of points that are still in the journals of a running or interrupted run."""
     arm_axes: tuple[str, ...] = ()
     """Names of the dimensions of a grid over an arm's quantities; empty for a grid of parameters or a
     list."""
-    typed: dict[str, str] = field(default_factory=dict)
+    typed_units: dict[str, str] = field(default_factory=dict)
     """Unit in which the user typed a quantity of an arm, by name of the quantity."""
 
     @property
@@ -88,7 +91,7 @@ class View:
         return "point" not in self.variables and not self.arm_axes
 
     @property
-    def axes(self) -> dict[str, np.ndarray]:
+    def parameter_values(self) -> dict[str, np.ndarray]:
         """Values of each parameter, (n,), by name: an axis of a grid, or a column of a list."""
         return {name: self.variables[name] for name in PARAMETERS if name in self.variables}
 
@@ -126,11 +129,11 @@ class View:
         return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
 
     @property
-    def outcomes(self) -> NDArray[np.str_]:
+    def status_names(self) -> NDArray[np.str_]:
         """Name of the status of every point, (points,)."""
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
-    def with_status(self, *words: str) -> NDArray[np.bool_]:
+    def has_status(self, *words: str) -> NDArray[np.bool_]:
         """Mask of the points whose status has one of the names `words`, with the shape of `status`."""
         values = [value for value, word in self.flags.items() if word in words]
         return np.isin(self.variables["status"], values)
@@ -145,7 +148,7 @@ class View:
         values = self.variables[name]
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
 
-    def of_point(self, index: int) -> dict[str, np.ndarray]:
+    def point_values(self, index: int) -> dict[str, np.ndarray]:
         """Values of every variable of points at a flat index, by name, with the shape of the variable's extra
         dimensions.
         """
@@ -188,7 +191,7 @@ def _view(path: Path) -> View:
         words = str(escape_control_characters(status.attrs["flag_meanings"])).split()
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
-        variables = Variables(path, file, recent)
+        variables = FileVariables(path, file, recent)
         stored = (name for name in ALL_QUANTITIES if name in file)
         typed = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
     layout = header.layout

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
-from .arm import with_si
-from .rods import optional_in
+from .arm import with_si_variables
+from .rods import optional_parameters_in
 from .variables import ExtensionRule, Layout, Variable
 
 LAYOUT_MODULES = {
@@ -24,15 +24,15 @@ LAYOUT_MAKERS: dict[str, Callable[[dict[str, Any]], Layout]] = {
 }
 """Function from a resolved config to the layout of the file, by task."""
 EXTENSION_RULES: dict[str, dict[str, ExtensionRule]] = {
-    task: module.INCREASES for task, module in LAYOUT_MODULES.items()
+    task: module.OPTION_EXTENSION_RULES for task, module in LAYOUT_MODULES.items()
 }
 """Rules for the options of which a larger value requests more data of a point, by task and option. A file
 cannot be extended if any other option changes."""
 JOINT_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
-    "spectrum": spectrum.beside_points,
+    "spectrum": spectrum.joint_variables_of_config,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
-    "phase_diagram": phase_diagram.beside_points,
-    "limit_cycle": limit_cycle.beside_points,
+    "phase_diagram": phase_diagram.joint_variables_of_config,
+    "limit_cycle": limit_cycle.joint_variables_of_config,
 }
 """Function from (resolved config, whether the points are a grid) to the variables that belong to all points
 together, by task."""
@@ -44,10 +44,12 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUT_MAKERS:
         raise KeyError(f"unknown task {task}")
     layout = LAYOUT_MAKERS[task](config)
-    return with_si(replace(layout, parameters=(*layout.parameters, *optional_in(config))), config)
+    return with_si_variables(
+        replace(layout, parameters=(*layout.parameters, *optional_parameters_in(config))), config
+    )
 
 
-def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file that belong to all points together, for a resolved config.
 
     is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.

@@ -106,8 +106,8 @@ VALIDITY = (
 """Variables on the validity of the model for an arm."""
 
 
-def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
-    """The layout with the SI variables of an arm; unchanged for a config without an arm."""
+def with_si_variables(layout: Layout, config: Mapping[str, Any]) -> Layout:
+    """The layout with the SI and validity variables and the axes of an arm; unchanged without an arm."""
     if config.get("parameters", {}).get("arm") is None:
         return layout
     variables = (*layout.variables, *si_variables_of(layout, config).values(), *VALIDITY)
@@ -188,31 +188,31 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...
         return ()
     if not points.arm_axes:
         return tuple(
-            _data_of(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
+            _si_variable(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
-    own = points.units | {name: column for name, column in points.by_name.items() if name not in axes}
+    own = points.units | {name: column for name, column in points.columns_by_name.items() if name not in axes}
     return (
-        *(_data_of(arm, name, values, (name,)) for name, values in axes.items()),
-        *(_data_of(arm, name, value, ()) for name, value in numbers.items()),
-        *(_data_of(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
+        *(_si_variable(arm, name, values, (name,)) for name, values in axes.items()),
+        *(_si_variable(arm, name, value, ()) for name, value in numbers.items()),
+        *(_si_variable(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
     )
 
 
-def _data_of(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
+def _si_variable(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)
     if name in UNITS and getattr(arm, name) is not None:
-        variable = replace(variable, typed=typed_unit(name, getattr(arm, name)))
+        variable = replace(variable, typed_unit=typed_unit(name, getattr(arm, name)))
     if name == "drag":
         variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAGS)))
     return variable, np.asarray(values, variable.dtype)
 
 
-def at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str, NDArray[Any]]:
+def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str, NDArray[Any]]:
     """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
     if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}
@@ -225,7 +225,7 @@ def at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str,
     return found
 
 
-def si_record(
+def si_values(
     record: Mapping[str, Any],
     index: int | NDArray[np.int64],
     layout: Layout,

@@ -124,7 +124,7 @@ def _list_length_rule(name: str) -> ExtensionRule:
     return ExtensionRule(lambda records, before: records[name] < before)
 
 
-INCREASES = {
+OPTION_EXTENSION_RULES = {
     "cycles": _list_length_rule("point_count"),
     "special": _list_length_rule("special_count"),
     "certify": NEEDS_NEW_SOLVE,

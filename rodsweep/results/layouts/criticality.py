@@ -13,7 +13,7 @@ SLOPE_UNIT = "L^2/(k3 tau2)"
 """Unit of the slope dw/dF of an eigenvalue."""
 LANDAU_UNIT = "1/(tau2 L^2)"
 """Unit of the Landau coefficient c."""
-ALONG = "crossing"
+HOPF_POINT_DIMENSION = "crossing"
 ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
 """Names of the variables of a search for crossings that are not stored for a search for Hopf points, where
 growth rates are 0."""
@@ -35,7 +35,7 @@ def criticality_variable(name: str, decided_by: str) -> Variable:
 
 
 NORMAL_FORM = along_dimension(
-    ALONG,
+    HOPF_POINT_DIMENSION,
     real("crossing_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of crossing_frequency"),
     real("growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
     real("growth_slope_imag", SLOPE_UNIT, "d(angular frequency)/dF of the pair at the Hopf point"),
@@ -61,7 +61,7 @@ NORMAL_FORM = along_dimension(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-INCREASES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
+OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -76,5 +76,7 @@ def layout(config: dict[str, Any]) -> Layout:
         (*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points"
     )
     return Layout(
-        variables, {ALONG: config["criticality"]["crossings"]}, names_except("F", NONLINEAR_PARAMETERS)
+        variables,
+        {HOPF_POINT_DIMENSION: config["criticality"]["crossings"]},
+        names_except("F", NONLINEAR_PARAMETERS),
     )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
-from .rods import has_covering, optional_in, with_meaning
+from .rods import has_standard_rods, optional_parameters_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
@@ -29,8 +29,8 @@ from .variables import (
 POWER_UNIT = "k3/(L tau2)"
 """Dimensionless unit of a power."""
 STORED_MULTIPLIERS = 6
-"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST.length`; NaN stands for a
-modulus below its `min_modulus`."""
+"""Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST_SETTINGS.length`; NaN stands
+for a modulus below its `min_modulus`."""
 CYCLE_WORDS = ("cycle", "unstable")
 """Names of the statuses of points with a limit cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
@@ -108,7 +108,7 @@ PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 """Names of the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
 
-def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
+def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file."""
     at = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
@@ -141,17 +141,17 @@ def hopf_points_of(names: Collection[str]) -> tuple[Variable, ...]:
 SOLVE_CYCLES_AGAIN = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
-INCREASES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), SOLVE_CYCLES_AGAIN) | {
+OPTION_EXTENSION_RULES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), SOLVE_CYCLES_AGAIN) | {
     "transient": NEEDS_NEW_SOLVE,
-    "time": ExtensionRule(SOLVE_CYCLES_AGAIN.has, ("tau2", "tau1")),
+    "time": ExtensionRule(SOLVE_CYCLES_AGAIN.has_data, ("tau2", "tau1")),
 }
 
 
-def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
-    found = hopf_points_of((*LINEAR_PARAMETERS, *optional_in(config)))
-    if has_covering(config):
+    found = hopf_point_variables((*LINEAR_PARAMETERS, *optional_parameters_in(config)))
+    if has_standard_rods(config):
         return found
     meaning = "number of searched lines whose list of Hopf points is confirmed by counts of unstable modes"
     return with_meaning(found, "hopf_lines_proved", meaning)

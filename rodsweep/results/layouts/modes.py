@@ -31,7 +31,7 @@ GROWTH_VARIABLES = (
     real("transient_time", "tau2", "time at which transient_growth is reached"),
     real("growth_error", "1", "relative error of transient_growth"),
 )
-INCREASES = dict.fromkeys(("modes", "nodes", "growth", "certify"), NEEDS_NEW_SOLVE)
+OPTION_EXTENSION_RULES = dict.fromkeys(("modes", "nodes", "growth", "certify"), NEEDS_NEW_SOLVE)
 
 
 def layout(config: dict[str, Any]) -> Layout:

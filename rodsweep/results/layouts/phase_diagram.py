@@ -59,15 +59,15 @@ CYCLE_CURVE_ENDS = {
 }
 """Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
 the position in this table."""
-INCREASES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
+OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
     "crossings": CROSSING_LIST_RULE,
     "curves": NEEDS_NO_SOLVE,
 }
 
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
-    """Returns ((line, row), number of values by parameter) for a resolved config. line: parameter that varies
-    along each row. row: parameter that differs between rows.
+    """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
+    that varies along each row. row: name of the parameter that differs between rows.
     """
     axes = config["parameters"]
     names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)
@@ -76,7 +76,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     return (line, row), sizes
 
 
-def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together, including variables that the config does
     not request. config: the resolved config. is_grid: not used.
     """

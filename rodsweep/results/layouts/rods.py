@@ -8,7 +8,7 @@ from ...model.parameters import OPTIONAL_PARAMETERS
 from .variables import Variable
 
 
-def optional_in(config: Mapping[str, Any]) -> tuple[str, ...]:
+def optional_parameters_in(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the optional parameters that have an axis or a column in a resolved config."""
     parameters = config["parameters"]
     given = (*parameters, *parameters.get("columns", ()))
@@ -26,14 +26,14 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
     return tapered or followed or "segments" in arm or "profile" in config.get("material", {})
 
 
-def has_covering(config: Mapping[str, Any]) -> bool:
+def has_standard_rods(config: Mapping[str, Any]) -> bool:
     """Whether all rods are uniform and of linear material. Only then can a covering prove that the list of
     crossings is complete.
     """
-    return is_linear(config) and not estimates_counts(config)
+    return has_linear_law(config) and not estimates_counts(config)
 
 
-def is_linear(config: Mapping[str, Any]) -> bool:
+def has_linear_law(config: Mapping[str, Any]) -> bool:
     """Whether all rods of a resolved config have the linear constitutive law."""
     stated = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
     return all(each.get("law", "linear") == "linear" for each in stated)
@@ -47,7 +47,7 @@ def with_certified_meaning(
 
     noun: name of the listed items, such as "Hopf points".
     """
-    if has_covering(config):
+    if has_standard_rods(config):
         return variables
     meaning = (
         f"whether counts of unstable modes confirm the list of {noun}; between the counts it rests on "

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .rods import estimates_counts, has_covering, is_linear, with_meaning
+from .rods import estimates_counts, has_linear_law, has_standard_rods, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
@@ -70,7 +70,7 @@ VECTORS = (
 )
 
 
-def longitudinal(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
+def longitudinal_variables(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
     """Variables of the longitudinal eigenvalues, with an error estimate unless `in_closed_form`: the
     eigenvalues then have a closed form. gamma1: axial drag of all rods. along: dimensions of the parameters
     on which the rates depend, or the dimension of all points.
@@ -113,20 +113,22 @@ FORCE_CHANGES = (
 """Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
 which are computed after the last point."""
 OPTIONS_SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
-INCREASES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {"longitudinal": NEEDS_NO_SOLVE}
+OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {
+    "longitudinal": NEEDS_NO_SOLVE
+}
 
 
-def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file of the task spectrum that belong to all points together. config: the resolved
     config. is_grid: whether the points are a grid.
     """
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGES
-    in_closed_form = has_covering(config)
-    names = longitudinal_parameters(in_closed_form, is_linear(config))
+    in_closed_form = has_standard_rods(config)
+    names = longitudinal_parameters(in_closed_form, has_linear_law(config))
     along = [name for name in names if name in config["parameters"]] if is_grid else ["point"]
-    return (*longitudinal(float(gamma1), *along, in_closed_form=in_closed_form), *FORCE_CHANGES)
+    return (*longitudinal_variables(float(gamma1), *along, in_closed_form=in_closed_form), *FORCE_CHANGES)
 
 
 def layout(config: dict[str, Any]) -> Layout:

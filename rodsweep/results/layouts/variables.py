@@ -49,7 +49,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """Description of a variable of a result file.
+    """Description of a variable of a result file, with its name, unit and long name.
 
     dtype: NumPy type. fill: value at missing points. extra: dimensions that follow the dimensions of the
     points.
@@ -64,7 +64,7 @@ class Variable:
     flags: tuple[tuple[int, str], ...] = ()
     """(stored number, name) pairs of a variable whose numbers stand for names; the pairs of `status` come
     from the solver."""
-    typed: str = ""
+    typed_unit: str = ""
     """Unit in which the user typed the quantity, or empty; the stored values are in `units`."""
 
     @property
@@ -75,7 +75,7 @@ class Variable:
     @property
     def attributes(self) -> dict[str, Any]:
         """Attributes of the variable in a result file, by name."""
-        typed = {TYPED_UNIT: self.typed} if self.typed else {}
+        typed = {TYPED_UNIT: self.typed_unit} if self.typed_unit else {}
         flags = flag_attributes(self.flags) if self.flags else {}
         return {"units": self.units, "long_name": self.long_name} | typed | flags
 
@@ -181,7 +181,7 @@ class ExtensionRule:
     The rule determines which stored points need no new solve when the option increases.
     """
 
-    has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
+    has_data: Callable[[np.ndarray, Any], NDArray[np.bool_]]
     """Function from (stored records, (n,); old value of the option) to whether each record already has the
     additional data, (n,)."""
     values: tuple[Any, ...] = ()
@@ -223,7 +223,7 @@ class Layout:
         return self.arm_axes or (("point",) if is_list else self.parameters)
 
     @property
-    def record(self) -> np.dtype:
+    def record_dtype(self) -> np.dtype:
         """NumPy type of the record of a point: its flat index, then every variable."""
         fields: list[Any] = [(v.name, v.dtype, self.point_shape(v)) for v in self.variables]
         return np.dtype([("index", "<i8"), *fields])

@@ -28,11 +28,11 @@ RESULT_HEAD = b"rodsweep unit 1\n"
 CHECKSUM_BYTES = 4
 """Length of the checksum at the end of a checkpoint file, in bytes."""
 Arrays = dict[str, np.ndarray]
-STATE = "state_"
+STATE_PREFIX = "state_"
 """Prefix of the names of a solver state's arrays in a checkpoint file."""
 
 
-class HasArrays(Protocol):
+class StateWithArrays(Protocol):
     """Solver state of a chain, which can be written as arrays."""
 
     def arrays(self) -> Arrays:
@@ -84,25 +84,27 @@ class Checkpoints(ArrayStore):
 
     pattern = CHECKPOINTS
 
-    def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
+    def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
         """directory, fingerprint: as in `ArrayStore`. state_of: makes a solver state from its arrays (the
         result of the state's method `arrays`).
         """
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
-    def write(self, chain: int, index: int, state: HasArrays | None) -> None:
+    def write(self, chain: int, index: int, state: StateWithArrays | None) -> None:
         """Stores the solver state after the point at the flat index `index` of a chain; None for no state."""
         parts = state.arrays() if state is not None else {}
-        self.put(chain, {"index": np.array(index)} | {STATE + name: part for name, part in parts.items()})
+        self.put(
+            chain, {"index": np.array(index)} | {STATE_PREFIX + name: part for name, part in parts.items()}
+        )
 
-    def read(self, chain: int) -> tuple[int, HasArrays | None] | None:
+    def read(self, chain: int) -> tuple[int, StateWithArrays | None] | None:
         """(flat index, solver state) of a chain's last checkpoint; None if there is no intact checkpoint."""
         arrays = self.get(chain)
         if arrays is None:
             return None
         index = int(arrays.pop("index"))
-        parts = {name.removeprefix(STATE): part for name, part in arrays.items()}
+        parts = {name.removeprefix(STATE_PREFIX): part for name, part in arrays.items()}
         return index, self._state_of(parts) if parts else None
 
     def remove(self, chain: int) -> None:

@@ -20,11 +20,11 @@ JOURNALS = "rank-*"
 """Pattern of the file names of journals."""
 JOURNAL_HEAD = b"rodsweep journal 1\n"
 """First line of a journal. The second line is the fingerprint of config and points."""
-BYTES_A_BLOCK = 1 << 18
+BYTES_PER_READ = 1 << 18
 """Number of bytes per read of a journal, which bounds the memory."""
-TEXT_GOES_ON, TEXT_ENDS = -2, -1
+TEXT_CONTINUES, TEXT_ENDS = -2, -1
 """Values of the index field in records of text: for the last record of a line TEXT_ENDS, for earlier records
-of the line TEXT_GOES_ON."""
+of the line TEXT_CONTINUES."""
 CHECKSUM_BYTES = 4
 """Length of the checksum after a record, in bytes."""
 INDEX_BYTES = 8
@@ -42,13 +42,15 @@ class Journal:
     """Journal of one rank, open for appending."""
 
     def __init__(self, directory: Path, rank: int, layout: Layout, fingerprint: str):
-        self.page = np.zeros((), layout.record)
-        self.names = tuple(variable.name for variable in layout.variables)
+        self.record = np.zeros((), layout.record_dtype)
+        """Record of a point, of the layout's NumPy type, reused for every point."""
+        self.variable_names = tuple(variable.name for variable in layout.variables)
         self.directory = directory
         self.name = f"rank-{rank:06d}-{os.getpid()}"
         self._create()
         self._write(_journal_header(fingerprint))
-        self.head = len(_journal_header(fingerprint))
+        self.header_size = len(_journal_header(fingerprint))
+        """Length of the header of the file, in bytes."""
 
     def append(self, index: int, values: dict, reasons: Sequence[str] = ()) -> None:
         """Writes the record of the finished point at a flat index; values: every variable by name.
@@ -56,8 +58,8 @@ class Journal:
         reasons: lines that say why points failed, for `read_reasons`.
         """
         # One assignment, because assigning single fields takes three times as long.
-        self.page[()] = (index, *(values[name] for name in self.names))
-        self._write(b"".join(map(_with_checksum, (*self._text(reasons), self.page.tobytes()))))
+        self.record[()] = (index, *(values[name] for name in self.variable_names))
+        self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), self.record.tobytes()))))
 
     def append_all(
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
@@ -65,23 +67,23 @@ class Journal:
         """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
         name, (n, ...). reasons: as in `append`.
         """
-        records = np.zeros(len(index), self.page.dtype)
+        records = np.zeros(len(index), self.record.dtype)
         records["index"] = index
-        for name in self.names:
+        for name in self.variable_names:
             records[name] = values[name]
         data = records.tobytes()
         size = records.itemsize
         parts = (data[at : at + size] for at in range(0, len(data), size))
-        self._write(b"".join(map(_with_checksum, (*self._text(reasons), *parts))))
+        self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), *parts))))
 
-    def _text(self, lines: Sequence[str]) -> Iterator[bytes]:
+    def _text_records(self, lines: Sequence[str]) -> Iterator[bytes]:
         """Yields records that hold lines of text instead of the values of a point."""
-        room = self.page.itemsize - INDEX_BYTES
+        room = self.record.itemsize - INDEX_BYTES
         for line in lines:
             text = line.encode()
             pieces = [text[at : at + room] for at in range(0, len(text), room)]
             for number, piece in enumerate(pieces, 1):
-                index = TEXT_ENDS if number == len(pieces) else TEXT_GOES_ON
+                index = TEXT_ENDS if number == len(pieces) else TEXT_CONTINUES
                 yield index.to_bytes(INDEX_BYTES, "little", signed=True) + piece.ljust(room, b"\0")
 
     def close(self) -> None:
@@ -89,7 +91,7 @@ class Journal:
 
         If the file was moved or deleted, the journal is written again first.
         """
-        empty = os.fstat(self.handle).st_size == self.head
+        empty = os.fstat(self.handle).st_size == self.header_size
         if not empty and not self._is_in_place():
             self._write_anew()
         os.fsync(self.handle)
@@ -115,7 +117,7 @@ class Journal:
         former = self.handle
         at = 0
         self._create()
-        while block := os.pread(former, BYTES_A_BLOCK, at):
+        while block := os.pread(former, BYTES_PER_READ, at):
             self._write(block)
             at += len(block)
         os.close(former)
@@ -135,15 +137,14 @@ def delete_matching_files(directory: Path, pattern: str) -> None:
 
 def journals_with_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
-    return [
-        path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) == _journal_header(fingerprint)
-    ]
+    known = _journal_header(fingerprint)
+    return [path for path in sorted(directory.glob(JOURNALS)) if _header_if_points(path) == known]
 
 
 def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
     known = (b"", _journal_header(fingerprint))
-    return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) not in known]
+    return [path for path in sorted(directory.glob(JOURNALS)) if _header_if_points(path) not in known]
 
 
 def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
@@ -173,7 +174,7 @@ def _journal_header(fingerprint: str) -> bytes:
     return JOURNAL_HEAD + fingerprint.encode() + b"\n"
 
 
-def _points_of(path: Path) -> bytes:
+def _header_if_points(path: Path) -> bytes:
     """First two lines of a journal that has points; empty for any other file."""
     if not path.is_file():
         return b""
@@ -197,7 +198,7 @@ def read_journals(
     for path in journals_with_fingerprint(directory, fingerprint):
         for rows in _record_rows(path, layout, fingerprint):
             whole = rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES]
-            records = np.ascontiguousarray(whole).view(layout.record).ravel()
+            records = np.ascontiguousarray(whole).view(layout.record_dtype).ravel()
             yield records[(records["index"] >= 0) & (records["index"] < points)]
 
 
@@ -206,11 +207,11 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
     return [
         line
         for path in journals_with_fingerprint(directory, fingerprint)
-        for line in _text_in(_record_rows(path, layout, fingerprint)).decode().splitlines()
+        for line in _complete_text_lines(_record_rows(path, layout, fingerprint)).decode().splitlines()
     ]
 
 
-def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
+def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
     """The complete lines of text stored in a journal; a line with a damaged record is left out.
 
     blocks: records with their checksums, as rows of bytes, (records, bytes).
@@ -219,7 +220,7 @@ def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
     line = b""
     for rows in blocks:
         index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
-        some = (index == TEXT_GOES_ON) | (index == TEXT_ENDS)
+        some = (index == TEXT_CONTINUES) | (index == TEXT_ENDS)
         for row, at, whole in zip(rows[some], index[some], _has_valid_checksum(rows[some]), strict=True):
             line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if whole else b""
             if at == TEXT_ENDS:
@@ -230,10 +231,10 @@ def _text_in(blocks: Iterable[np.ndarray]) -> bytes:
 
 def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
     """Yields the records of a journal with their checksums, each a row of bytes, (records, bytes)."""
-    size = layout.record.itemsize + CHECKSUM_BYTES
+    size = layout.record_dtype.itemsize + CHECKSUM_BYTES
     with path.open("rb") as file:
         file.seek(len(_journal_header(fingerprint)))
-        while block := file.read(max(1, BYTES_A_BLOCK // size) * size):
+        while block := file.read(max(1, BYTES_PER_READ // size) * size):
             raw = np.frombuffer(block, np.uint8)
             yield raw[: len(raw) // size * size].reshape(-1, size)
 

@@ -19,12 +19,12 @@ from ...model.parameters import NONLINEAR_PARAMETERS, names_except
 from .flutter_forces import FlutterForce
 from .points import Points
 
-FlutterOf = Callable[[SlenderArm, float | None], FlutterForce]
+FlutterSearch = Callable[[SlenderArm, float | None], FlutterForce]
 """Function from (arm, taper that replaces the arm's taper or None) to the force of first flutter."""
-Forces = NDArray[np.object_]
+ForceArray = NDArray[np.object_]
 """Array of `FlutterForce` objects, (arms, 1, combinations). Combinations are the combinations of values of
 the parameters that replace the arm's parameters."""
-NO_FLUTTER_FORCE = FlutterForce(np.nan)
+NO_FORCE = FlutterForce(np.nan)
 """Force (nan) of an arm without load, or to which the rod model does not apply."""
 
 
@@ -32,7 +32,7 @@ def grid_of_arms(
     section: ArmSection,
     beside: Mapping[str, Array],
     names: tuple[str, ...],
-    flutter: FlutterOf,
+    flutter: FlutterSearch,
     build: Build = STANDARD,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
@@ -42,8 +42,8 @@ def grid_of_arms(
     of the task. flutter: force of first flutter of an arm, for relative loads. build: constitutive law and
     profile of all arms. Raises ValueError if the rod model applies to no point.
     """
-    arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
-    loads = section.quantity_axes[section.load_axis].array() if section.load_axis else np.zeros(1)
+    arms, statuses = zip(*(_arm_or_status(section, v) for v in section.values_of_arms()), strict=True)
+    loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
     own = (*names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
@@ -52,11 +52,11 @@ def grid_of_arms(
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
-    if section.load_axis in RELATIVE_LOADS:
-        coverage = _with_flutter(coverage, scale)
+    if section.load_key in RELATIVE_LOADS:
+        coverage = _with_flutter_codes(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
-        if section.load_axis in RELATIVE_LOADS:
+        if section.load_key in RELATIVE_LOADS:
             units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.is_nonuniform else ()
@@ -95,13 +95,13 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 
 
 def _unit_load_forces(
-    section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterOf
-) -> Forces:
+    section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterSearch
+) -> ForceArray:
     """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm.
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
-    beside = [None] if tapers is None or section.load_axis not in RELATIVE_LOADS else tapers.ravel().tolist()
+    beside = [None] if tapers is None or section.load_key not in RELATIVE_LOADS else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
         found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
@@ -110,21 +110,21 @@ def _unit_load_forces(
 
 
 def _unit_load_force(
-    section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterOf
+    section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterSearch
 ) -> FlutterForce:
-    """Dimensionless force F of a unit load on an arm; UNCOVERED if `arm` is None or has no load.
+    """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load.
 
     The unit load is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces
     the arm's taper unless None.
     """
     if arm is None or not section.load:
-        return NO_FLUTTER_FORCE
-    if section.load_axis in RELATIVE_LOADS:
+        return NO_FORCE
+    if section.load_key in RELATIVE_LOADS:
         return flutter(arm, taper)
     return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
 
 
-def _with_flutter(coverage: Array, flutter: Array) -> Array:
+def _with_flutter_codes(coverage: Array, flutter: Array) -> Array:
     """Status codes `coverage`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
 
     flutter: F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms,
@@ -135,7 +135,7 @@ def _with_flutter(coverage: Array, flutter: Array) -> Array:
     return codes
 
 
-def _search_failures(coverage: Array, forces: Forces) -> dict[int, str]:
+def _search_failures(coverage: Array, forces: ForceArray) -> dict[int, str]:
     """Reasons why the search for flutter failed, by flat index of the point.
 
     coverage: status codes, (arms, loads, combinations of replaced parameters).
@@ -145,7 +145,7 @@ def _search_failures(coverage: Array, forces: Forces) -> dict[int, str]:
 
 
 def _refuse_grid_without_rods(
-    section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: Forces
+    section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: ForceArray
 ) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. beside: as in `grid_of_arms`.
     no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`.

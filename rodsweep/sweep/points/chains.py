@@ -33,7 +33,7 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 """Function from (flat index of a point, initial state) to (outcome, initial state of the next point)."""
 
 
-class ChainStates(Protocol):
+class CheckpointStore(Protocol):
     """Store of checkpoints: (flat index of the last solved point, solver state after this point) of each
     unfinished chain.
     """
@@ -49,12 +49,12 @@ class ChainStates(Protocol):
 class Chains:
     """All chains of a grid of shape `shape` along its axis number `axis`.
 
-    upward: whether points are solved in order of increasing values on the axis.
+    is_upward: whether points are solved in order of increasing values on the axis.
     """
 
     shape: tuple[int, ...]
     axis: int
-    upward: bool
+    is_upward: bool
 
     @property
     def length(self) -> int:
@@ -69,7 +69,7 @@ class Chains:
     def indices(self, chain: int) -> NDArray[np.int64]:
         """Flat indices of the points of a chain in the order of solution, shape (length,)."""
         along = np.arange(self.length)
-        return indices_along(self.shape, self.axis, chain, along if self.upward else along[::-1])
+        return indices_along(self.shape, self.axis, chain, along if self.is_upward else along[::-1])
 
     def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
@@ -82,28 +82,35 @@ class Chains:
 class ChainedWork:
     """The chains of a sweep, and how to solve them.
 
-    solve_from: solves a point from a state. state_of: makes a state from the arrays of `ChainState.arrays`.
+    solve_from: solves a point from a state. state_from_arrays: makes a state from the arrays of
+    `ChainState.arrays`.
     """
 
     chains: Chains
     solve_from: ChainStep
-    state_of: Callable[[Arrays], ChainState]
+    state_from_arrays: Callable[[Arrays], ChainState]
 
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints."""
+    """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints.
+
+    work: the chains. missing: flat indices of the missing points. checkpoints: store of solver states. stop:
+    a stop request ends the chain after the present point.
+    """
 
     work: ChainedWork
     missing: IndexSet
-    checkpoints: ChainStates
+    checkpoints: CheckpointStore
     stop: StopRequest
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
         """Yields (flat index, outcome) of each missing point of a chain; ends early after a stop request.
+        Points that are not missing are solved too, from the checkpoint on, because later points start from
+        them.
 
-        The caller stores the outcome before the state is stored. A kill in between costs a second solve of
-        the point; in the reverse order the point could be lost.
+        The caller stores an outcome before the state of the chain after this point is stored. A kill in
+        between costs a second solve of the point; in the reverse order the point could be lost.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)

@@ -39,7 +39,7 @@ OWN_TAPER: ReplacedTapers = (None,)
 """No replacement: the arm keeps its own taper."""
 
 
-def rods_of_flutter(
+def rods_needing_flutter_force(
     section: ArmSection | None, build: Build | None = None, tapers: ReplacedTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
@@ -48,7 +48,7 @@ def rods_of_flutter(
     build: constitutive law and profile from the config section `material`, None if the section is not given.
     Raises InputError for an invalid arm.
     """
-    if section is None or section.load_axis not in RELATIVE_LOADS:
+    if section is None or section.load_key not in RELATIVE_LOADS:
         return []
     from ...verdict.relative import plane_rods
 
@@ -60,7 +60,7 @@ def _unloaded_arms(section: ArmSection) -> Iterable[SlenderArm]:
     """Yields the arms of a config section to which the rod model applies, without load. Raises InputError for
     an invalid arm.
     """
-    for values in section.sections():
+    for values in section.values_of_arms():
         try:
             yield section.arm_of(values)
         except UncoveredArm:
@@ -69,7 +69,7 @@ def _unloaded_arms(section: ArmSection) -> Iterable[SlenderArm]:
             raise InputError(str(error)) from None
 
 
-def flutter_of_rod(rod: Rod) -> FlutterForce:
+def flutter_force_of_rod(rod: Rod) -> FlutterForce:
     """Force of first flutter of one rod. If the search fails, F is nan and `failure` is the reason; no
     exception is raised.
     """
@@ -81,13 +81,13 @@ def flutter_of_rod(rod: Rod) -> FlutterForce:
         return FlutterForce(nan, str(error))
 
 
-def flutter_of_arm(
+def flutter_force_of_arm(
     arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
     """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.
 
     If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
-    known: forces of all rods of `rods_of_flutter`. build: as in `rods_of_flutter`.
+    known: forces of all rods of `rods_needing_flutter_force`. build: as in `rods_needing_flutter_force`.
     """
     from ...verdict.relative import plane_rods
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
+from ...config.arm.axes import CRUSHED, MAX_ARM_GRID_POINTS, SLENDER
 from ...config.schema import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
@@ -17,7 +17,12 @@ from ...model.material.build import STANDARD, Build
 from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
-from .flutter_forces import FlutterForces, flutter_of_arm, flutter_of_rod, rods_of_flutter
+from .flutter_forces import (
+    FlutterForces,
+    flutter_force_of_arm,
+    flutter_force_of_rod,
+    rods_needing_flutter_force,
+)
 from .lists import read_points
 from .points import Points
 
@@ -28,7 +33,7 @@ def grid_size(config: Config) -> int:
     """
     if config.parameters.is_list or config.parameters.arm_axes:
         return 0
-    return math.prod(config.parameters.axes[name].size for name in config.names)
+    return math.prod(config.parameters.axes[name].size for name in config.parameter_names)
 
 
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
@@ -41,22 +46,22 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
     for name, value in parameters.constant_parameters.items():
         require_in_range(PARAMETERS[name].allowed, name, (value,))
     if parameters.points is not None:
-        columns = read_points(directory / parameters.points, config.names, config.build)
-        return Points(config.names, columns, is_grid=False)
+        columns = read_points(directory / parameters.points, config.parameter_names, config.build)
+        return Points(config.parameter_names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     if parameters.arm is not None and parameters.arm_axes:
         for name, column in axes.items():
             require_in_range(PARAMETERS[name].allowed, name, column)
         try:
-            known = flutter or {rod: flutter_of_rod(rod) for rod in rods_for_flutter_forces(config)}
-            of_arm = partial(flutter_of_arm, known=known, build=config.stated_build)
-            return grid_of_arms(parameters.arm, axes, config.names, of_arm, config.build)
+            known = flutter or {rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)}
+            of_arm = partial(flutter_force_of_arm, known=known, build=config.stated_build)
+            return grid_of_arms(parameters.arm, axes, config.parameter_names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
-    named = {name: axes[name] for name in config.names}
+    named = {name: axes[name] for name in config.parameter_names}
     coverage = None if parameters.arm is None else _crushing_codes(named, config.build)
-    refuse_axes(axes, config.allows_crushed_rods or coverage is not None, config.build)
-    return Points(config.names, tuple(named.values()), is_grid=True, coverage=coverage)
+    refuse_invalid_axes(axes, config.allows_crushed_rods or coverage is not None, config.build)
+    return Points(config.parameter_names, tuple(named.values()), is_grid=True, coverage=coverage)
 
 
 def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
@@ -64,10 +69,10 @@ def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     rods.
 
     None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
-    MOST_POINTS points. axes: values of each parameter, (n,).
+    MAX_ARM_GRID_POINTS points. axes: values of each parameter, (n,).
     """
     count = math.prod(map(len, axes.values()))
-    if not set(CRUSHING_PARAMETERS) <= axes.keys() or count > MOST_POINTS:
+    if not set(CRUSHING_PARAMETERS) <= axes.keys() or count > MAX_ARM_GRID_POINTS:
         return None
     along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
     shares = build.relative_crushing_forces(along.get("taper", np.ones(1)))
@@ -82,9 +87,9 @@ def rods_for_flutter_forces(config: Config) -> list[Rod]:
     """The distinct rods whose flutter forces the points of a config need; InputError for an invalid arm."""
     given = config.parameters.given_axes.get("taper")
     if given is None:
-        return rods_of_flutter(config.parameters.arm, config.stated_build)
+        return rods_needing_flutter_force(config.parameters.arm, config.stated_build)
     require_in_range(PARAMETERS["taper"].allowed, "taper", given.array())
-    return rods_of_flutter(config.parameters.arm, config.stated_build, given.array().tolist())
+    return rods_needing_flutter_force(config.parameters.arm, config.stated_build, given.array().tolist())
 
 
 def require_in_range(
@@ -101,7 +106,9 @@ def require_in_range(
         )
 
 
-def refuse_axes(axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = STANDARD) -> None:
+def refuse_invalid_axes(
+    axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = STANDARD
+) -> None:
     """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
 
     axes: values, (n,), by name of the parameter. allows_crushed_rods: whether some rods, but not all rods, of

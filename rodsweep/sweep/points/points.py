@@ -60,7 +60,7 @@ class Points:
     @property
     def axes(self) -> dict[str, Array]:
         """Axes of the grid by name, (n,) each: parameters or an arm's quantities; empty for a list."""
-        return self.by_name if self.is_grid else self.arm_axes
+        return self.columns_by_name if self.is_grid else self.arm_axes
 
     @property
     def varying_parameters(self) -> tuple[str, ...]:
@@ -70,19 +70,19 @@ class Points:
         return self.names if self.is_grid else tuple(map(parameter_of_axis, self.arm_axes))
 
     @property
-    def identity(self) -> list[Array]:
+    def identifying_arrays(self) -> list[Array]:
         """The arrays in `arm_axes` and `columns`, (n,) each. Two sweeps have the same points if all these
         arrays are equal.
         """
         return [*self.arm_axes.values(), *self.columns]
 
     @property
-    def of_rods(self) -> dict[str, Array]:
+    def rod_values(self) -> dict[str, Array]:
         """Values of each parameter by name, (n,) each, as in `columns`, without the points that have no
         rod.
         """
         if self.coverage is None:
-            return self.by_name
+            return self.columns_by_name
         return self.values_of(np.flatnonzero(self.coverage == SLENDER))
 
     def has_rod(self, index: int) -> bool:
@@ -90,7 +90,7 @@ class Points:
         return self.coverage is None or self.coverage[index] == SLENDER
 
     @property
-    def by_name(self) -> dict[str, Array]:
+    def columns_by_name(self) -> dict[str, Array]:
         """The arrays in `columns`, by name of the parameter, (n,) each."""
         return dict(zip(self.names, self.columns, strict=True))
 
@@ -118,15 +118,15 @@ class Points:
     def rod(self, index: int, **beside: float) -> Rod:
         """Rod of the point at a flat index; raises Crushed.
 
-        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL.
+        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL_VALUES.
         """
         parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **beside}
         return Rod(**parameters, build=self.build_of(index))
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """Returns (distinct builds, indices). indices: for each point of `of_rods`, the index of its build,
-        (rods,).
+        """Returns (distinct builds, indices). indices: for each point of `rod_values`, the index of its
+        build, (rods,).
         """
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
@@ -148,11 +148,11 @@ class ParameterLine:
     """Values of all other parameters, by name."""
     x: Array
     """Values of the parameter that varies, (n,)."""
-    at: np.ndarray
+    indices: np.ndarray
     """Flat indices of the points in the sweep, (n,)."""
 
 
-def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
+def lines_along(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
     """Yields the lines of points along the parameter `name`, in the order of their first points.
 
     Points at which the parameter is inf are left out. columns: each parameter at every point, (points,).

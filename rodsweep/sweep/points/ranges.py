@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import InputError
 
-BLOCKS_A_SHARD = 64
+BLOCKS_PER_SHARD = 64
 """Number of blocks of consecutive items in a shard. Many blocks give shards of equal cost, but separate
 neighbouring points in the result file of the shard."""
 IndexRange = tuple[int, int]
@@ -59,35 +59,35 @@ class IndexSet:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Shard `number` of `of` shards of a sweep, each solved by a separate run; shard 1/1 is the complete
-    sweep.
+    """Shard `number` of `shard_count` shards of a sweep, each solved by a separate run; shard 1/1 is the
+    complete sweep.
     """
 
     number: int = 1
-    of: int = 1
+    shard_count: int = 1
 
     def __str__(self) -> str:
-        return f"{self.number}/{self.of}"
+        return f"{self.number}/{self.shard_count}"
 
     def ranges_of_shard(self, todo: Sequence[IndexRange], items: int) -> list[IndexRange]:
         """Ranges of the items in `todo` that belong to this shard.
 
         Blocks of the sweep's `items` items are assigned to the shards in turn.
         """
-        if self.of == 1:
+        if self.shard_count == 1:
             return list(todo)
-        block = max(1, items // (self.of * BLOCKS_A_SHARD))
+        block = max(1, items // (self.shard_count * BLOCKS_PER_SHARD))
         mine: list[IndexRange] = []
         for start, stop in todo:
             turn = start // block
-            turn += (self.number - 1 - turn) % self.of
+            turn += (self.number - 1 - turn) % self.shard_count
             while turn * block < stop:
                 mine.append((max(start, turn * block), min(stop, (turn + 1) * block)))
-                turn += self.of
+                turn += self.shard_count
         return mine
 
 
-def shard_of(text: str) -> Shard:
+def parsed_shard(text: str) -> Shard:
     """The `Shard` from a text like "2/8"; raises InputError for any other text."""
     number, _, of = text.partition("/")
     if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):

@@ -18,7 +18,7 @@ from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ran
 STRETCH_POINTS = 128
 """Maximum number of points in a stretch. Arms along a path share what is computed once per stretch; longer
 stretches would leave fewer work items to the ranks."""
-SHORTEST_AXIS = 8
+MIN_STRETCH_AXIS_VALUES = 8
 """Minimum number of values on the axis of stretches. On a shorter axis, neighbouring points differ too much
 to follow eigenvalues."""
 STRETCHES_PER_BLOCK = 1 << 12
@@ -29,17 +29,17 @@ STRETCHES_PER_BLOCK = 1 << 12
 class StretchResult:
     """Result of a stretch of n points solved together.
 
-    values: every variable of the result file at the points, (n, ...), by name. solved: mask of the points
+    values: every variable of the result file at the points, (n, ...), by name. is_solved: mask of the points
     that were solved together, (n,); all other points must be solved one by one.
     """
 
     values: dict[str, NDArray]
-    solved: NDArray[np.bool_]
+    is_solved: NDArray[np.bool_]
 
-    def at(self, places: NDArray[np.int64]) -> "StretchResult":
+    def part_at(self, places: NDArray[np.int64]) -> "StretchResult":
         """The part of the result at the positions `places` in the stretch, (m,)."""
         values = {name: column[places] for name, column in self.values.items()}
-        return StretchResult(values, self.solved[places])
+        return StretchResult(values, self.is_solved[places])
 
 
 SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
@@ -54,7 +54,7 @@ class Stretches:
     axis: int
 
     @property
-    def lines(self) -> int:
+    def line_count(self) -> int:
         """Number of grid lines along the axis."""
         return math.prod(self.shape) // self.shape[self.axis]
 
@@ -65,17 +65,17 @@ class Stretches:
         Stretches are ordered by position along the axis, and at equal positions in row-major order of the
         remaining axes. Consecutive stretches are therefore neighbours in the file.
         """
-        return self.lines * -(-self.shape[self.axis] // STRETCH_POINTS)
+        return self.line_count * -(-self.shape[self.axis] // STRETCH_POINTS)
 
     def indices(self, stretch: int) -> NDArray[np.int64]:
         """Flat indices of the points of the stretch number `stretch`, (n,)."""
-        part, line = divmod(stretch, self.lines)
+        part, line = divmod(stretch, self.line_count)
         along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
         return indices_along(self.shape, self.axis, line, along)
 
     def missing_counts(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
         """Number of points in `missing` of each stretch in a range of stretch numbers, (stretches,)."""
-        part, line = np.divmod(np.arange(*stretches)[:, None], self.lines)
+        part, line = np.divmod(np.arange(*stretches)[:, None], self.line_count)
         along = part * STRETCH_POINTS + np.arange(STRETCH_POINTS)
         index = indices_along(self.shape, self.axis, line, along)
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
@@ -108,22 +108,23 @@ class Stretches:
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
     """Stretches of a grid along the first of its longest usable axes; None if no usable axis has
-    SHORTEST_AXIS values.
+    MIN_STRETCH_AXIS_VALUES values.
 
     shape: shape of the grid. moved: the only parameter that varies along each axis; "" for an axis of several
     parameters, which is not usable.
     """
     able = [axis for axis, name in enumerate(moved) if name]
     axis = max(able, key=lambda i: shape[i], default=None)
-    return Stretches(shape, axis) if axis is not None and shape[axis] >= SHORTEST_AXIS else None
+    return Stretches(shape, axis) if axis is not None and shape[axis] >= MIN_STRETCH_AXIS_VALUES else None
 
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
     """Function from the number of a stretch to the results of its missing points.
 
-    solve: function from the flat index of a point that could not be solved together with its stretch to the
-    outcome of the point.
+    stretches: all stretches of the grid. solve_stretch: solves the points of a stretch together. solve:
+    solves a point, given its flat index, that could not be solved together with its stretch. missing: flat
+    indices of the missing points.
     """
 
     stretches: Stretches
@@ -140,8 +141,8 @@ class StretchSolver:
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)
         missing = self.missing[indices]
-        together = np.flatnonzero(missing & result.solved)
+        together = np.flatnonzero(missing & result.is_solved)
         if len(together):
-            yield indices[together], result.at(together)
-        for index in indices[missing & ~result.solved].tolist():
+            yield indices[together], result.part_at(together)
+        for index in indices[missing & ~result.is_solved].tolist():
             yield index, self.solve(index)

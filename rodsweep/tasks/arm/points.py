@@ -55,7 +55,9 @@ class NoRodStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class OutcomeWithoutRod:
-    """Outcome of a point of an arm to which the rod model does not apply."""
+    """Outcome of a point of an arm to which the rod model does not apply. status: reason. message: further
+    text on the reason, or empty.
+    """
 
     status: NoRodStatus
     message: str = ""
@@ -99,7 +101,7 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     return None if rods.max() + 1 == len(rods) else rods
 
 
-def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver:
+def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) -> Solver:
     """A solver that caches outcomes, so that a rank solves a rod only once even if several points have this
     rod.
 
@@ -125,7 +127,9 @@ def sharing_equal_rods(solver: Solver, points: Points, layout: Layout) -> Solver
 
 @dataclass(slots=True)
 class _OutcomeCache:
-    """Cache of the outcomes of a rank's latest solves. most: maximum number of outcomes."""
+    """Cache of the outcomes of a rank's latest solves. max_outcomes: maximum number of outcomes. outcomes:
+    cached outcomes by key, the least recently used first.
+    """
 
     max_outcomes: int
     outcomes: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
@@ -148,8 +152,9 @@ class SkippingSolver:
     """A solver that skips the points to which the rod model does not apply, and gives these points fill
     values.
 
-    inner: solver of the points with a rod. coverage: SLENDER for points with a rod, else a value of
-    `NoRodStatus`, (points,). failures: additional messages by flat index of the point.
+    rod_solver: solver of the points with a rod. coverage: SLENDER for points with a rod, else a value of
+    `NoRodStatus`, (points,). failures: additional messages by flat index of the point. layout: variables of a
+    point.
     """
 
     rod_solver: Solver
@@ -157,7 +162,7 @@ class SkippingSolver:
     failures: Mapping[int, str]
     layout: Layout
 
-    def solver(self) -> Solver:
+    def solver_of_all_points(self) -> Solver:
         """The solver of all points, with or without a rod."""
         statuses = (*self.rod_solver.statuses, *NoRodStatus)
         return self.rod_solver.with_wrapper(
@@ -195,5 +200,5 @@ class SkippingSolver:
             values[name][places] = column
         solved = coverage != FLUTTER_UNKNOWN
         if found:
-            solved[places] = found.solved
+            solved[places] = found.is_solved
         return StretchResult(values, solved)

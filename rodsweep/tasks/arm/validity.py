@@ -147,9 +147,10 @@ class ArmValidity:
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
         """Number of consecutive points with the same arm."""
-        self.arm = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
+        self.arm_by_number = lru_cache(CACHED_ARM_COUNT)(_arm_of_number(self.section))
+        """Function from a number to the arm with this number; caches the latest arms."""
 
-    def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
+    def variables_of_points(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
         """The variables of VALIDITY for one point, or for n points of one arm, (n,).
 
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
@@ -159,7 +160,7 @@ class ArmValidity:
         arm = self._arm_of(int(np.ravel(index)[0]))
         return self._validity_variables(arm, replace(motion, may_be_missed=missed), index)
 
-    def at_rest(self) -> dict[str, Array]:
+    def variables_at_rest(self) -> dict[str, Array]:
         """The variables of VALIDITY at the n points with a rod, (n,), as if all arms were at rest."""
         found = []
         for first in range(0, self.points.count, self.points_per_arm):
@@ -172,7 +173,7 @@ class ArmValidity:
         return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
-        return self.arm(index // self.points_per_arm if self.points.arm_axes else 0)
+        return self.arm_by_number(index // self.points_per_arm if self.points.arm_axes else 0)
 
     def _validity_variables(
         self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
@@ -181,7 +182,7 @@ class ArmValidity:
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force_of_points(arm, motion, index)
         effects = neglected_effects(
-            arm, rate, self._base_compression(F, index), drag=drag, amplitude=motion.amplitude
+            arm, rate, self._equivalent_base_force(F, index), drag=drag, amplitude=motion.amplitude
         )
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
@@ -204,7 +205,7 @@ class ArmValidity:
 
     def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load. index: as in `of`.
+        if the arm has no load. index: as in `variables_of_points`.
         """
         own = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
@@ -213,11 +214,10 @@ class ArmValidity:
         own = own.reshape(own.shape + (1,) * (np.ndim(F) - own.ndim))
         return np.asarray(F) * (arm.k1 / own)
 
-    def _base_compression(self, F: Array, index: int | NDArray[np.int64]) -> Array:
-        """The force that would compress the base as much as F compresses the weakest section.
-
-        NaN for rubber, whose constitutive law includes large compression. F, index: forces, and indices of
-        their points, as in `of`.
+    def _equivalent_base_force(self, F: Array, index: int | NDArray[np.int64]) -> Array:
+        """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
+        whose constitutive law includes large compression. F, index: forces, and indices of their points, as
+        in `variables_of_points`.
         """
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
@@ -228,7 +228,7 @@ class ArmValidity:
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
-        have this parameter. index: as in `of`.
+        have this parameter. index: as in `variables_of_points`.
         """
         if name not in self.points.names:
             return None

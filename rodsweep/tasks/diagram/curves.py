@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
     from ..phase_diagram import PhaseDiagramTask
 
-MAX_KEPT_ROWS = 200
+MAX_CACHED_ROWS = 200
 """Maximum number of rows whose special points are cached in a process, because the cycles of a row take up to
 a megabyte. Special points of further rows are computed again, in some seconds and with equal results."""
 
@@ -50,29 +50,29 @@ class DiagramCurves:
     task: "PhaseDiagramTask"
     workspace: "NewtonWorkspace"
     """Buffers of Newton's matrices in this process."""
-    special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
+    special_points_by_row: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
     """Special points of cycles by the number of their row, for rows solved in this process."""
 
     def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
-        """Returns `row` unchanged, after caching its special points if fewer than MAX_KEPT_ROWS rows are
+        """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
         cached. number: number of the row.
         """
-        if len(self.special) < MAX_KEPT_ROWS:
-            self.special[number] = row.special_points
+        if len(self.special_points_by_row) < MAX_CACHED_ROWS:
+            self.special_points_by_row[number] = row.special_points
         return row
 
     def initial_data(self, items: "SpecialBoundaries", chosen: Sequence[int]) -> "dict[int, Any]":
         """Special points cached on this rank, by number of the row, for the rows on which the half curves
-        `items_to_solve` start.
+        numbered `chosen` start. items: all half curves.
         """
         rows = {items.row_of(item) for item in chosen}
-        return {row: self.special[row] for row in rows if row in self.special}
+        return {row: self.special_points_by_row[row] for row in rows if row in self.special_points_by_row}
 
     def add_initial_data(self, starts: "Mapping[int, Any]") -> None:
         """Caches special points of rows solved on other ranks. starts: special points by number of the
         row.
         """
-        self.special.update(starts)
+        self.special_points_by_row.update(starts)
 
     def work_items(self, view: View) -> "SpecialBoundaries | None":
         """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
@@ -85,8 +85,8 @@ class DiagramCurves:
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
             return None
-        row = self.task.config.plane[1]
-        special = special_points_of_rows(view, plane.axes[0].name, self.task.points.by_name[row])
+        row = self.task.config.plane_parameters[1]
+        special = special_points_of_rows(view, plane.axes[0].name, self.task.points.columns_by_name[row])
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, items: "SpecialBoundaries", item: int) -> dict[str, np.ndarray]:
@@ -108,10 +108,10 @@ class DiagramCurves:
         plane = self.plane
         if plane is None:
             return []
-        line, row = self.task.config.plane
+        line, row = self.task.config.plane_parameters
         names = (line, row)
         options = self.task.config.phase_diagram
-        found = self._boundaries(plane, view, self.task.points.by_name[row])
+        found = self._boundaries(plane, view, self.task.points.columns_by_name[row])
         limit = {}
         if names == CRUSHING_PARAMETERS and self.task.config.standard:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
@@ -127,23 +127,23 @@ class DiagramCurves:
             variables += self._bautin_curves(plane, criticalities, *options.bautin_parameter)
         if items is not None:
             curves = with_hopf_ends(
-                items.curves(results), plane, criticalities, unstored_special_count(view, self._finite)
+                items.curves(results), plane, criticalities, unstored_special_count(view, self._is_row_finite)
             )
             variables += cycle_curve_record(curves, names)
         return variables
 
     @property
-    def _finite(self) -> np.ndarray:
+    def _is_row_finite(self) -> np.ndarray:
         """Whether the value of the row's parameter is finite, (rows,)."""
-        return np.isfinite(self.task.points.by_name[self.task.config.plane[1]])
+        return np.isfinite(self.task.points.columns_by_name[self.task.config.plane_parameters[1]])
 
     @property
     def plane(self) -> "Plane | None":
         """Plane of the diagram's two parameters; None if fewer than two rows have a finite value."""
         from ...determinant.parameter_plane import Plane, PlaneAxis
 
-        line, row = self.task.config.plane
-        finite = self.task.points.by_name[row][self._finite]
+        line, row = self.task.config.plane_parameters
+        finite = self.task.points.columns_by_name[row][self._is_row_finite]
         if len(finite) < 2:
             return None
         axes = self.task.config.parameters.axes
@@ -152,8 +152,8 @@ class DiagramCurves:
             name: float(axis.array()[-1 if name in ("k1", "taper") else 0]) for name, axis in axes.items()
         }
         abscissa, ordinate = (
-            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
-            for name, values in ((line, self.task.line), (row, finite))
+            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].is_logarithmic)
+            for name, values in ((line, self.task.line_values), (row, finite))
         )
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
         return Plane(rod, (abscissa, ordinate))
@@ -184,12 +184,12 @@ class DiagramCurves:
         """Special points of the branches of the row `number`, cached or computed again."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
-        if number not in self.special:
+        if number not in self.special_points_by_row:
             request = self.task.row_request()
             return special_points_of(
-                row_branches(self.task.rod(number), request, MAX_CYCLE_SPECIAL, self.workspace)
+                row_branches(self.task.rod_of_row(number), request, MAX_CYCLE_SPECIAL, self.workspace)
             )
-        return self.special[number]
+        return self.special_points_by_row[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":
         """Criticality along each curve; NaN along curves that are not Hopf curves."""
@@ -218,10 +218,10 @@ class DiagramCurves:
             lies_on_curve,
         )
 
-        line, row = self.task.config.plane
+        line, row = self.task.config.plane_parameters
         values = axis.array()
         value_in_plane = float(getattr(plane.rod, name))
-        third = PlaneAxis(name, float(values[0]), float(values[-1]), axis.logarithmic)
+        third = PlaneAxis(name, float(values[0]), float(values[-1]), axis.is_logarithmic)
         all_values = np.append(values, value_in_plane)
         space = BautinSpace(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
         curves: list[BautinCurve] = []

@@ -19,7 +19,7 @@ from ...model.rod import Rod
 from ...results.layouts.spectrum import FORCE_CHANGES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import FilledVariable
-from ...sweep.points.points import Points, lines_over
+from ...sweep.points.points import Points, lines_along
 
 MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points whose eigenvalues are read at once; this limits memory for large files."""
@@ -32,9 +32,10 @@ forces."""
 class ForceLines:
     """Lines of points along F in a file; all lines have the same forces.
 
-    names: parameters other than F, among them `taper` where a config says `taper: 1`. fixed: values of these
-    parameters on each line, (lines, names). F: forces, increasing, (n,). eigenvalues: in 1/tau2, leading
-    first, (lines, n, modes). unstable: number of modes with positive growth rate, -1 if unknown, (lines, n).
+    names: parameters other than F, among them `taper` where a config says `taper: 1`. fixed_values: values of
+    these parameters on each line, (lines, names). F: forces, increasing, (n,). eigenvalues: in 1/tau2,
+    leading first, (lines, n, modes). unstable_counts: number of modes with positive growth rate, -1 if
+    unknown, (lines, n).
     """
 
     names: tuple[str, ...]
@@ -44,12 +45,12 @@ class ForceLines:
     unstable_counts: NDArray[np.int64]
 
 
-def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
+def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
     """Thresholds on all lines of points along F, as variables of the file; empty if F does not vary.
 
     values: variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
-    F = points.by_name["F"]
+    F = points.columns_by_name["F"]
     if len(np.unique(F[np.isfinite(F)])) < 2:
         return ()
     lines = _force_lines_of_grid(points, values) if points.is_grid else _force_lines_of_list(points, values)
@@ -61,7 +62,7 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[FilledVari
 
 def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
-    as in `force_changes`.
+    as in `force_change_variables`.
     """
     along = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != along]
@@ -84,14 +85,14 @@ def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[
 
 def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a list of points, one line at a time. values: as in
-    `force_changes`.
+    `force_change_variables`.
     """
     w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
-    for line in lines_over(points.by_name, "F"):
+    for line in lines_along(points.columns_by_name, "F"):
         if len(line.x) > 1:
             order = np.argsort(line.x, kind="stable")
-            at = line.at[order]
+            at = line.indices[order]
             fixed = np.array([[*line.parameters.values()]])
             names = tuple(line.parameters)
             yield ForceLines(names, fixed, line.x[order], w[None, at], unstable[None, at])

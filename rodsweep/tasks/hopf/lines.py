@@ -14,7 +14,7 @@ import numpy as np
 
 from ...model.material.build import STANDARD, Build
 from ...model.rod import Rod
-from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_points_of
+from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_point_variables
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
@@ -27,16 +27,19 @@ if TYPE_CHECKING:
 class HopfLine:
     """Rods that differ in one parameter, which varies from `start` to `stop`; other parameters are fixed."""
 
-    name: str
+    varied_parameter: str
     """The parameter that varies."""
-    fixed: dict[str, float]
+    fixed_parameters: dict[str, float]
     """The fixed parameters of the straight rod."""
     start: float
     stop: float
     build: Build = STANDARD
+    """Constitutive law and profile of all rods on the line."""
 
-    def search(self) -> "Transitions | None":
-        """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""
+    def hopf_points(self) -> "Transitions | None":
+        """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
+        all rods on such a line are crushed, or if the search fails.
+        """
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import pair_crossings
         from ...solve.changes.unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
@@ -44,44 +47,47 @@ class HopfLine:
 
         start = self.start
         stop = self.stop
-        if self.name == "F":
+        if self.varied_parameter == "F":
             stop = min(
                 stop,
-                self._crushing_share * self.fixed["k1"] * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin),
+                self._crushing_force_ratio
+                * self.fixed_parameters["k1"]
+                * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin),
             )
-        if self.name == "k1":
+        if self.varied_parameter == "k1":
             start = max(
                 start,
-                self.fixed["F"] / (self._crushing_share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)),
+                self.fixed_parameters["F"]
+                / (self._crushing_force_ratio * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)),
             )
         if not start < stop:
             return None
-        at_start: dict[str, Any] = self.fixed | {self.name: start}
+        at_start: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
         try:
-            return pair_crossings(Path(Rod(**at_start, build=self.build), self.name), start, stop)
+            return pair_crossings(Path(Rod(**at_start, build=self.build), self.varied_parameter), start, stop)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
 
     @property
-    def _crushing_share(self) -> float:
+    def _crushing_force_ratio(self) -> float:
         """The force that crushes the rods, in units of k1."""
-        return self.build.relative_crushing_force(self.fixed.get("taper", 1.0))
+        return self.build.relative_crushing_force(self.fixed_parameters.get("taper", 1.0))
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
     """Lines of points of a file, without repetition. Rods that differ only in gamma1 share a line."""
-    names = [name for name in HOPF_ALONG if name in points.of_rods]
-    return [line for name in names for line in _lines_over(points, name, names)]
+    names = [name for name in HOPF_ALONG if name in points.rod_values]
+    return [line for name in names for line in _hopf_lines_along(points, name, names)]
 
 
-def _lines_over(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
+def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
     """Yields the lines along the parameter `name`, if at least two of its values are finite.
 
     names: all parameters of the lines. Lines along F begin at 0, because the Hopf point may lie below the
     smallest force of the points. Arms with equal parameters and different profiles have no line, because a
     file cannot distinguish such arms.
     """
-    columns = {n: points.of_rods[n] for n in names}
+    columns = {n: points.rod_values[n] for n in names}
     others = [n for n in names if n != name]
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
@@ -122,15 +128,15 @@ def hopf_variables(
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
         (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))
-        for v in hopf_points_of(names)
+        for v in hopf_point_variables(names)
     )
 
 
 def _hopf_point_values(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
-    rod = line.fixed | {line.name: crossing.at}
+    rod = line.fixed_parameters | {line.varied_parameter: crossing.at}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
-        "hopf_along": HOPF_ALONG.index(line.name),
+        "hopf_along": HOPF_ALONG.index(line.varied_parameter),
         "hopf_kind": int(crossing.kind),
         "hopf_error": crossing.error / abs(crossing.at),
         "hopf_frequency": crossing.frequency,

@@ -9,25 +9,26 @@ from ...sweep.loop import Indices
 from ...sweep.points.stretches import StretchResult
 
 
-def parameters_in_words(values: Mapping[str, float]) -> str:
+def parameters_text(values: Mapping[str, float]) -> str:
     """Text with the parameters of a point: `F=40.0, k1=200.0`. values: parameters by name."""
     return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
 
 @dataclass(frozen=True, slots=True)
 class FailureReasons:
-    """Distinct reasons why points failed, each with the first point that failed for this reason.
+    """Distinct reasons why points failed, each with the first point that failed for this reason; at most
+    MAX_FAILURE_REASONS.
 
-    where: function from the flat index of a point to a text with its parameters. examples: text with
+    point_text: function from the flat index of a point to a text with its parameters. examples: text with
     parameters, status and message, by the reason with all numbers replaced.
     """
 
-    where: Callable[[int], str]
+    point_text: Callable[[int], str]
     examples: dict[str, str] = field(default_factory=dict)
 
     def add(self, index: Indices, result: Any) -> list[str]:
-        """Adds the reason why a point failed, if the reason is new; returns a list with this example, or an
-        empty list.
+        """Adds the reason why a point failed; returns a list with this example, or an empty list if the
+        reason is known, the list of reasons is full, or no point failed.
 
         index, result: flat index and outcome of one point, or flat indices, (n,), and result of a stretch, of
         which no point failed.
@@ -36,7 +37,7 @@ class FailureReasons:
             return []
         if len(self.examples) >= MAX_FAILURE_REASONS:
             return []
-        where = self.where(int(index))
+        where = self.point_text(int(index))
         line = " ".join(f"{where}: {result.status.name} {result.message}".split())
         if failure_kind(line) in self.examples:
             return []

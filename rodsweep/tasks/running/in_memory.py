@@ -65,9 +65,11 @@ def view_in_memory(
         {name: array for name, (_, array, _) in (coordinates | variables).items()},
         plan.layout.parameters,
         {MISSING_STATUS: "missing", **dict(plan.flags)},
-        journalled=0,
+        journalled_count=0,
         arm_axes=plan.layout.arm_axes,
-        typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
+        typed_units={
+            variable.name: variable.typed_unit for variable, _ in plan.quantities if variable.typed_unit
+        },
     )
 
 
@@ -98,7 +100,7 @@ def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
     if not points.axes:
         rows = np.arange(1, points.count + 1, dtype="<i4")
         found["point"] = (("point",), rows, dimension_attributes("point"))
-    for name, column in () if points.arm_axes else points.by_name.items():
+    for name, column in () if points.arm_axes else points.columns_by_name.items():
         found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantities:
         found[variable.name] = (variable.extra, values, variable.attributes)

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...results.layouts import LAYOUT_MAKERS, layout_of
-from ...results.layouts.arm import arm_variables, at_points, si_record
+from ...results.layouts.arm import arm_variables, quantities_at_points, si_values
 from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
@@ -24,7 +24,7 @@ from ...sweep.points.points import Points
 from ...sweep.points.ranges import Shard
 from ...sweep.points.stretches import StretchResult
 from .. import TASKS
-from ..arm.points import SkippingSolver, sharing_equal_rods
+from ..arm.points import SkippingSolver, solver_with_outcome_cache
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 
@@ -42,6 +42,7 @@ class Job:
     """A validated config with its points, its task and the layout of its results."""
 
     path: Path
+    """Path of the config file; for a call in Python, a path with the name of the task."""
     config: Config
     source: str | dict[str, Any]
     """The config as the user wrote it: the text of a YAML file, or the tree of keys of a call in Python."""
@@ -53,7 +54,7 @@ class Job:
     """Variables of the results of a point."""
 
     @property
-    def text(self) -> str:
+    def config_text(self) -> str:
         """YAML text of the config as the user wrote it."""
         return self.source if isinstance(self.source, str) else tree_yaml(self.source)
 
@@ -74,22 +75,26 @@ class Job:
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
-        once = sharing_equal_rods(self._in_si(solver), self.points, self.layout)
+        once = solver_with_outcome_cache(self._with_arm_results(solver), self.points, self.layout)
         coverage = self.points.coverage
         if coverage is None or not coverage.any():
             return once
-        return SkippingSolver(once, coverage, self.points.failures, self.layout).solver()
+        return SkippingSolver(once, coverage, self.points.failures, self.layout).solver_of_all_points()
 
-    def _in_si(self, solver: Solver) -> Solver:
+    def _with_arm_results(self, solver: Solver) -> Solver:
         """The solver, with values in SI units and the validity of the model added to the results of a
         point.
         """
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
-        quantities = at_points(self.quantities, self.points)
+        quantities = quantities_at_points(self.quantities, self.points)
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
-            return values | si_record(values, index, layout, quantities) | validity.of(values, index)
+            return (
+                values
+                | si_values(values, index, layout, quantities)
+                | validity.variables_of_points(values, index)
+            )
 
         def together(indices: NDArray[np.int64]) -> StretchResult:
             assert solver.stretched is not None
@@ -108,22 +113,22 @@ def machine_memory() -> int:
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
-def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
+def job_of_file(path: Path, overrides: tuple[str, ...]) -> Job:
     """The job of a config file; InputError for every error that can be detected before the run.
 
     overrides: texts KEY=VALUE that override keys of the config.
     """
-    return job_of(path, *load_config(path, overrides))
+    return job_of_config(path, *load_config(path, overrides))
 
 
-def job_of(
+def job_of_config(
     path: Path, config: Config, source: str | dict[str, Any], flutter: FlutterForces | None = None
 ) -> Job:
     """The job of a config. A file of points is relative to the folder of the config file `path`.
 
     source: the config as the user wrote it. flutter: flutter forces of rods with a load relative to flutter;
     None: the forces are computed here. Raises InputError if the axes do not fit into memory, or the results
-    into a file.
+    into a file, or if the results of one point exceed MAX_RECORD_BYTES.
     """
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_PER_VALUE > machine_memory():
@@ -165,8 +170,8 @@ def _plan(task: Task, resolved: dict[str, Any], layout: Layout) -> Plan:
         points=task.points,
         layout=layout,
         coordinates=task.coordinates(),
-        constants=task.constants,
-        afterwards=task.afterwards,
+        config_variables=task.config_variables,
+        variables_from_points=task.variables_from_points,
         config=resolved,
         attributes={},
         flags=(),
@@ -189,11 +194,13 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
 
     shard: part of the points that the run solves. kernels: BLAS kernels of all ranks.
     """
-    attributes = attributes_of(job, solver.statuses, kernels) | {"shard": str(shard) if shard.of > 1 else ""}
+    attributes = file_attributes(job, solver.statuses, kernels) | {
+        "shard": str(shard) if shard.shard_count > 1 else ""
+    }
     return replace(plan_in_memory(job, solver.statuses), attributes=attributes)
 
 
-def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
+def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
     """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points.
     statuses: all statuses that a point can have.
     """
@@ -204,7 +211,7 @@ def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> di
         "title": job.name,
         "task": job.config.task,
         "time_unit": "tau2 = gamma2 L^4/k3",
-        "config": job.text,
+        "config": job.config_text,
         "petsc_options": petsc.options(),
         "shard": "",
         "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in statuses),

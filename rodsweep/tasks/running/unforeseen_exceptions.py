@@ -42,7 +42,9 @@ the solver."""
 
 @dataclass(frozen=True, slots=True)
 class RecordedOutcome:
-    """Outcome of a point with the values of all variables of the layout by name."""
+    """Outcome of a point that is ready to be stored. status, message: as in the solver's outcome. values: all
+    variables of the layout by name.
+    """
 
     status: PointStatus
     message: str
@@ -55,23 +57,23 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> 
     After an exception in a stretch, each of its points is solved alone. Only points that fail again get fill
     values.
     """
-    return _Guard(solver, layout, note).solver()
+    return _Guard(solver, layout, note).guarded_solver()
 
 
 @dataclass(frozen=True, slots=True)
 class _Guard:
-    """Implementation of `guarded_solver`. inner: the solver whose exceptions are caught. layout: variables of
-    a point. note_exception: function called with every exception that is caught.
+    """Implementation of `guarded_solver`. guarded: the solver whose exceptions are caught. layout: variables
+    of a point. note_exception: function called with every exception that is caught.
     """
 
-    inner: Solver
+    guarded: Solver
     layout: Layout
     note_exception: PointExceptionNote
 
-    def solver(self) -> Solver:
+    def guarded_solver(self) -> Solver:
         """The guarded solver."""
-        return self.inner.with_wrapper(
-            self._outcome, self._together, record=lambda index, outcome: outcome.values
+        return self.guarded.with_wrapper(
+            self._outcome, self._solve_stretch, record=lambda index, outcome: outcome.values
         )
 
     def _outcome(
@@ -83,7 +85,7 @@ class _Guard:
         began = time.perf_counter()
         try:
             found, state = solve()
-            return RecordedOutcome(found.status, found.message, self.inner.record(index, found)), state
+            return RecordedOutcome(found.status, found.message, self.guarded.record(index, found)), state
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
@@ -95,15 +97,15 @@ class _Guard:
         """Outcome of a failed point, with the fill value of every variable. seconds: time spent on the
         point.
         """
-        status = next(status for status in self.inner.statuses if status.name == FAILED_STATUS)
+        status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
-    def _together(self, indices: NDArray[np.int64]) -> StretchResult:
+    def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
         """Result of a stretch; after an unforeseen exception every point is left to be solved alone."""
-        assert self.inner.stretched is not None
+        assert self.guarded.stretched is not None
         try:
-            return self.inner.stretched[1](indices)
+            return self.guarded.stretched[1](indices)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
@@ -140,7 +142,7 @@ class TracebackLog:
         self.strict = strict
         self.path = log_file(output)
         self.rank = rank
-        self.where = where
+        self.point_text = where
         self.count = 0
         """Number of unforeseen exceptions on this rank."""
         self._known: set[str] = set()
@@ -149,9 +151,9 @@ class TracebackLog:
         """Appends the exception of points to the log, with their parameters. indices: flat indices of the
         points.
         """
-        points = self.where(indices[0])
+        points = self.point_text(indices[0])
         if len(indices) > 1:
-            points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
+            points = f"{len(indices)} points together, from {points} to {self.point_text(indices[-1])}"
         self.append_exception(points, error)
 
     def append_exception(self, place: str, error: Exception) -> None:

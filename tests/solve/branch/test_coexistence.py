@@ -33,7 +33,7 @@ from rodsweep.solve.branch.special.special_curves import (
 )
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 FOLD, RESTABILIZATION = 199.160114343, 155.600159298791
 """Of Fig. 2c's rod: the one of `configs/branches.yaml`, the other of 40-digit arithmetic."""
@@ -235,7 +235,7 @@ def test_another_axial_drag_is_another_config(tmp_path):
     marks = []
     for more in ("", ", gamma1: 1", ", gamma1: 2"):
         path.write_text(DIAGRAM.replace("k2: 1.0e4", "k2: 1.0e4" + more.replace(", ", "\n  ")))
-        marks.append(make_job(path, ()).config.settings_of_results)
+        marks.append(job_of_file(path, ()).config.settings_of_results)
     assert marks[0] == marks[1] != marks[2]
 
 
@@ -274,10 +274,10 @@ def test_accuracy_of_cycles_makes_another_config_only_with_cycles(tmp_path):
         "cycles: true, cycle_accuracy: 1e-7",
     ):
         path.write_text(DIAGRAM.replace("cycles: true", options))
-        meanings.append(make_job(path, ()).config.settings_of_results)
+        meanings.append(job_of_file(path, ()).config.settings_of_results)
     assert meanings[0] == meanings[1] != meanings[2]
     path.write_text(DIAGRAM.replace("cycles: true", "cycles: false"))
-    assert "cycle_accuracy" not in make_job(path, ()).config.settings_of_results["phase_diagram"]
+    assert "cycle_accuracy" not in job_of_file(path, ()).config.settings_of_results["phase_diagram"]
 
 
 def test_axial_drag_without_cycles_is_refused(tmp_path):
@@ -286,4 +286,4 @@ def test_axial_drag_without_cycles_is_refused(tmp_path):
         DIAGRAM.replace("gamma3:", "gamma1: 2\n  gamma3:").replace("cycles: true", "cycles: false")
     )
     with pytest.raises(InputError, match=r"phase_diagram\.cycles: true"):
-        make_job(path, ())
+        job_of_file(path, ())

@@ -32,7 +32,7 @@ from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
 from rodsweep.tasks.criticality import criticality_values
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 INF = math.inf
 STRETCHABLE = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
@@ -373,7 +373,7 @@ def test_config_shows_the_numbers_of_its_head(command):
 def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path):
     config = tmp_path / "c.yaml"
     config.write_text(CONFIG.format(k1=200))
-    names = {variable.name for variable in make_job(config, ()).layout.variables}
+    names = {variable.name for variable in job_of_file(config, ()).layout.variables}
     assert set(criticality_values(solved(STRETCHABLE), 16)) == names
 
 

@@ -26,7 +26,7 @@ from rodsweep.solve.hopf.bautin_curves import (
 )
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.point import Unsolvable
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 K2, GAMMA3 = 1e4, 1e-4
 FOLD = 75.3972626336484526, 147.921519683199662, 770.860809443855688
@@ -376,7 +376,7 @@ def test_a_third_parameter_that_cannot_be_is_refused(tmp_path, options, sentence
         f"phase_diagram: {{{options}}}\n"
     )
     with pytest.raises(InputError, match=sentence):
-        make_job(path, ())
+        job_of_file(path, ())
 
 
 @pytest.mark.long
@@ -413,7 +413,7 @@ def test_what_cannot_be_is_refused(tmp_path, more, options, sentence):
         f"phase_diagram: {{{options}}}\n"
     )
     with pytest.raises(InputError, match=sentence):
-        make_job(path, ())
+        job_of_file(path, ())
 
 
 def test_the_default_drag_asks_for_the_same_and_an_arm_has_its_own(tmp_path):
@@ -422,12 +422,12 @@ def test_the_default_drag_asks_for_the_same_and_an_arm_has_its_own(tmp_path):
     meanings = []
     for text in (DIAGRAM, given, given.replace("gamma1: 1", "gamma1: 0.5")):
         path.write_text(text)
-        meanings.append(make_job(path, ()).config.settings_of_results)
+        meanings.append(job_of_file(path, ()).config.settings_of_results)
     assert meanings[0] == meanings[1] != meanings[2]
     path.write_text(
         "task: phase_diagram\nparameters:\n  arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, "
         "viscosity: 1.4 Pa s, pressure: [1 kPa, 2 kPa]}\n  gamma3: [1.0e-4, 1.0e-3]\n"
         "phase_diagram: {criticality: true}\n"
     )
-    config = make_job(path, ()).config
+    config = job_of_file(path, ()).config
     assert config.gamma1 == config.parameters.arm.grid_axes()["gamma1"].array()[0] != 1

@@ -18,7 +18,7 @@ from ..style import CRITICAL_FORCE_LABEL, LABELS
 
 SCALES_WITH_SECOND_AXIS = ("linear", "log")
 """Scales of an axis for which matplotlib places the ticks of a second scale correctly."""
-MAX_TICKS = 5
+MAX_TICK_INTERVALS = 5
 """Largest number of intervals between the ticks of the second scale."""
 LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
 """Label of the second scale, by kind of load."""
@@ -73,4 +73,4 @@ def _add_second_scale(axes: Axes, which: str, unit: float, load: str) -> None:
     else:
         second = axes.secondary_yaxis("right", functions=functions)
         second.set_ylabel(f"{word} ({symbol})")
-    getattr(second, f"{which}axis").set_major_locator(MaxNLocator(MAX_TICKS))
+    getattr(second, f"{which}axis").set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))

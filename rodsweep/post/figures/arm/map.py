@@ -26,7 +26,7 @@ from ...summary.arm.arm import quantity_words
 from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
-from .panels import PANELS, Panel
+from .panels import PANEL_MAKERS, Panel
 from .quantities import in_typed_unit, quantity_text
 
 MAP_KINDS = ("map", "maps")
@@ -69,9 +69,9 @@ def draw_arm_map(request: FigureRequest) -> str:
     if DRAG_AXIS in first:  # the likeliest drag has the smallest number
         first[DRAG_AXIS] = int(np.argmin(view.variables[DRAG_AXIS]))
     index = tuple(first.get(name, slice(None)) for name in view.arm_axes)
-    panels = PANELS[view.task](view)
+    panels = PANEL_MAKERS[view.task](view)
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
-    figure, drawn = _new_panels(len(panels), request.look.narrow, bool(y))
+    figure, drawn = _new_panels(len(panels), request.look.is_narrow, bool(y))
     handles: list[Artist] = []
     for subplot, panel in zip(drawn, panels, strict=True):
         if y:
@@ -97,7 +97,7 @@ def can_draw_arm_map(request: FigureRequest) -> bool:
     view = request.views[0]
     chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
     several = any(len(view.variables[name]) > 1 for name in view.arm_axes)
-    return several and view.task in PANELS and not chosen
+    return several and view.task in PANEL_MAKERS and not chosen
 
 
 def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:
@@ -125,7 +125,7 @@ def _draw_map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], inde
     """
     (x, x_label), (y, y_label) = (_axis_values_and_label(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[index].T)
-    style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
+    style.draw_coloured_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
     handles: list[Artist] = []
     if panel.zero_label and values.min() < 0 < values.max():
         axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)

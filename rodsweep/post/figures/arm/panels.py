@@ -16,10 +16,9 @@ THRESHOLD_KIND_WORDS = {"hopf": "flutter", "onset": "onset of oscillations", "re
 @dataclass(frozen=True, slots=True)
 class Panel:
     """Content of one panel. label: name and unit of the result. values: result at all points of the file.
-
-    lines: several results that are drawn against one quantity in one panel, by legend entry; empty if only
-    `values` are drawn. zero_label: legend entry of the contour of zero in a map; empty if no contour is
-    drawn.
+    threshold_lines: several results that are drawn against one quantity in one panel, by legend entry; empty
+    if only `values` are drawn. zero_label: legend entry of the contour of zero in a map; empty if no contour
+    is drawn.
     """
 
     label: str
@@ -67,7 +66,7 @@ def _cycle_panels(view: View) -> list[Panel]:
     ]
 
 
-PANELS: dict[str, Callable[[View], list[Panel]]] = {
+PANEL_MAKERS: dict[str, Callable[[View], list[Panel]]] = {
     "thresholds": _threshold_panels,
     "spectrum": _mode_panels,
     "modes": _mode_panels,

@@ -27,7 +27,7 @@ def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[A
     `si` (by default the unit of the quantity), of any shape.
     """
     si = si or ALL_QUANTITIES[name].unit
-    unit = view.typed.get(name, si)
+    unit = view.typed_units.get(name, si)
     return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
 
 

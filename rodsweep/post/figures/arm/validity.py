@@ -19,7 +19,7 @@ VALIDITY_HATCH: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "l
 """Look of the hatches where the model does not apply."""
 
 
-def add_validity(figure: Figure, views: Sequence[View]) -> None:
+def hatch_invalid_points(figure: Figure, views: Sequence[View]) -> None:
     """Hatches a figure where the model does not apply to the arm, if the axes are parameters of the file, and
     adds a note to the title. Without such points, the figure is unchanged.
     """
@@ -29,7 +29,9 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
     if not number:
         return
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
-    along = [name for name in views[0].parameters if len(views[0].axes[name]) > 1] if is_alone else []
+    along = (
+        [name for name in views[0].parameters if len(views[0].parameter_values[name]) > 1] if is_alone else []
+    )
     hatched = bool(along) and _hatch_points(figure, views[0], along, outside[0])
     where = "" if number == count else f" at {number} of {count} points"
     note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
@@ -41,7 +43,7 @@ def _hatch_points(figure: Figure, view: View, along: list[str], outside: np.ndar
     parameters `along`; returns whether any panel has these axes.
     """
     cells = np.squeeze(outside)
-    edges = [cell_edges(view.axes[name]) for name in along]
+    edges = [cell_edges(view.parameter_values[name]) for name in along]
     done = False
     for axes in list(figure.axes):
         labels = [_axis_label(axes, which) for which in "xy"]

@@ -28,7 +28,7 @@ GHOST_COUNT = 6
 TIME_DIGITS = 3
 """Number of significant digits of the period. The running time is printed with as many decimals as the
 period."""
-TIME_HEIGHT = 0.08
+TIME_TEXT_HEIGHT = 0.08
 """Height of the line with the running time, as a fraction of the panel's height."""
 MAX_GHOST_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
@@ -50,7 +50,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     with writer.saving(figure, str(output), dpi=100):
         for k in range(frames):
             for arm in arms:
-                arm.show(k)
+                arm.show_frame(k)
             writer.grab_frame()
     return f"one period in {frames} frames" + selection.left_out
 
@@ -61,13 +61,13 @@ def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
     figure.suptitle(selection.title)
-    panels[0].set_ylabel(cycles[0].units.along("y"))
+    panels[0].set_ylabel(cycles[0].units.axis_label("y"))
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     set_frame(panels, cycles)
     low, high = panels[0].get_ylim()  # shared by all panels
-    panels[0].set_ylim(low - TIME_HEIGHT * (high - low), high)
+    panels[0].set_ylim(low - TIME_TEXT_HEIGHT * (high - low), high)
     for arm in arms:
-        arm.show(0)
+        arm.show_frame(0)
     fit_layout(figure)
     figure.set_layout_engine("none")  # a new layout for each frame would move the panels
     return figure, arms
@@ -100,10 +100,10 @@ class MovingArm:
         (self.rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
         self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), VERMILION, cycle.units.length)
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
-        axes.set_xlabel(cycle.units.along("x"))
+        axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text))
 
-    def show(self, k: int) -> None:
+    def show_frame(self, k: int) -> None:
         """Moves the arm to the shape with index `k`."""
         shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
         back = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False).round().astype(int)

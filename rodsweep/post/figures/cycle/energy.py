@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ....results.file.view import View
 from ...summary.errors import power_error
-from ...summary.ranges import rounded
+from ...summary.ranges import rounded_text
 from ..arm.quantities import NO_BREAK
 from ..style import BLUE, GREEN, VERMILION, legend_below
 from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, power_in_tex
@@ -50,7 +50,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     """
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = power_error(cycle.values)
-    mean = power_in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
+    mean = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
     unit = cycle.units.names[3]
     power = f"mean power ${mean}$" + (f"{NO_BREAK}{unit}" if unit else "")
     return power, f"imbalance {v['energy_imbalance']:.1e}"

@@ -25,7 +25,7 @@ from ....sweep.points.points import ParameterLine
 from ...hopf_points import LocatedChange, StoredChanges
 from ..style import (
     LABELS,
-    colour_cells,
+    draw_coloured_cells,
     heading_text,
     is_logarithmic,
     label_outer,
@@ -37,7 +37,7 @@ from ..style import (
 from .amplitudes.hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, axis_coordinates, cell_edges, point_map
 from .selection import shared_and_own_of_arms
-from .units import units_of_points
+from .units import units_of_files
 
 STATUS_LOOKS = {
     "straight": ("#E8EDF2", ""),
@@ -71,18 +71,18 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     stacked. Raises InputError if no point has a cycle.
     """
     points = point_map(view)
-    words = view.outcomes[points.point_indices]
+    words = view.status_names[points.point_indices]
     cycles = np.isin(words, CYCLE_WORDS)
     require_content(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
-    (units,) = units_of_points([view], [points.point_indices.ravel()])
-    _, largest_y, period, _ = units.labels_over
+    (units,) = units_of_files([view], [points.point_indices.ravel()])
+    _, largest_y, period, _ = units.panel_labels
     for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), MAP_QUANTITIES, strict=True):
-        drawn = units.drawn({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
+        drawn = units.converted({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
         values = np.where(cycles, drawn.reshape(points.point_indices.shape), np.nan)
         edges = cell_edges(points.x), cell_edges(points.y)
-        colour_cells(axes, edges, values, label, colours, ratios)
+        draw_coloured_cells(axes, edges, values, label, colours, ratios)
         handles = _draw_hopf_lines(axes, points, lines)
         handles += _draw_statuses(axes, points, words)
         handles += _mark_unstable(axes, points, words == "unstable")
@@ -211,4 +211,4 @@ def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     for value, at in zip(points.y, points.point_indices, strict=True):
         row = ParameterLine(name, points.common_parameters | {other: float(value)}, points.x, at)
         located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedChange))
-        yield np.array([change.position for change in located if change.is_hopf])
+        yield np.array([change.position for change in located if change.changes_stability])

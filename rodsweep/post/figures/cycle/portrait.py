@@ -23,7 +23,7 @@ from ....arrays import Array
 from ....results.file.view import View
 from ..style import BLUE, VERMILION
 from .selection import SHAPE_VARIABLES, StoredCycle, chosen_cycles
-from .transient import draw_start_of_motion, label_time, label_tip
+from .transient import draw_start_of_motion, label_time_axes, label_tip_axes
 
 MAX_SHAPES = 12
 """Largest number of drawn shapes; a reader cannot distinguish more shapes."""
@@ -65,7 +65,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     figure, shapes, tips = _new_panels(cycles, narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
     end = DRAWN_TIP_PERIODS * max(c.period for c in cycles)
-    drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
+    drawn, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
     colours = ListedColormap(
         matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(drawn)))
@@ -77,16 +77,16 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
             x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
-        axes.set_xlabel(cycle.units.along("x"))
+        axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if emerging:
             draw_start_of_motion(upper, lower, cycle)
         else:
             _draw_tip_motion(upper, lower, cycle, end)
     set_frame(shapes, cycles)
-    shapes[0].set_ylabel(cycles[0].units.along("y"))
-    label_tip(*tips[0], cycles[0].units)
-    _phase_bar(figure, shapes, colours, step, narrow)
+    shapes[0].set_ylabel(cycles[0].units.axis_label("y"))
+    label_tip_axes(*tips[0], cycles[0].units)
+    _draw_phase_bar(figure, shapes, colours, step, narrow)
     figure.suptitle(selection.title)
     tip = "the tip from the start on" if emerging else "the tip in time"
     return figure, f"shapes through the cycle and {tip}{selection.left_out}"
@@ -121,7 +121,7 @@ def _new_panels(
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
 
 
-def drawn_shapes(stored: int) -> tuple[range, float]:
+def drawn_shape_indices(stored: int) -> tuple[range, float]:
     """Returns (indices, step): indices of the drawn shapes, and time between two drawn shapes, in periods.
     stored: number of stored shapes per period.
     """
@@ -129,7 +129,9 @@ def drawn_shapes(stored: int) -> tuple[range, float]:
     return range(0, stored, stride), stride / stored
 
 
-def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool) -> None:
+def _draw_phase_bar(
+    figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool
+) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
     two shapes, in periods. below: whether the bar is below the panels.
     """
@@ -227,4 +229,4 @@ def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
-    label_time(upper, lower, cycle)
+    label_time_axes(upper, lower, cycle)

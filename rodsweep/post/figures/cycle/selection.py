@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
-from ...summary.ranges import rounded
+from ...summary.ranges import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
-from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_of
+from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""
@@ -33,8 +33,8 @@ the option `samples`."""
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """Limit cycle or transient at one point of a result file. values: variables in `units`, by name. period:
-    NaN if there is no cycle.
+    """Limit cycle or transient at one point of a result file. parameters: of the point, by name. values:
+    variables in `units`, by name. period: NaN if there is no cycle.
     """
 
     number: int
@@ -74,7 +74,7 @@ class StoredCycle:
         or empty.
         """
         error = float(self.values["period_error"])
-        return rf"${symbol}{{=}}$ ${power_in_tex(rounded(value, abs(value) * error))}\,{unit}$"
+        return rf"${symbol}{{=}}$ ${power_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
 
     @property
     def tip(self) -> tuple[Array, Array]:
@@ -94,7 +94,7 @@ class StoredCycle:
 
 
 def power_in_tex(number: str) -> str:
-    """TeX for a number written by `rounded`, with the power of ten as a superscript."""
+    """TeX for a number written by `rounded_text`, with the power of ten as a superscript."""
     mantissa, _, power = number.partition("e")
     return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
 
@@ -104,6 +104,7 @@ class CycleSelection:
     """Cycles that one figure shows."""
 
     cycles: list[StoredCycle]
+    """The cycles, at most MAX_CYCLES."""
     title: str
     """Title of the file, and text of the parameters that all cycles share."""
     left_out: str
@@ -115,7 +116,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Cy
     variables that the figure needs. Raises InputError if a cycle or a variable is missing.
     """
     _refuse_missing(view, needs)
-    words = view.outcomes
+    words = view.status_names
     _refuse_bad_points(view, points)
     for number in points:
         if words[number - 1] != "cycle":
@@ -156,7 +157,7 @@ def _selected_cycles(
     empty. drawable: mask, (points,). what: noun for messages. Raises InputError if no point is drawable.
     """
     available = np.flatnonzero(drawable)
-    words = view.outcomes
+    words = view.status_names
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
         raise InputError(
@@ -165,12 +166,12 @@ def _selected_cycles(
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
-    units = units_of(view, numbers)
+    units = units_at_points(view, numbers)
     shared, own = shared_and_own_of_points(view, numbers)
     cycles = []
     for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
-        of_point = view.of_point(number - 1).items()
-        values = drawn_in.drawn({n: v for n, v in of_point if n not in (*view.parameters, "point")})
+        of_point = view.point_values(number - 1).items()
+        values = drawn_in.converted({n: v for n, v in of_point if n not in (*view.parameters, "point")})
         period = float(values["period"])
         word = str(words[number - 1])
         cycles.append(StoredCycle(number, label, at, period, values, word, drawn_in))

@@ -34,7 +34,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
             ends[0] += "" if narrow else " (extrema dashed)"
             ends.append(cycle.period_text)
         upper.set_title(cycle.heading(*ends))
-    label_tip(rows[0, 0], rows[1, 0], selection.cycles[0].units)
+    label_tip_axes(rows[0, 0], rows[1, 0], selection.cycles[0].units)
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "the tip from the start on" + selection.left_out
@@ -52,18 +52,18 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
         for name, sign in pair if cycle.word in CYCLE_WORDS else ():
             axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
-    label_time(upper, lower, cycle)
+    label_time_axes(upper, lower, cycle)
 
 
-def label_tip(upper: Axes, lower: Axes, units: CycleUnits) -> None:
+def label_tip_axes(upper: Axes, lower: Axes, units: CycleUnits) -> None:
     """Labels the vertical axes of the panels with x (upper) and y (lower) of the tip, in the colours of the
     curves.
     """
-    upper.set_ylabel("tip " + units.along("x"), color=BLUE)
-    lower.set_ylabel("tip " + units.along("y"), color=VERMILION)
+    upper.set_ylabel("tip " + units.axis_label("x"), color=BLUE)
+    lower.set_ylabel("tip " + units.axis_label("y"), color=VERMILION)
 
 
-def label_time(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
+def label_time_axes(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Labels the lower time axis in the unit of the cycle, and adds an upper time axis in tau1 if the rod has
     this time scale.
     """

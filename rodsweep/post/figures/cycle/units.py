@@ -46,10 +46,11 @@ class CycleUnits:
     energy: Factor = 1.0
     power: Factor = 1.0
     in_si: bool = False
+    """Whether the units are SI units, with prefixes."""
     names: tuple[str, str, str, str] = ("L", r"$\tau_2$", "", "")
     """Names of the units of length, time, energy and power, as TeX."""
 
-    def along(self, axis: str) -> str:
+    def axis_label(self, axis: str) -> str:
         """Label, with the unit, of an axis for a coordinate. axis: "x" or "y"."""
         return f"${axis}$ ({self.names[0]})" if self.in_si else f"${axis}/L$"
 
@@ -59,7 +60,7 @@ class CycleUnits:
         return f"time $t$ ({self.names[1]})" if self.in_si else r"time $t/\tau_2$"
 
     @property
-    def labels_over(self) -> tuple[str, str, str, str]:
+    def panel_labels(self) -> tuple[str, str, str, str]:
         """Labels of the panels with a parameter as abscissa: (x_max - x_min)/2 and y_max of the tip, period,
         power."""
         if self.in_si:
@@ -96,7 +97,7 @@ class CycleUnits:
         """A time with its unit as text, such as `53.91 s`; only for SI units."""
         return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
-    def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
+    def converted(self, values: dict[str, Array]) -> dict[str, Array]:
         """The variables `values` of a point, of any shape, by name, converted to these units."""
         factors: dict[str, Factor] = (
             dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
@@ -111,18 +112,18 @@ PLAIN_UNITS = CycleUnits()
 """Dimensionless units of the paper."""
 
 
-def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
+def units_at_points(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at each point, with equal names of the units at all points; dimensionless if the file has no arm.
     numbers: numbers of the points, from 1.
     """
-    (units,) = units_of_points([view], [np.array(numbers, int) - 1])
+    (units,) = units_of_files([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
     drawn = zip(units.length, units.time, units.energy, units.power, strict=True)
     return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in drawn]
 
 
-def units_of_points(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
+def units_of_files(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm. at:
     indices of the points of each file, (n,).
     """
@@ -137,7 +138,7 @@ def units_of_points(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> l
     cycles = list(zip(views, at, times, powers, strict=True))
     period = max(_largest_in_units(view, "period", places, time) for view, places, time, _ in cycles)
     mean = max(_largest_in_units(view, "injection_mean", places, power) for view, places, _, power in cycles)
-    length = views[0].typed.get("length", "m")
+    length = views[0].typed_units.get("length", "m")
     second = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
     joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
     watt = with_si_prefix(mean, "W")[1]

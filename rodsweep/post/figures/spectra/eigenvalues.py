@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ....results.file.view import View
-from ..lists import number_points, shared_parameters
+from ..lists import label_point_numbers, shared_parameters
 from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
@@ -60,7 +60,7 @@ def draw_list_of_spectra(view: View) -> Figure:
         scale_if_spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
-    number_points(panels[1], view, len(growth))
+    label_point_numbers(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure

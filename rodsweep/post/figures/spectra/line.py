@@ -12,13 +12,22 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ....sweep.points.points import lines_over
+from ....sweep.points.points import lines_along
 from ...hopf_points import LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
-from ..style import BLUE, LABELS, SYMBOLS, VERMILION, fixed_text, heading_text, legend_below, scale_axis
+from ..style import (
+    BLUE,
+    LABELS,
+    SYMBOLS,
+    VERMILION,
+    constant_parameters_text,
+    heading_text,
+    legend_below,
+    scale_axis,
+)
 from .eigenvalues import scale_if_spread
 
-FOLLOWED_ROOTS = {
+ROOT_CHOICE_TEXTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
     "all": "all stored roots",
@@ -72,8 +81,8 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
 
 
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
-    """Choice of the roots along lines of spectra, one of ROOTS: the user's choice `asked`, or else "smallest"
-    or "rightmost", whichever gives fewer gaps.
+    """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `asked`, or else
+    "smallest" or "rightmost", whichever gives fewer gaps.
 
     If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
     one root, the choice is "all".
@@ -95,7 +104,7 @@ def _followed_roots(view: View, roots: str) -> Complex:
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
-def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
+def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
     """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
     label of the colour bar.
     """
@@ -117,11 +126,11 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _draw_direction_arrow(bottom, w[:, i], colour)
     else:
-        _scatter_all(bottom, view.axes[name], w, LABELS[name])
+        _draw_all_roots(bottom, view.parameter_values[name], w, LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading_text(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]))
+    figure.suptitle(heading_text(view, constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots]))
     return figure
 
 
@@ -129,7 +138,7 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
     2), or all roots, (n, modes). roots: choice of the roots.
     """
-    x = view.axes[name]
+    x = view.parameter_values[name]
     w = _followed_roots(view, roots)
     if roots != "all":
         x_broken, w = with_gaps_between_roots(x, w)
@@ -185,14 +194,14 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
 
     Thresholds are onsets of oscillation, and forces at which the stability of the straight rod changes.
     """
-    x = view.axes[name]
+    x = view.parameter_values[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0
     if name != "F":
         if unstable.any():
             across = axes.get_xaxis_transform()
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE_LOOK)
         return []
-    (line,) = lines_over(view.point_columns, name)
+    (line,) = lines_along(view.point_columns, name)
     found = StoredChanges(view, name).thresholds_on(line)
     thresholds = [threshold for threshold in found if isinstance(threshold, LocatedChange)]
     for threshold in thresholds:

@@ -15,11 +15,11 @@ from ....arrays import Array
 from ....model.parameters import CRUSHING_PARAMETERS
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ....results.layouts.rods import has_covering
+from ....results.layouts.rods import has_standard_rods
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import flag_number
 from ....wording import plural
-from ..lists import number_points, shared_parameters
+from ..lists import label_point_numbers, shared_parameters
 from ..style import (
     BLUE,
     GREEN,
@@ -86,7 +86,7 @@ def draw_class_bars(view: View) -> Figure:
     seen = set[str]()
     for rod in range(count):
         seen |= draw_class_bar(axes, view, rod, upright=count > 1)
-    handles: list = class_entries(seen)
+    handles: list = class_legend_entries(seen)
     handles += mark_thresholds_on_bars(axes, view, upright=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:
@@ -94,13 +94,13 @@ def draw_class_bars(view: View) -> Figure:
         axes.spines["left"].set_visible(False)
     else:
         axes.set(ylim=(0, end), ylabel=LABELS["F"])
-        number_points(axes, view, count)
+        label_point_numbers(axes, view, count)
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure
 
 
-def class_entries(seen: set[str]) -> list[Patch]:
+def class_legend_entries(seen: set[str]) -> list[Patch]:
     """Legend entries for the classes in `seen`."""
     shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
     return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
@@ -214,7 +214,7 @@ def class_along_row(
     changes = _class_changes(view, variable, line, index)
     if variable == "class":
         between, rows, found = classes_between_crossings(view, row)
-        own = rows == view.axes[row][index]
+        own = rows == view.parameter_values[row][index]
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
@@ -243,7 +243,7 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
         found = [at[kinds > 0]]
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    if line in CRUSHING_PARAMETERS and has_covering(view.config):  # other rods are not crushed at F = k1
+    if line in CRUSHING_PARAMETERS and has_standard_rods(view.config):  # other rods are not crushed at F = k1
         (other,) = set(CRUSHING_PARAMETERS) - {line}
         found.append(view.point_columns[other][[index]])
     changes = np.concatenate(found)

@@ -38,13 +38,13 @@ CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points 
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
 """Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
-FONT_SIZE = 8
+LABEL_FONTSIZE = 8
 """Font size of a curve's symbol, in points."""
 DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
-def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
+def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
     """Draws boundary curves and folds, or only Hopf curves if `states`; returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
@@ -66,7 +66,7 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
                 paths = _lowest_parts(paths, 0 if line == "F" else 1)
             name, share = CURVE_NAMES[number]
             if paths:
-                _name_longest(axes, paths, name + force_of_plane(view, line, row), share)
+                _label_longest_curve(axes, paths, name + constant_force_text(view, line, row), share)
     return handles if states else handles + _mark_curve_folds(axes, view, line, row)
 
 
@@ -81,9 +81,9 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
     return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
 
 
-def force_of_plane(view: View, line: str, row: str) -> str:
+def constant_force_text(view: View, line: str, row: str) -> str:
     """Text " = F" with the constant F of a plane; empty if F is on an axis. line, row: see the module."""
-    return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
+    return "" if "F" in (line, row) else f" = {float(view.parameter_values['F'][0]):g}"
 
 
 def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
@@ -98,10 +98,10 @@ def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2
             label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
     if "partial_beam_k1" in v:
-        F = float(v["partial_beam_F"])
-        k = float(v["partial_beam_k1"])
+        F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
-        if not (v[line][0] <= x <= v[line][-1] and view.axes[row][0] <= y <= view.axes[row][-1]):
+        rows = view.parameter_values[row]
+        if not (v[line][0] <= x <= v[line][-1] and rows[0] <= y <= rows[-1]):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
@@ -231,7 +231,7 @@ def _lowest_parts(paths: list[Array], force: int) -> list[Array]:
     return parts
 
 
-def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
+def _label_longest_curve(axes: Axes, paths: list[Array], name: str, share: float) -> None:
     """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `share` of
     this length. paths: curves, (points, 2) each."""
     lengths = []
@@ -246,5 +246,5 @@ def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> No
     if lengths[longest][-1] > 0:
         at = int(np.searchsorted(lengths[longest], share * lengths[longest][-1]))
         axes.annotate(
-            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=FONT_SIZE, va="top"
+            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=LABEL_FONTSIZE, va="top"
         )

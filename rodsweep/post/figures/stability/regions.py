@@ -27,7 +27,7 @@ class DrawnPlane:
     x: Array
     y: Array
 
-    def unit(self, x: Array, y: Array) -> Array:
+    def fractions_of_axes(self, x: Array, y: Array) -> Array:
         """Points as fractions of the axes, (n, 2), with 0 and 1 at the edges, linear or logarithmic as the
         axes. x, y: coordinates, (n,) each.
         """
@@ -48,7 +48,7 @@ class ClassifiedPoints:
     at: Array
     classes: NDArray[Any]
 
-    def within(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
+    def with_regions(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
         the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT).
         """
@@ -71,8 +71,8 @@ def pixel_classes(
         row, column = _pixels_of_points(_dense_curve_points(curve)).T
         walls[row, column] = True
     regions, count = scipy.ndimage.label(~walls)
-    known, region_of_known = computed.within(regions)
-    sources = [(known, region_of_known), further.within(regions), (known, None)]
+    known, region_of_known = computed.with_regions(regions)
+    sources = [(known, region_of_known), further.with_regions(regions), (known, None)]
     table = np.zeros((PIXEL_COUNT, PIXEL_COUNT), computed.classes.dtype)
     for region in range(1, count + 1):
         pixels = np.nonzero(regions == region)

@@ -43,7 +43,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     a line for each value of the other parameter. long: the one or two parameters with several values.
     searched: clause on the searched range. Raises InputError if nothing can be drawn.
     """
-    along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
+    along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.parameter_values[name])))
     other = next((name for name in long if name != along), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
@@ -61,12 +61,12 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
             Line2D(
                 [], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
             )
-            for value, shade in zip(view.axes[other].tolist(), shades, strict=True)
+            for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True)
         ]
     _label_axes(axes, view, along, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.fixed_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *long), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
     return figure, words + _infinite_values_clause(view, [along])
 
@@ -82,7 +82,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
         _draw_threshold_lines(axes, _abscissa_values(view, along), values, {"color": shade})
         handles.append(Line2D([], [], color=shade, lw=2, label=style.file_label(view, views)))
-    longest = max(views, key=lambda view: len(view.axes[along]))
+    longest = max(views, key=lambda view: len(view.parameter_values[along]))
     _label_axes(axes, longest, along, tables)
     forces = np.sort(tables[np.isfinite(tables)])
     if style.is_logarithmic(forces):
@@ -90,7 +90,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
         axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
-    figure.suptitle("\n".join(filter(None, (style.fixed_text(longest, along), searched))))
+    figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, along), searched))))
     return figure, f"critical forces against {along} of {len(views)} files" + _infinite_values_clause(
         longest, [along]
     )
@@ -106,7 +106,8 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
     drawn = []
     for panel, along, other in zip(panels, long, reversed(long), strict=True):
-        drawn.append(f"{_some_lines(panel, view, along, other)} of {len(view.axes[other])} values of {other}")
+        count = len(view.parameter_values[other])
+        drawn.append(f"{_some_lines(panel, view, along, other)} of {count} values of {other}")
         if narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
@@ -115,7 +116,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.fixed_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *long), searched))
     shown = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
     return figure, shown + _infinite_values_clause(view, long)
 
@@ -128,7 +129,7 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
     some = _label_line_indices(table)
     for line, alike in zip(LINE_STYLES, _groups_of_equal_lines({at: table[at] for at in some}), strict=False):
         _draw_threshold_lines(panel, _abscissa_values(view, along), table[alike[0]], {"ls": line, "ms": 2})
-        values = ", ".join(style.number_in_tex(float(view.axes[other][at]), 3) for at in alike)
+        values = ", ".join(style.number_in_tex(float(view.parameter_values[other][at]), 3) for at in alike)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
     _label_axes(panel, view, along, _first_force_table(view, along, other)[some])
@@ -140,7 +141,7 @@ def _first_force_table(view: View, along: str, other: str | None) -> Array:
     """First forces of the three kinds of thresholds, (values of `other`, 3, values of `along`); NaN for a
     missing threshold. along, other: parameters; `other` is None if there is no second parameter.
     """
-    names = list(view.axes)
+    names = list(view.parameter_values)
     kept = [names.index(name) for name in (other, along) if name]
     rest = tuple(place for place in range(len(names)) if place not in kept)
     found = []
@@ -155,7 +156,7 @@ def _abscissa_values(view: View, along: str) -> Array:
     """Values on the horizontal axis: values of the parameter `along`, or 1/gamma3 instead of gamma3, as in
     the paper.
     """
-    values = view.axes[along]
+    values = view.parameter_values[along]
     return 1 / values if along == "gamma3" else values
 
 
@@ -205,7 +206,7 @@ def _infinite_values_clause(view: View, names: list[str]) -> str:
     left_out = [
         f"{name} = {value:g}"
         for name in names
-        for value in view.axes[name][~np.isfinite(_abscissa_values(view, name))]
+        for value in view.parameter_values[name][~np.isfinite(_abscissa_values(view, name))]
     ]
     return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
 

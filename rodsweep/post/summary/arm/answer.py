@@ -11,7 +11,7 @@ from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....wording import counted, some_of
+from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
 from .validity import plane_lines, validity_sentence
@@ -50,34 +50,34 @@ def _validity_lines(view: View, done: np.ndarray) -> Lines:
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
+    answer_lines = ANSWER_LINES_BY_TASK[view.task]
     if not inside.any():
-        return [caveat, *(f"if the model applied: {line}" for line in LINES_OF[view.task](view, rods))]
+        return [caveat, *(f"if the model applied: {line}" for line in answer_lines(view, rods))]
     if (inside != rods).any():
-        return [caveat, *(f"where the model applies: {line}" for line in LINES_OF[view.task](view, inside))]
-    answer = LINES_OF[view.task](view, rods)
+        return [caveat, *(f"where the model applies: {line}" for line in answer_lines(view, inside))]
+    answer = answer_lines(view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def unit_range(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
-    """Range of `values`, in the SI unit `si`, as text in the unit that the user typed.
-    errors: absolute errors, of the shape of `values`, or 0.
-    """
+def range_text(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+    """Range of `values`, in the SI unit `si`, as text in the unit that the user typed. errors:
+    absolute errors, of the shape of `values`, or 0."""
     return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
-def load_spanned(view: View, loads: np.ndarray) -> str:
+def load_range_text(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return unit_range(view, loads, UNITS[load_kind(view)][0])
+    return range_text(view, loads, UNITS[load_kind(view)][0])
 
 
-def _add_failed(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
+def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
     """Function from (view, mask of the points with a rod) to the answer's lines, with a line on failed
     searches. answer: function from (view, mask of the solved points) to (answer, further lines).
     """
 
     def lines(view: View, rods: np.ndarray) -> Lines:
-        failed = rods & view.with_status(FAILED_STATUS)
-        unsolved = [f"not known{_share_clause(failed, rods)}: the search failed"] if failed.any() else []
+        failed = rods & view.has_status(FAILED_STATUS)
+        unsolved = [f"not known{_count_clause(failed, rods)}: the search failed"] if failed.any() else []
         if (failed == rods).all():
             return unsolved
         first, further = answer(view, rods & ~failed)
@@ -96,10 +96,10 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
-        lines.append(f"a disturbance swings as it dies away from {load_spanned(view, onset)} on")
+        lines.append(f"a disturbance swings as it dies away from {load_range_text(view, onset)} on")
     if len(hopf) > 1 and np.isfinite(back).any():
-        points = some_of(int(np.isfinite(back).sum()), len(back), "point")
-        lines.append(f"is straight again at {points}, from {load_spanned(view, back)} on")
+        points = count_of_total(int(np.isfinite(back).sum()), len(back), "point")
+        lines.append(f"is straight again at {points}, from {load_range_text(view, back)} on")
     return _flutter_lines(view, hopf, end, rate), lines
 
 
@@ -129,21 +129,19 @@ def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, loads, end, frequency), []
 
 
-def _share_clause(some: np.ndarray, rods: np.ndarray) -> str:
-    """Clause on the number of points in `rods` that are also in `some` (masks); empty if `rods` has one
-    point.
-    """
+def _count_clause(some: np.ndarray, rods: np.ndarray) -> str:
+    """Clause on the number of points in the mask `some`; empty if the mask `rods` has one point only."""
     return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
 def _flutter_lines(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
     """Lines about flutter. hopf: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
     flutters = np.isfinite(hopf)
-    searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
+    searched = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
         return [f"does not flutter {searched}".rstrip()]
     of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
-    lines = [f"flutters{of} from {load_spanned(view, hopf)}; beats at {unit_range(view, frequency, 'Hz')}"]
+    lines = [f"flutters{of} from {load_range_text(view, hopf)}; beats at {range_text(view, frequency, 'Hz')}"]
     if not flutters.all():
         stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
         lines.append(stable.rstrip())
@@ -156,16 +154,16 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
-    cycles = rods & view.with_status("cycle")
+    cycles = rods & view.has_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
-        masks = {words: rods & view.with_status(status) for status, words in NO_CYCLE_WORDS.items()}
-        return [f"{words}{_share_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
+        masks = {words: rods & view.has_status(status) for status, words in NO_CYCLE_WORDS.items()}
+        return [f"{words}{_count_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
     beats = cycles[rods]
     wide, rate = (
-        unit_range(view, v[name][beats], unit, errors[name][beats])
+        range_text(view, v[name][beats], unit, errors[name][beats])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
-    motion = f"beats{_share_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
+    motion = f"beats{_count_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
     return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
@@ -178,9 +176,9 @@ def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     arms = arms_of_drags(view)
     if arms is None:
         return []
-    if (rods & ~view.with_status("cycle", "straight")).any():
+    if (rods & ~view.has_status("cycle", "straight")).any():
         return []
-    beats = view.with_status("cycle").ravel()
+    beats = view.has_status("cycle").ravel()
     of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)
@@ -197,12 +195,12 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     unknown = rods & (count < 0)
     lines = []
     if unstable.any():
-        frequency = unit_range(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        lines = [f"gives way{_share_clause(unstable, rods)}; its leading mode oscillates at {frequency}"]
+        frequency = range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
+        lines = [f"gives way{_count_clause(unstable, rods)}; its leading mode oscillates at {frequency}"]
     elif not unknown.any():
         lines = ["stays straight"]
     if unknown.any():
-        lines.append(f"whether the arm gives way is not known{_share_clause(unknown, rods)}")
+        lines.append(f"whether the arm gives way is not known{_count_clause(unknown, rods)}")
     return lines
 
 
@@ -212,8 +210,8 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
-    rate = unit_range(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"beats at {load_spanned(view, loads)}, at {rate}"], []
+    rate = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
+    return [f"beats at {load_range_text(view, loads)}, at {rate}"], []
 
 
 def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
@@ -238,13 +236,15 @@ def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray,
     return values, frequency
 
 
-LINES_OF: dict[str, Callable[[View, np.ndarray], Lines]] = {
+ANSWER_LINES_BY_TASK: dict[str, Callable[[View, np.ndarray], Lines]] = {
     "spectrum": _mode_lines,
     "modes": _mode_lines,
-    "thresholds": _add_failed(_threshold_lines),
-    "criticality": _add_failed(_crossing_lines),
+    "thresholds": _with_failure_line(_threshold_lines),
+    "criticality": _with_failure_line(_crossing_lines),
     "limit_cycle": _cycle_lines,
-    "branch": _add_failed(_branch_lines),
-    "phase_diagram": lambda view, rods: [] if "F" in view.parameters else _add_failed(_row_lines)(view, rods),
+    "branch": _with_failure_line(_branch_lines),
+    "phase_diagram": lambda view, rods: (
+        [] if "F" in view.parameters else _with_failure_line(_row_lines)(view, rods)
+    ),
 }
 """For each task, the function of the view and a mask of computed points that returns the answer's lines."""

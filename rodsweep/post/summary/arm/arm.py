@@ -20,7 +20,7 @@ from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedChange
 from ...tables.rows import quantities_at_points
 from ..errors import absolute_errors, is_known
-from ..ranges import RANGE_DIGITS, rounded, span_text
+from ..ranges import RANGE_DIGITS, rounded_text, span_text
 
 SI_LINE_WIDTH = 80
 """Largest length of a line with variables in SI units, in characters."""
@@ -55,7 +55,7 @@ def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     converts the numbers to this unit. The unit is typed by the user, or has a prefix suitable for numbers up
     to `largest`.
     """
-    typed = next((view.typed[name] for name in TYPED_UNIT_SOURCES.get(si, ()) if name in view.typed), si)
+    typed = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
     if typed != si:
         return value_in_unit(1.0, typed, si), typed
     if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
@@ -125,7 +125,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
 def _quantity_unit(view: View, name: str) -> str:
     """Unit in which the quantity `name` is printed; empty for a dimensionless quantity."""
     si = ALL_QUANTITIES[name].unit
-    return "" if si == "1" else view.typed.get(name, printing_unit(view, si, 1.0)[1])
+    return "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
@@ -166,7 +166,7 @@ def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
     finite = values[is_finite]
     known = errors[is_finite]
     if values.ndim > 1 and 1 < finite.size <= FEW_ITEMS:
-        return ", ".join(map(rounded, finite, np.nan_to_num(known)))
+        return ", ".join(map(rounded_text, finite, np.nan_to_num(known)))
     return span_text(finite, known)
 
 

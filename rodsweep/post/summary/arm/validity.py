@@ -6,7 +6,7 @@ import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY, VALIDITY_NOT_KNOWN
-from ....wording import some_of
+from ....wording import count_of_total
 
 OTHER_PLANE = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
@@ -34,10 +34,12 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     if unknown.all():
         where = f" at all {len(applies)} points" if len(applies) > 1 else ""
         return f"whether the model applies is not known{where}{when}: a motion may have been missed"
-    rest = f"; not known at {some_of(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
+    rest = (
+        f"; not known at {count_of_total(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
+    )
     worst = Validity(int(applies.max()))
     affected = applies == worst
-    at = f" at {some_of(int(affected.sum()), len(applies), 'point')}"
+    at = f" at {count_of_total(int(affected.sum()), len(applies), 'point')}"
     if affected.all():
         at = "" if len(applies) == 1 else f" at all {len(applies)} points"
     if worst == Validity.applies:

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....config.axes import joined_names
-from ....config.document.reading import config_of
+from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
 from ...layouts import EXTENSION_RULES
 from ...layouts.variables import ExtensionRule, Layout
 from ..creation import Plan
-from ..points import stored_points
+from ..points import stored_records
 from ..validation import ResultHeader
 from .identity import config_difference
 
@@ -41,7 +41,7 @@ class StoredPointMap:
     """Shape of the stored grid or list."""
     new_shape: tuple[int, ...]
     """Shape of the new grid or list."""
-    places: tuple[Indices, ...]
+    axis_positions: tuple[Indices, ...]
     """For each axis, the position of every stored value on the new axis, (n,); -1 if the points with this
     value are computed again."""
 
@@ -49,7 +49,10 @@ class StoredPointMap:
         """New flat indices of the points with the stored flat indices `index`, (n,); -1 for a point that is
         computed again.
         """
-        each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
+        each = [
+            place[i]
+            for place, i in zip(self.axis_positions, np.unravel_index(index, self.shape), strict=True)
+        ]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
         return np.where(stays, new, -1)
@@ -59,14 +62,14 @@ class StoredPointMap:
 class Extension:
     """The stored points of a result file that the file of a larger config reuses.
 
-    path: stored file. old, new: layouts of the stored and the new file. places: map from stored to new
-    points.
+    path: stored file. stored_layout, new_layout: layouts of the stored and the new file. point_map: map from
+    stored to new points.
     """
 
     path: Path
-    old: Layout
-    new: Layout
-    places: StoredPointMap
+    stored_layout: Layout
+    new_layout: Layout
+    point_map: StoredPointMap
     increased_options: tuple[tuple[ExtensionRule, Any], ...]
     """(rule, old value) for every option that the new config increases."""
     recomputes_all: bool
@@ -76,11 +79,11 @@ class Extension:
         """Yields records, (n,) in the new layout, of the stored points that are reused."""
         if self.recomputes_all:
             return
-        for records in stored_points(self.path, self.old):
-            index = self.places(records["index"])
+        for records in stored_records(self.path, self.stored_layout):
+            index = self.point_map(records["index"])
             stays = index >= 0
             for increase, before in self.increased_options:
-                stays &= increase.has(records, before)
+                stays &= increase.has_data(records, before)
             if stays.any():
                 yield self._converted(records[stays], index[stays])
 
@@ -89,9 +92,9 @@ class Extension:
 
         Values that the old layout lacks are fill values.
         """
-        found = np.empty(len(records), self.new.record)
+        found = np.empty(len(records), self.new_layout.record_dtype)
         found["index"] = index
-        for variable in self.new.variables:
+        for variable in self.new_layout.variables:
             target = found[variable.name]
             target[...] = variable.fill
             if variable.name in records.dtype.names:
@@ -106,34 +109,34 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
 
     Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file.
     """
-    theirs = config_of(header.config).settings_of_results
-    ours = config_of(plan.config).settings_of_results
+    theirs = config_from_resolved(header.config).settings_of_results
+    ours = config_from_resolved(plan.config).settings_of_results
     task = theirs["task"]
-    _refuse(header, config_difference(task, ours["task"], "task"))
+    _refuse_difference(header, config_difference(task, ours["task"], "task"))
     line_grew = False
     for key, value in theirs["parameters"].items():
         new = ours["parameters"].get(key)
         if isinstance(value, dict) and isinstance(new, dict):  # the line of a phase diagram
-            _places_on_axis(header, key, np.array(value["values"]), np.array(new["values"]))
+            _positions_on_axis(header, key, np.array(value["values"]), np.array(new["values"]))
             line_grew = line_grew or value != new
         else:
-            _refuse(header, config_difference(value, new, f"parameters.{key}"))
-    _refuse(header, config_difference(theirs.get("arm"), ours.get("arm"), "parameters.arm"))
-    _refuse(header, config_difference(theirs["accuracy"], ours["accuracy"], "accuracy"))
+            _refuse_difference(header, config_difference(value, new, f"parameters.{key}"))
+    _refuse_difference(header, config_difference(theirs.get("arm"), ours.get("arm"), "parameters.arm"))
+    _refuse_difference(header, config_difference(theirs["accuracy"], ours["accuracy"], "accuracy"))
     grown = []
     for name, value in theirs[task].items():
         if name not in ours[task] or ours[task][name] == value:
             continue
         increase = EXTENSION_RULES[task].get(name)
         if increase is None or not increase.requests_more_data(value, ours[task][name]):
-            _refuse(header, config_difference(value, ours[task][name], f"{task}.{name}"))
+            _refuse_difference(header, config_difference(value, ours[task][name], f"{task}.{name}"))
         else:
             grown.append((increase, value))
     places = _stored_point_map(header, points, plan)
     return Extension(header.path, header.layout, plan.layout, places, tuple(grown), line_grew)
 
 
-def _refuse(header: ResultHeader, difference: str) -> None:
+def _refuse_difference(header: ResultHeader, difference: str) -> None:
     """Raises InputError if the text `difference`, on how file and config differ, is not empty."""
     if difference:
         raise InputError(
@@ -143,7 +146,8 @@ def _refuse(header: ResultHeader, difference: str) -> None:
 
 
 def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
-    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
+    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
+    point."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
@@ -152,22 +156,22 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPo
             else f"a list of {joined_names(p.names, 'and')}"
             for p in (old, new)
         ]
-        _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))
+        _refuse_difference(header, config_difference(kinds[0], kinds[1], "parameters"))
     if not old.axes:
-        return StoredPointMap(old.shape, new.shape, (_places_in_list(header, old, new),))
-    places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
+        return StoredPointMap(old.shape, new.shape, (_positions_in_list(header, old, new),))
+    places = [_positions_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
-        places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
+        places[axis] = _positions_before_first_change(places[axis], new.shape[axis], plan.chains.is_upward)
     if plan.stretches:
         axis = plan.stretches.axis
         before = stretches_along_longest_axis(old.shape, old.varying_parameters)
-        same = _same_stretches(places[axis], new.shape[axis])
+        same = _is_stretch_unchanged(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return StoredPointMap(old.shape, new.shape, tuple(places))
 
 
-def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
+def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
     """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
 
     Raises InputError for an old value that is not on the new axis. name: name of the axis.
@@ -179,13 +183,15 @@ def _places_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> 
         apart = np.abs(new[nearest] - old)
         near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= ROUNDING_TOLERANCE * np.abs(old)))
     if not near.all():
-        _refuse(header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config")
+        _refuse_difference(
+            header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config"
+        )
     return np.where(new[nearest] == old, nearest, -1).astype(np.int64)
 
 
-def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """Positions `places` of the values along a chain, (n,), with -1 from the first changed position of the
-    chain on.
+def _positions_before_first_change(places: Indices, count: int, upward: bool) -> Indices:
+    """Positions `places` of the values along a chain, (n,), with -1 from the first changed position
+    of the chain on.
 
     count: number of values on the new axis. upward: direction of the chains.
     """
@@ -194,7 +200,7 @@ def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
     return np.where(stays if upward else stays[::-1], places, -1)
 
 
-def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
+def _is_stretch_unchanged(places: Indices, count: int) -> NDArray[np.bool_]:
     """Whether the stretch of each old value, (n,), is unchanged on the new axis. places: new position of each
     old value, (n,). count: number of values on the new axis.
     """
@@ -205,7 +211,7 @@ def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
     return same_length & ~moved[at // STRETCH_POINTS]
 
 
-def _places_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
+def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
     """Position of every old point in the new list, (n,); InputError for a point not in the new list."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
@@ -216,5 +222,5 @@ def _places_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
     if (found < 0).any():
         values = old.values(int(np.argmax(found < 0)))
         where = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
-        _refuse(header, f"the point {where} is in the file and not in the list")
+        _refuse_difference(header, f"the point {where} is in the file and not in the list")
     return found

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....config.axes import Axes
-from ....config.document.reading import config_of
+from ....config.document.reading import config_from_resolved
 
 LONGEST_VALUE = 80
 """Maximum number of characters of a value in a message; longer values are cut."""
@@ -23,9 +23,9 @@ LONGEST_VALUE = 80
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     """SHA-256 of a resolved config and its points: two runs with equal fingerprints have the same results.
 
-    columns: `Points.identity`, (n,) each. Raises ValueError for an invalid config.
+    columns: `Points.identifying_arrays`, (n,) each. Raises ValueError for an invalid config.
     """
-    asked = config_of(config)
+    asked = config_from_resolved(config)
     meant = {"meaning": asked.settings_of_results, "grid": not asked.parameters.is_list}
     if asked.parameters.arm_axes:
         meant["over"] = asked.parameters.arm_axes
@@ -43,7 +43,7 @@ def config_change_text(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     """
     if theirs["task"] != ours["task"]:
         return config_difference(theirs["task"], ours["task"], "task")
-    configs = config_of(theirs), config_of(ours)
+    configs = config_from_resolved(theirs), config_from_resolved(ours)
     axes = [config.parameters.axes for config in configs]
     shared = axes[0].keys() & axes[1].keys()
     same = {name for name in shared if np.array_equal(axes[0][name].array(), axes[1][name].array())}

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from ....arrays import Array
-from ....config.document.reading import config_of, config_yaml, resolved_config
+from ....config.document.reading import config_from_resolved, config_yaml, resolved_config
 from ....config.schema import Config
 from ....config.values import Axis
 from ....errors import InputError
@@ -22,8 +22,8 @@ from ....sweep.points.points import Points
 from ...layouts.variables import MISSING_STATUS, SECONDS
 from ..content import SEAL_ATTRIBUTE
 from ..creation import Plan
-from ..points import parameters_of, points_at, stored_points, write_points
-from ..provenance import LONGEST_ATTRIBUTE, blas_kernels_in
+from ..points import points_of_file, records_at, stored_records, write_records
+from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
 from .extension import ROUNDING_TOLERANCE, StoredPointMap
 from .identity import config_difference
@@ -42,11 +42,11 @@ PlanMaker = Callable[[Config, Points], Plan]
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """Plan of the joined file, its source files, and for each source the map to the points of the plan."""
+    """`plan` of the joined file. point_maps: map from the points of each source to the points of the plan."""
 
     plan: Plan
     sources: Sequence[ResultHeader]
-    places: Sequence[StoredPointMap]
+    point_maps: Sequence[StoredPointMap]
 
     def write(self, path: Path) -> list[ResultHeader]:
         """Writes the points of all sources into the file at `path`; returns the sources from which points
@@ -55,12 +55,12 @@ class JoinedFile:
         Raises InputError if the values of a point in two sources differ by more than rounding errors.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
-        for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):
-            for records in stored_points(source.path, source.layout):
+        for number, (source, places) in enumerate(zip(self.sources, self.point_maps, strict=True)):
+            for records in stored_records(source.path, source.layout):
                 records["index"] = places(records["index"])
                 is_new = owner[records["index"]] < 0
                 self._compare(path, records[~is_new], owner, number)
-                write_points(path, [records[is_new]], self.plan.layout)
+                write_records(path, [records[is_new]], self.plan.layout)
                 owner[records["index"][is_new]] = number
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
@@ -72,7 +72,7 @@ class JoinedFile:
         """
         if not len(records):
             return
-        stored = points_at(path, records["index"], self.plan.layout)
+        stored = records_at(path, records["index"], self.plan.layout)
         for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
             first = stored[name]
             second = records[name]
@@ -81,12 +81,12 @@ class JoinedFile:
             for i in np.flatnonzero(differs):
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
-                if not self._is_rounding(name, stored[i][name], records[i][name], pair):
+                if not self._is_rounding_error(name, stored[i][name], records[i][name], pair):
                     where = _point_text(self.plan.points, index)
                     both = " and ".join(str(source.path) for source in pair)
                     raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
 
-    def _is_rounding(
+    def _is_rounding_error(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
         """Whether the difference of two values of the variable `name` is taken for rounding error.
@@ -114,10 +114,10 @@ def _point_text(points: Points, index: int) -> str:
 def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
-    meant = config_of(first.config).settings_of_results
-    grids = [parameters_of(source.path, source.layout) for source in sources]
+    meant = config_from_resolved(first.config).settings_of_results
+    grids = [points_of_file(source.path, source.layout) for source in sources]
     for other, points in zip(others, grids[1:], strict=True):
-        theirs = config_of(other.config).settings_of_results
+        theirs = config_from_resolved(other.config).settings_of_results
         apart = config_difference(
             meant | {"together": None}, theirs | {"together": None}, places=(first.path.name, other.path.name)
         )
@@ -150,7 +150,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     """
     axes = []
     for name in grids[0].names:
-        axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
+        axis = np.unique(np.concatenate([grid.columns_by_name[name] for grid in grids]))
         close = np.flatnonzero(np.diff(axis) <= ROUNDING_TOLERANCE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
@@ -198,13 +198,13 @@ def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
-        own = config_of(first.config).parameters.axes
-        axes = {name: _axis_with(own[name], column) for name, column in points.by_name.items()}
+        own = config_from_resolved(first.config).parameters.axes
+        axes = {name: _axis_from_values(own[name], column) for name, column in points.columns_by_name.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
-    return config_of(first.config | {"parameters": parameters, task: meant[task]})
+    return config_from_resolved(first.config | {"parameters": parameters, task: meant[task]})
 
 
-def _axis_with(own: Axis, values: Array) -> Axis:
+def _axis_from_values(own: Axis, values: Array) -> Axis:
     """An axis with the given values, (n,): `own` or a range if its values are equal bit by bit, otherwise a
     list.
     """
@@ -227,7 +227,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
         return
     name = plan.points.names[plan.chains.axis]
     for source, grid in zip(sources, grids, strict=True):
-        if not np.array_equal(grid.by_name[name], plan.points.by_name[name]):
+        if not np.array_equal(grid.columns_by_name[name], plan.points.columns_by_name[name]):
             raise InputError(
                 f"{source.path} differs from the other files in {name}, along which each point starts from "
                 "its neighbour; parts of chains cannot be merged; use run --extend"
@@ -238,7 +238,7 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
     text = config_yaml(config)
     resolved = resolved_config(config)
-    if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:
+    if max(len(text), len(str(resolved))) > MAX_ATTRIBUTE_LENGTH:
         raise InputError(
             "the joined axes are too long to be listed in the file; compute the grid with `run` from ranges"
         )

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import h5py
 
-from ....config.document.reading import config_of
+from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNALS, journal_directory
 from ..creation import Plan, add_variables, create_file
 from ..exchange import FileReplacement, disk_refusals
-from ..points import missing_ranges, parameters_of, points_to_add, write_points
+from ..points import missing_ranges, points_of_file, records_to_add, write_records
 from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, utc_time
 from ..validation import ResultHeader, read_header
 from .joining import JoinedFile, PlanMaker, joined_file_of
@@ -26,10 +26,10 @@ from .joining import JoinedFile, PlanMaker, joined_file_of
 class MergeResult:
     """Outcome of a merge: numbers of computed and of missing points, whether the file is finished."""
 
-    points: int
-    missing: int
-    finished: bool
-    kernels: str
+    point_count: int
+    missing_count: int
+    is_finished: bool
+    kernel_warning: str
     """Warning about the BLAS kernels that computed the points; empty for a single kernel."""
 
 
@@ -52,7 +52,7 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
                 sources = _read_headers(
                     [output, *(path for path in paths if not os.path.samefile(output, path))]
                 )
-            if all(_is_continued(sources[0], source) for source in sources):
+            if all(_has_same_fingerprint(sources[0], source) for source in sources):
                 return _merge(exchange, sources, planner)
             return _write_joined_file(exchange, joined_file_of(sources, planner))
     finally:
@@ -62,11 +62,11 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
 def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
     """Replaces the output by a copy of the first source with the points of all other sources added."""
     first = sources[0]
-    plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
+    plan = planner(config_from_resolved(first.config), points_of_file(first.path, first.layout))
     with exchange.replacing(first.path) as copy:
         gave = [first]
         for source in sources[1:]:
-            if write_points(copy, points_to_add(copy, source.path, first.layout), first.layout):
+            if write_records(copy, records_to_add(copy, source.path, first.layout), first.layout):
                 gave.append(source)
         return _finish_merge(copy, plan, gave)
 
@@ -88,7 +88,7 @@ def _finish_merge(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> Merge
     history = merged_history([source.attributes for source in gave])
     with h5py.File(copy, "r+") as file:
         if finished and "finished" not in file.attrs:
-            add_variables(file, plan.afterwards(file))
+            add_variables(file, plan.variables_from_points(file))
             file.attrs["finished"] = utc_time()
         file.attrs.update(history)
         points = file["status"].size
@@ -110,10 +110,10 @@ def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
     return files
 
 
-def _is_continued(first: ResultHeader, other: ResultHeader) -> bool:
+def _has_same_fingerprint(first: ResultHeader, other: ResultHeader) -> bool:
     """Whether two files have the same fingerprint; raises InputError if only the layouts differ."""
     if first.fingerprint != other.fingerprint:
         return False
-    if (first.layout.record, first.points) != (other.layout.record, other.points):
+    if (first.layout.record_dtype, first.points) != (other.layout.record_dtype, other.points):
         raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")
     return True

@@ -26,9 +26,9 @@ from ...style import (
     scale_axis,
 )
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
-from ..units import units_of_points
-from .branches import AmplitudeBranch, abscissa_parameter, branches_of
-from .hopf_marks import draw_laws, mark_hopf_points
+from ..units import units_of_files
+from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
+from .hopf_marks import draw_square_root_laws, mark_hopf_points
 
 BRANCH_LOOKS = tuple(
     zip(
@@ -51,9 +51,9 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     """
     first = views[0]
     name = abscissa_parameter(first)
-    units = units_of_points(views, [np.arange(view.variables["status"].size) for view in views])
+    units = units_of_files(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
-    branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
+    branches = [branch for view, drawn_in in pairs for branch in amplitude_branches(view, name, drawn_in)]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first.path} gives {len(branches)} lines over {name}, and a figure has room for "
@@ -69,12 +69,12 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
-    handles += draw_laws(
+    handles += draw_square_root_laws(
         panels[1],
         [law for branch in branches for law in branch.square_root_fits],
         units[0].names[0] * units[0].in_si,
     )
-    _label_axes(panels, name, units[0].labels_over)
+    _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
         scale_axis(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:

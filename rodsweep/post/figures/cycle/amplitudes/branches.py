@@ -9,7 +9,7 @@ from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
-from .....sweep.points.points import lines_over
+from .....sweep.points.points import lines_along
 from ....hopf_points import LocatedChange, StoredChanges
 from ..units import PLAIN_UNITS, CycleUnits
 from .square_root import SquareRootLaw, square_root_laws
@@ -17,10 +17,11 @@ from .square_root import SquareRootLaw, square_root_laws
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Limit cycles at points that differ in one parameter x, in the order of the file.
+    """Limit cycles of the file `view` at points that differ in one parameter x, in the order of the file.
 
     Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. amplitude_y: largest y of the
-    tip. Unknown amplitudes are NaN.
+    tip. Amplitudes, period and power of points without a cycle are NaN, but the amplitudes of a straight rod
+    0.
     """
 
     view: View
@@ -71,11 +72,11 @@ def abscissa_parameter(view: View) -> str:
     return name
 
 
-def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
+def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities.
     """
-    words = view.outcomes
+    words = view.status_names
     v = view.variables
     straight = words == "straight"
     cycle = np.isin(words, CYCLE_WORDS)
@@ -88,10 +89,12 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
     branches = []
     stored = StoredChanges(view, "F")
-    for line in lines_over(view.point_columns, name):
+    for line in lines_along(view.point_columns, name):
         changes = stored.thresholds_on(line) if name == "F" else []
-        at = line.at
-        hopf = [change for change in changes if isinstance(change, LocatedChange) and change.is_hopf]
+        at = line.indices
+        hopf = [
+            change for change in changes if isinstance(change, LocatedChange) and change.changes_stability
+        ]
         branches.append(
             AmplitudeBranch(
                 view=view,

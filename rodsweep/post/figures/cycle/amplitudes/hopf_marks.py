@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ....hopf_points import LocatedChange
-from ....summary.ranges import rounded
+from ....summary.ranges import rounded_text
 from ...style import SYMBOLS
 from .square_root import SquareRootLaw
 
@@ -41,7 +41,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
         own = [mark for mark in marks if mark[0].kind == kind]
         places: list[tuple[LocatedChange, set[str]]] = []
         for point, colour in own:
-            same = next((colours for other, colours in places if other.agrees(point)), None)
+            same = next((colours for other, colours in places if other.equals_within_errors(point)), None)
             if same is None:
                 places.append((point, {colour}))
             else:
@@ -59,7 +59,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
     return handles
 
 
-def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
+def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
     """Draws square-root laws as dashed curves; returns legend entries with formula and coefficients. unit:
     unit of the amplitude; empty for amplitudes in L.
     """
@@ -82,7 +82,7 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
 def _coefficients_text(laws: Sequence[SquareRootLaw]) -> str:
     """Distinct coefficients of the laws as text; the range if there are more than MAX_COEFFICIENTS."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
-    each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
+    each = {law: rounded_text(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
     texts = list(dict.fromkeys(each.values()))
     if len(texts) > MAX_COEFFICIENTS:
         return f"{each[ordered[0]]} to {each[ordered[-1]]}"
