@@ -56,7 +56,8 @@ class BranchTask(NonlinearTask):
         return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
+        from ..solve.branch.branch_request import BranchRequest
+        from ..solve.branch.branches import BranchStatus, solve_branches, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.branch

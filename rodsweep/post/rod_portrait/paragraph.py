@@ -18,6 +18,7 @@ from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded
 from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
+from .units import PortraitUnits
 
 SAME_FORCE_TOLERANCE = 1e-6
 """Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
@@ -146,10 +147,12 @@ def _branches(results: RodResults) -> Iterator[str]:
         for kind, word in SPECIAL_WORDS.items()
         if (at := _special_point_loads(curves, kind, units.force.factor))
     ]
-    number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
+    accuracy = results.views["branch"].config["accuracy"]
+    number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
     verb = "begins" if len(curves) == 1 else "begin"
     end = f"with {' and '.join(special)}" if special else "without a fold or another change of stability"
     yield f"{number} {verb} at its Hopf points, {end}."
+    yield from _work_limit_sentence(curves, units)
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
     no_cycle = "none" if is_decided and not rod.hidden else "none is known"
@@ -160,6 +163,19 @@ def _branches(results: RodResults) -> Iterator[str]:
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycles:
             yield f"Two different cycles are stable at {units.forces_at(pairs, rod.errors)}."
+
+
+def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
+    """Yields a sentence on the branches that are not drawn to their ends, because the portrait's limit of the
+    work, or of the number of cycles, is reached."""
+    last = (curve.special[-1] for curve in curves)
+    ends = [units.force_at(special.at) for special in last if special.reason == "list_full"]
+    if ends:
+        number = f"{len(ends)} of them {is_or_are(len(ends))}"
+        yield (
+            f"{number} drawn only to {', '.join(ends)}, where the work or the number of cycles of a portrait is "
+            "used up; `rodsweep run` with task: branch follows branches to their ends."
+        )
 
 
 def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:

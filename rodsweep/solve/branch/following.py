@@ -13,7 +13,7 @@ from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEPS, ArcPoint, arc_length_between, cycle_at_length, next_point
 from .branch_curve import BranchCurve, BranchEnd
-from .branch_record import BranchRecord, end_point
+from .branch_record import BranchRecord, end_point, reason_of_failure
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
 from .mesh_choice import measurement_due
@@ -80,7 +80,7 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
     try:
         start = first()
     except Unsolvable as why:
-        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False))
+        curve.end(BranchEnd(_end_without_cycle(curve, reason_of_failure(why), str(why)), complete=False))
         return curve
     outside = _index_of_passed_range_end(start, limits)
     if outside >= 0:
@@ -164,7 +164,7 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         last = record.assign_errors(range_end) if range_end is not None or measurement_due(end) else end
     except Unsolvable as why:
         message = f"no further cycle of the branch is found: {why}"
-        return BranchEnd(end_point(start, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(end_point(start, reason_of_failure(why), message), complete=False)
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.parameter)
