@@ -173,8 +173,8 @@ def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -
     if ends:
         number = f"{len(ends)} of them {is_or_are(len(ends))}"
         yield (
-            f"{number} drawn only to {', '.join(ends)}, where the work or the number of cycles of a portrait is "
-            "used up; `rodsweep run` with task: branch follows branches to their ends."
+            f"{number} drawn only to {', '.join(ends)}, where the work or the number of cycles of a portrait "
+            "is used up; `rodsweep run` with task: branch follows branches to their ends."
         )
 
 
