@@ -9,7 +9,8 @@ import numpy as np
 from ..config.task.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_branches
+from ..sweep.branch_cost import estimate_branches
+from ..sweep.cost_estimate import Estimate
 from .parts import NonlinearTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
