@@ -17,7 +17,7 @@ from .branch_record import BranchRecord, end_point, reason_of_failure
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
 from .mesh_choice import measurement_due
-from .range_end import cycle_at_range_end, range_end_condition
+from .range_end import cycle_within_range, range_end_condition
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -147,10 +147,8 @@ def _append_next_cycle(record: BranchRecord, start: ArcPoint, limits: BranchLimi
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
-        outside = _index_of_passed_range_end(end, limits)
+        end, outside = cycle_within_range(start, end, limits.ends, limits.accuracy)
         range_end = range_end_condition(start, limits.ends[outside]) if outside >= 0 else None
-        if range_end is not None:
-            end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _step_hides_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
