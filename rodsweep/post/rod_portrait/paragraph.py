@@ -168,14 +168,17 @@ def _branches(results: RodResults) -> Iterator[str]:
 def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
     """Yields a sentence on the branches that are not drawn to their ends, because the portrait's limit of the
     work, or of the number of cycles, is reached."""
-    last = (curve.special[-1] for curve in curves)
-    ends = [units.force_at(special.at) for special in last if special.reason == "list_full"]
-    if ends:
-        number = f"{len(ends)} of them {is_or_are(len(ends))}"
-        yield (
-            f"{number} drawn only to {', '.join(ends)}, where the work or the number of cycles of a portrait "
-            "is used up; `rodsweep run` with task: branch follows branches to their ends."
-        )
+    limited = [curve for curve in curves if curve.special[-1].reason == "list_full"]
+    if not limited:
+        return
+    ends = [units.force_at(curve.special[-1].at) for curve in limited if curve.cycles.any()]
+    clauses = [f"{len(ends)} of them {is_or_are(len(ends))} drawn only to {', '.join(ends)}"] if ends else []
+    if absent := len(limited) - len(ends):
+        clauses.append(f"{absent} {is_or_are(absent)} not drawn")
+    yield (
+        f"{' and '.join(clauses)}, because the work or the number of cycles of a portrait is used up; "
+        "`rodsweep run` with task: branch follows branches to their ends."
+    )
 
 
 def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
