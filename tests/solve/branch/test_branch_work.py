@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from surveyed import survey_only
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
@@ -96,3 +97,22 @@ def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_po
 
 def test_unit_of_work_is_the_documented_number_of_multiplications():
     assert BranchRequest("F", 0.0, 1.0, 1e-5, False, 1, 1, 2.0).max_work == 2 * WORK_UNIT == 2e9
+
+
+@survey_only
+def test_torus_point_of_a_narrow_cone_needs_no_mesh_of_gigabytes(monkeypatch):
+    meshes = []
+    of_mesh = locating._zero_by_secants
+
+    def recorded(kind, segment, guess, slope):
+        meshes.append(segment.mesh)
+        return of_mesh(kind, segment, guess, slope)
+
+    monkeypatch.setattr(locating, "_zero_by_secants", recorded)
+    cone = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.19)
+    found = solve_branches(cone, BranchRequest("F", 0.0, 15.0, 1e-7, False, 500, 50))
+    torus = torus_of(found)
+    assert found.status == BranchStatus.ok
+    assert torus.at == pytest.approx(14.5390404204, abs=torus.error + 1e-9)
+    assert torus.error < 1e-9 * torus.at
+    assert max(mesh.intervals for mesh in meshes) < 80, "114 in the first mesh, 137 in the second before"
