@@ -62,6 +62,7 @@ class BranchKeywords(TaskKeywords, total=False):
     stop: float
     cycles: int
     special: int
+    work: float | None
     certify: bool
 
 

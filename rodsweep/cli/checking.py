@@ -44,6 +44,11 @@ def print_job_check(job: Job) -> None:
         f"may compile for up to three minutes more), {cost.memory_bytes / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
+    if cost.doubt:
+        console.print(
+            f"time and memory are not known: {cost.doubt} may take a hundred times as long, and some GB; "
+            "try a single point or row first"
+        )
     if cost.too_large_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)
         console.print(

@@ -139,7 +139,11 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 @click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option("--F-max", "F_max", type=float, default=200.0, show_default=True, help="Largest force.")
-@click.option("--accuracy", type=float, help="Relative accuracy; by default the accuracy of each task.")
+@click.option(
+    "--accuracy",
+    type=float,
+    help="Relative accuracy; by default 1e-5 on branches, and the accuracy of each other task.",
+)
 @click.option(
     "-o", "--output", type=FILE_TYPE, default=Path("portrait.png"), show_default=True,
     help="A .png, .pdf or .svg file, or a .html page with tables.",

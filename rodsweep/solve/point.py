@@ -19,6 +19,10 @@ class Unsolvable(Exception):
     cause."""
 
 
+class WorkLimitReached(Unsolvable):
+    """The next matrix would exceed the requested limit of the work on a rod."""
+
+
 FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)
 """Exceptions that are treated as a failed solve; any other exception is a bug and ends the run."""
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import expected_unstable_count, most_amplified_wave
@@ -19,9 +18,6 @@ from .points.stretches import Stretches
 
 MAX_SAMPLED_POINTS = 200
 """Largest number of points whose meshes are computed for an estimate."""
-COSTLIER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters for which large values make branches of cycles expensive. For all other parameters, small values
-are expensive."""
 SPECTRUM_FIXED_MS = 0.03
 """Measured time of the solve of a spectrum that does not depend on the number of unknowns, in ms."""
 SPECTRUM_MS_PER_UNKNOWN = 2.2e-3
@@ -88,17 +84,6 @@ CHAINED_CYCLE_SECONDS = 0.01
 """Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
 """Time of a limit cycle by time integration to a relative accuracy of 1e-5, in s: mean over 40 rods."""
-BRANCH_SECONDS_PER_FORCE = 0.004
-"""All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 +
-F/k2)^BRANCH_BENDING_EXPONENT, in seconds, where F is the largest force of the range, or k1. Fourteen random
-rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to 21 s, all within a
-factor of three of the formula and most within two; some near F = k1 take four times as long. Branches of six
-cones, over F and over the taper, took 0.6 to 2 times as long as foreseen (0.2 to 11 s, tapers from 0.5 to
-1.5)."""
-BRANCH_ACCURACY_EXPONENT = -0.17
-"""Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
-BRANCH_BENDING_EXPONENT = 1.5
-"""Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS_PER_FORCE."""
 MEMORY_PER_UNKNOWN = 40_000
 """Memory of a rank per unknown of its largest mesh, in bytes."""
 BASE_MEMORY = 200_000_000
@@ -117,6 +102,9 @@ class Estimate:
     """Smallest and largest number of unknowns of the sampled points' meshes; None for a task without mesh."""
     too_large_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
+    doubt: str = ""
+    """Kind of rods whose time and memory may be many times as large as estimated; empty if the estimate is
+    expected to hold within a factor of about two."""
 
 
 def estimate_searches(lines: int, certify: bool, of_arms: bool) -> Estimate:
@@ -146,22 +134,6 @@ def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
     return Estimate(rods * 1e-3 * each)
-
-
-def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
-    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
-
-    reach: smallest and largest value of the parameter. accuracy: relative accuracy of the cycles.
-    """
-    indices = sampled_points(points)
-    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
-    taper = np.asarray(values.get("taper", 1.0))
-    weakest = np.minimum(taper, 1.0) ** 2
-    F = np.clip(values["F"], 0.0, values["k1"] * weakest)  # a rod under tension has no cycles
-    per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
-    # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
-    each = per_force * F / taper**2 * (1 + F / (values["k2"] * weakest)) ** BRANCH_BENDING_EXPONENT
-    return Estimate(float(np.mean(each)) * points.count if indices.size else 0.0)
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:

@@ -9,7 +9,8 @@ import numpy as np
 from ..config.task.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_branches
+from ..sweep.branch_cost import estimate_branches
+from ..sweep.cost_estimate import Estimate
 from .parts import NonlinearTask, crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
@@ -56,7 +57,8 @@ class BranchTask(NonlinearTask):
         return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
+        from ..solve.branch.branch_request import BranchRequest
+        from ..solve.branch.branches import BranchStatus, solve_branches, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.branch

@@ -8,7 +8,8 @@ import numpy as np
 from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
-from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_diagram
+from ..sweep.branch_cost import estimate_branches
+from ..sweep.cost_estimate import Estimate, estimate_diagram
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
 from .parts import CertifiedTask
@@ -97,7 +98,7 @@ class PhaseDiagramTask(CertifiedTask):
         branches = estimate_branches(
             self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy
         )
-        return replace(lines, seconds=lines.seconds + branches.seconds)
+        return replace(branches, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
         from ..solve.changes.diagram.rows import solve_row

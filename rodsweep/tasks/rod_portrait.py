@@ -29,6 +29,13 @@ MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
 F_MAX = 200.0
 """Default of the largest force, equal to the default of the task thresholds."""
+BRANCH_ACCURACY = 1e-5
+"""Relative accuracy of the cycles on the branches of a portrait without a requested accuracy, far below a
+line width of the picture. Special points are located to 1e-9 at every accuracy, as far as BRANCH_WORK
+allows."""
+BRANCH_WORK = 300.0
+"""Limit `work` of the branches of a portrait: 15 to 30 s, and at most 1 GB for a matrix. A cone of taper 0.19
+needs 300 up to F = 15, three times its Hopf point, and ever more at larger forces."""
 SolveJob = Callable[[Job], View]
 """Function that solves the only point of a job."""
 
@@ -37,16 +44,29 @@ SolveJob = Callable[[Job], View]
 class PortraitRequest:
     """Request for a portrait.
 
-    rod: the rod. F_max: largest force. accuracy: relative accuracy; None for the default of each task.
+    rod: the rod. F_max: largest force. accuracy: relative accuracy; None for BRANCH_ACCURACY on branches, and
+    for the default of every other task.
     """
 
     rod: DescribedRod
     F_max: float = F_MAX
     accuracy: float | None = None
 
-    def job_of_task(self, task: str, options: Mapping[str, Any], F: float | None = None) -> Job:
+    @property
+    def branch_options(self) -> dict[str, Any]:
+        """Options of the task branch for the branches of the portrait."""
+        return {"start": 0.0, "stop": self.F_max, "work": BRANCH_WORK}
+
+    def job_of_task(
+        self,
+        task: str,
+        options: Mapping[str, Any],
+        F: float | None = None,
+        default_accuracy: float | None = None,
+    ) -> Job:
         """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
-        vary the force.
+        vary the force. default_accuracy: relative accuracy if the request has none; None for the default of
+        the task.
         """
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
         own = self.rod.parameters
@@ -55,7 +75,8 @@ class PortraitRequest:
         values |= {} if F is None else {"F": F}
         tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
         tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
-        tree |= {} if self.accuracy is None else {"accuracy": self.accuracy}
+        accuracy = default_accuracy if self.accuracy is None else self.accuracy
+        tree |= {} if accuracy is None else {"accuracy": accuracy}
         return job_of_config(Path(task), validated_config(tree), tree)
 
 
@@ -69,15 +90,18 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
     views = {"thresholds": solve(request.job_of_task("thresholds", F_max))}
     missing: dict[str, str] = {}
 
-    def solved(task: str, options: Mapping[str, Any], F: float | None = None) -> View | None:
+    def solved(
+        task: str, options: Mapping[str, Any], F: float | None = None, default_accuracy: float | None = None
+    ) -> View | None:
         try:
-            return solve(request.job_of_task(task, options, F))
+            return solve(request.job_of_task(task, options, F, default_accuracy))
         except InputError as error:
             missing.setdefault(task, str(error))
             return None
 
-    for task, options in (("criticality", F_max), ("branch", {"start": 0.0, "stop": request.F_max})):
-        if (view := solved(task, options)) is not None:
+    own = request.branch_options
+    for task, options, accuracy in (("criticality", F_max, None), ("branch", own, BRANCH_ACCURACY)):
+        if (view := solved(task, options, default_accuracy=accuracy)) is not None:
             views[task] = view
     modes = {
         kind: (F, view)

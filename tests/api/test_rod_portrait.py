@@ -12,6 +12,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.post.rod_portrait.picture import portrait_figure
+from rodsweep.tasks import rod_portrait
 from rodsweep.tasks.rod_portrait import cycle_forces
 
 FOLDED = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
@@ -242,3 +243,13 @@ def test_three_forces_are_spread_over_all_ranges():
     assert cycle_forces([]) == []
     for force in cycle_forces([(42.7219713, 42.7219719)]):
         assert 42.7219713 < force < 42.7219719
+
+
+def test_branches_that_use_up_the_work_of_a_portrait_are_named(monkeypatch):
+    monkeypatch.setattr(rod_portrait, "BRANCH_WORK", 0.2)
+    found = rs.Rod(k1=1e4, k2=1e4, gamma3=1e-3).portrait(F_max=60)
+    end = found.branch.special_points.iloc[-1]
+    assert end["special_reason"] == "list_full"
+    text = found.paragraph
+    assert numbers(text, "1 of them is drawn only to F = ") == [pytest.approx(end["special_at"], rel=1e-3)]
+    assert "solved to 1e-05" in text

@@ -66,7 +66,9 @@ def _later_flutter(rod: OneRod) -> list[str]:
     kinds = rod.words("crossings", "crossing_kind")
     name = rod.preferred_name(crossings, "crossing_F")
     load = name.removeprefix("crossing_")
-    return [f"{verbs[kinds[i]]} {load} = {crossings.short_text(name, i)}" for i in later_flutter_changes(kinds)]
+    return [
+        f"{verbs[kinds[i]]} {load} = {crossings.short_text(name, i)}" for i in later_flutter_changes(kinds)
+    ]
 
 
 def hopf_sentence(rod: OneRod) -> str:

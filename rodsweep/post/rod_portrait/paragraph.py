@@ -18,6 +18,7 @@ from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded_text
 from ..summary.thresholds import ENDED_EARLY
 from .results import RodResults
+from .units import PortraitUnits
 
 SAME_FORCE_TOLERANCE = 1e-6
 """Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
@@ -148,10 +149,12 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         for kind, word in SPECIAL_POINT_WORDS.items()
         if (at := _special_point_loads(curves, kind, units.force.factor))
     ]
-    number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved)"
+    accuracy = results.views["branch"].config["accuracy"]
+    number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
     verb = "begins" if len(curves) == 1 else "begin"
     end = f"with {' and '.join(special)}" if special else "without a fold or another change of stability"
     yield f"{number} {verb} at its Hopf points, {end}."
+    yield from _work_limit_sentence(curves, units)
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
     no_cycle = "none" if is_decided and not rod.hidden else "none is known"
@@ -162,6 +165,22 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycles:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.errors)}."
+
+
+def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
+    """Yields a sentence on the branches that are not drawn to their ends, because the portrait's limit of the
+    work, or of the number of cycles, is reached."""
+    limited = [curve for curve in curves if curve.special[-1].reason == "list_full"]
+    if not limited:
+        return
+    ends = [units.load_text(curve.special[-1].at) for curve in limited if curve.cycles.any()]
+    clauses = [f"{len(ends)} of them {is_or_are(len(ends))} drawn only to {', '.join(ends)}"] if ends else []
+    if absent := len(limited) - len(ends):
+        clauses.append(f"{absent} {is_or_are(absent)} not drawn")
+    yield (
+        f"{' and '.join(clauses)}, because the work or the number of cycles of a portrait is used up; "
+        "`rodsweep run` with task: branch follows branches to their ends."
+    )
 
 
 def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:

@@ -6,7 +6,7 @@ from math import nan
 
 import numpy as np
 
-from ..point import Unsolvable
+from ..point import Unsolvable, WorkLimitReached
 from .arc import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
@@ -28,6 +28,12 @@ def branch_end_point(point: BranchCycle, reason: EndReason, message: str = "") -
         reason=reason,
         message=message,
     )
+
+
+def reason_of_failure(why: Unsolvable) -> EndReason:
+    """Reason for the end of a branch at which no further cycle could be solved because of the error `why`."""
+    is_limit = isinstance(why, WorkLimitReached) or isinstance(why.__cause__, WorkLimitReached)
+    return EndReason.list_full if is_limit else EndReason.no_cycle_found
 
 
 class BranchRecord:
@@ -74,7 +80,7 @@ class BranchRecord:
         except Unsolvable as why:
             curve.remove_last_cycles(len(self._unmeasured))
             message = f"the errors of the next cycles cannot be measured: {why}"
-            special = branch_end_point(self._last_measured, EndReason.no_cycle_found, message)
+            special = branch_end_point(self._last_measured, reason_of_failure(why), message)
             end = replace(end, special_point=special, complete=False)
         special = end.special_point
         last = curve.points[-1]

@@ -15,6 +15,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
 from .branch_curve import BranchCurve
+from .branch_request import BranchRequest
 from .branch_start import hopf_branch_start
 from .computing_time import fractions_before_branches
 from .following import BranchLimits, follow_asymmetric_branch, follow_branch
@@ -49,8 +50,9 @@ class BranchStatus(PointStatus):
     )
     stopped = (
         1,
-        "no further cycle was found on a branch before its end; the message says where; all other branches "
-        "are complete; use a smaller or larger number for the accuracy, or shorten the range",
+        "no further cycle was found on a branch before its end, or the limit `work` was reached; the message "
+        "says where; all other branches are complete; raise `work` if it is reached, use a smaller or larger "
+        "number for the accuracy, or shorten the range",
     )
     list_full = 2, "there are more cycles or special points than the file holds; raise `cycles` or `special`"
     special_undecided = (
@@ -65,21 +67,6 @@ class BranchStatus(PointStatus):
         "`certify: false` ignores the count",
     )
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
-
-
-@dataclass(frozen=True, slots=True)
-class BranchRequest:
-    """Request, the same for every rod. along, start, stop: name and range of the continuation parameter.
-    accuracy: relative accuracy of the cycles. certify: whether to prove that no Hopf point is missing.
-    cycles, special: maximum numbers of stored cycles and special points."""
-
-    along: str
-    start: float
-    stop: float
-    accuracy: float
-    certify: bool
-    cycles: int
-    special: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,6 +91,7 @@ def solve_branches(
     exception. The rod's own value of this parameter is not used. workspace: memory of Newton's matrices,
     which rods may share; None: a new workspace."""
     memory = workspace or NewtonWorkspace()
+    memory.limit_work(request.max_work)
     try:
         return outcome_or_failure(
             lambda: _solve_branches_or_raise(rod, request, memory),

@@ -19,7 +19,8 @@ from ..changes.thresholds import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..status import PointStatus
 from .branch_curve import BranchCurve
-from .branches import BRANCH_SETTINGS, BranchesOfRod, BranchRequest, BranchStatus, solve_branches
+from .branch_request import BranchRequest
+from .branches import BRANCH_SETTINGS, BranchesOfRod, BranchStatus, solve_branches
 from .special.point import EndReason, SpecialPoint
 
 

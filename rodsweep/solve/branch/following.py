@@ -13,11 +13,11 @@ from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
-from .branch_record import BranchRecord, branch_end_point
+from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
 from .mesh_choice import is_measurement_due
-from .range_end import cycle_at_range_end, range_end_condition
+from .range_end import cycle_within_range, range_end_condition
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
@@ -80,7 +80,7 @@ def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[],
     try:
         start = first()
     except Unsolvable as why:
-        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.no_cycle_found, str(why)), complete=False))
+        curve.end(BranchEnd(_end_without_cycle(curve, reason_of_failure(why), str(why)), complete=False))
         return curve
     outside = _index_of_passed_range_end(start, limits)
     if outside >= 0:
@@ -151,10 +151,8 @@ def _append_next_cycle(
         if _passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
-        outside = _index_of_passed_range_end(end, limits)
+        end, outside = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
         range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
-        if range_end is not None:
-            end = cycle_at_range_end(start, end, range_end, limits.accuracy)
         if range_end is not None and _step_hides_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
@@ -168,7 +166,7 @@ def _append_next_cycle(
         last = record.assign_errors(range_end) if range_end is not None or is_measurement_due(end) else end
     except Unsolvable as why:
         message = f"no further cycle of the branch is found: {why}"
-        return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(branch_end_point(start, reason_of_failure(why), message), complete=False)
     if range_end is None:
         return last
     at = getattr(last.orbit.form.rod, last.scale.parameter_name)

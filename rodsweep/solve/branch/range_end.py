@@ -1,10 +1,19 @@
 """The last cycle of a branch, at an end of the parameter range."""
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
-from .arc import BranchCycle, branch_cycle_with_calibrated_errors, tangent_at
+from ..orbit.orbit import Orbit
+from ..point import Unsolvable, WorkLimitReached
+from .arc import (
+    BranchCycle,
+    arc_length_between,
+    branch_cycle_with_calibrated_errors,
+    cycle_at_length,
+    tangent_at,
+)
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .special.segment import BranchSegment
@@ -25,7 +34,6 @@ def cycle_at_range_end(
 ) -> BranchCycle:
     """The cycle at an end of the parameter range, between the cycles `start` and `end`, to a relative
     accuracy; raises Unsolvable. range_end: condition that the cycle lies at this end of the range."""
-    scale = start.scale
     segment = BranchSegment(start, end)
 
     def beyond(length: float) -> float:
@@ -34,8 +42,70 @@ def cycle_at_range_end(
 
     ends = beyond(0.0), beyond(segment.length)
     length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END_SETTINGS.range_end_tolerance)
-    tolerance = newton_tolerance(accuracy)
-    predicted = segment.predicted_orbit(length)
-    found = range_end.solve_cycle(predicted, tolerance, start.workspace, max_matrix_distance(accuracy))
-    tangent = tangent_at(found.orbit, scale, start.unit_tangent, bordered_matrix_of(found))
+    return _solved_at_range_end(start, segment.predicted_orbit(length), length, range_end, accuracy)
+
+
+def cycle_within_range(
+    start: BranchCycle, end: BranchCycle, ends: tuple[float, float], accuracy: float
+) -> tuple[BranchCycle, int]:
+    """Returns (cycle, index): the next cycle after `start`, which is `end`, or the cycle where the branch
+    first leaves the parameter range before `end`; and the index in `ends` of the range end at this cycle, -1
+    if the cycle is within the range. Raises Unsolvable.
+
+    ends: smallest and largest coordinate of the range. Between two cycles within the range the branch may
+    leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
+    another part of the branch.
+    """
+    for index, beyond in ((0, end.parameter_coordinate < ends[0]), (1, end.parameter_coordinate > ends[1])):
+        if beyond:
+            range_end = range_end_condition(start, ends[index])
+            return cycle_at_range_end(start, end, range_end, accuracy), index
+    index, length = _range_end_passed_before_fold(start, end, ends)
+    if index >= 0:
+        range_end = range_end_condition(start, ends[index])
+        try:
+            near = cycle_at_length(start, length, accuracy).orbit
+            return _solved_at_range_end(start, near, length, range_end, accuracy), index
+        except WorkLimitReached:
+            raise
+        except Unsolvable:
+            pass  # the fold is within the range: the branch does not reach the range end
+    return end, -1
+
+
+def _range_end_passed_before_fold(
+    start: BranchCycle, end: BranchCycle, ends: tuple[float, float]
+) -> tuple[int, float]:
+    """Returns (index, length): index in `ends` of the range end that the branch is expected to pass between
+    `start` and `end` by the cubic through both cycles, and the arc length from `start` at which it passes;
+    (-1, 0.0) if there is none."""
+    if start.parameter_rate * end.parameter_rate >= 0:
+        return -1, 0.0
+    index = 1 if start.parameter_rate > 0 else 0
+    length = arc_length_between(start, end)
+    rate = float(start.scale.directional_derivative(end.orbit, end.tangent) @ start.unit_tangent)
+    slopes = length * start.tangent[-1], length * end.tangent[-1] / rate
+    rise = end.parameter_coordinate - start.parameter_coordinate
+    # The cubic minus the range end, by powers of the fraction of the arc length.
+    beyond = Polynomial(
+        (
+            start.parameter_coordinate - ends[index],
+            slopes[0],
+            3 * rise - 2 * slopes[0] - slopes[1],
+            slopes[0] + slopes[1] - 2 * rise,
+        )
+    )
+    passed = [float(root.real) for root in beyond.roots() if root.imag == 0 and 0 < root.real < 1]
+    return (index, length * min(passed)) if passed else (-1, 0.0)
+
+
+def _solved_at_range_end(
+    start: BranchCycle, predicted: Orbit, length: float, range_end: BorderCondition, accuracy: float
+) -> BranchCycle:
+    """The cycle near the orbit `predicted`, at about the arc length `length` from `start`, that fulfils the
+    condition `range_end`; raises Unsolvable."""
+    found = range_end.solve_cycle(
+        predicted, newton_tolerance(accuracy), start.workspace, max_matrix_distance(accuracy)
+    )
+    tangent = tangent_at(found.orbit, start.scale, start.unit_tangent, bordered_matrix_of(found))
     return branch_cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)

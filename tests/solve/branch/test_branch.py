@@ -15,8 +15,9 @@ from rodsweep.solve import seldom_used_kernels
 from rodsweep.solve.branch import branch_start, branches, following
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
-from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
+from rodsweep.solve.branch.branches import BranchStatus, solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem

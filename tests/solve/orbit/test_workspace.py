@@ -15,6 +15,7 @@ from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import WORKSPACE_SETTINGS, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
+from rodsweep.solve.point import WorkLimitReached
 
 INTERVALS, PERIOD = 4, 0.02
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7)
@@ -127,3 +128,23 @@ def test_a_released_workspace_keeps_what_most_rods_need():
             memory.factors  # noqa: B018 - raises
         again = MatrixMemory(workspace, 1, 1, 1).factors.eliminated_blocks.base
         assert np.shares_memory(again, buffer) == kept
+
+
+def test_work_is_limited_until_the_workspace_is_released():
+    workspace = NewtonWorkspace()
+    one = 4 * 3**2 * 10.0**3
+    workspace.limit_work(20 * one)
+    for _ in range(20):
+        MatrixMemory(workspace, 4, 3, 10)
+    with pytest.raises(WorkLimitReached, match="`work`"):
+        MatrixMemory(workspace, 4, 3, 10)
+    workspace.release()
+    MatrixMemory(workspace, 4, 3, 10)
+
+
+def test_no_matrix_takes_more_than_its_share_of_the_work():
+    workspace = NewtonWorkspace()
+    one = 4 * 3**2 * 10.0**3
+    workspace.limit_work(one / WORKSPACE_SETTINGS.max_matrix_share * 0.99)
+    with pytest.raises(WorkLimitReached):
+        MatrixMemory(workspace, 4, 3, 10)

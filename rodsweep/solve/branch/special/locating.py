@@ -7,7 +7,7 @@ with the factors of the last matrix (`augmented`).
 """
 
 from dataclasses import replace
-from math import ceil, log, nan
+from math import nan
 
 import numpy as np
 
@@ -16,14 +16,15 @@ from ...continuation.follower import zero_along_step
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, mesh_of
-from ...point import Unsolvable
+from ...orbit.orbit_mesh import mesh_of
+from ...point import Unsolvable, WorkLimitReached
 from ..arc import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
 from .augmented.functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
+from .located_meshes import first_mesh, next_mesh
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .segment import BranchSegment
 
@@ -80,21 +81,24 @@ def special_point_between(
     kind: SpecialKind, start: BranchCycle, end: BranchCycle, accuracy: float
 ) -> SpecialPoint:
     """The special point of a kind between two cycles, to the smaller of the relative accuracies `accuracy`
-    and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh suffices. A point that is
-    not located has a message, and the parameter difference of the two cycles as error."""
+    and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh suffices or the limit of
+    the work is reached. A point that is not located has a message, and the parameter difference of the two
+    cycles as error."""
     aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.set_mesh(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
-        mesh = end.calibration.cheapest_mesh_for_parameter(
-            SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * aim
-        )
-        mesh = replace(mesh, stage_count=max(mesh.stage_count, cheapest_stage_count(aim)))
+        mesh = first_mesh(end.calibration, aim)
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
             segment.set_mesh(mesh)
-            length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
+            try:
+                length, orbit, slope = _zero_by_secants(kind, segment, length, slope)
+            except WorkLimitReached:
+                if point is None or np.isnan(point.error):
+                    raise
+                break  # the point on coarser meshes, with its measured error
             last = point
             point = _special_point_at(kind, orbit, start.scale.parameter_name)
             if last is not None:
@@ -102,7 +106,7 @@ def special_point_between(
                 if point.error <= aim * abs(point.at):
                     break
             # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
-            mesh = _finer_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
+            mesh = next_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
             if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
@@ -110,23 +114,6 @@ def special_point_between(
     except Unsolvable as why:
         return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {why}")
     return point
-
-
-def _finer_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
-    """The next finer mesh. excess: error on `mesh` divided by the accuracy; 1 gives the smallest
-    refinement."""
-    # The error is assumed proportional to intervals^-p, p: `time_order_per_stage` times the number of stages.
-    growth = excess ** (1 / (SPECIAL_POINT_SETTINGS.time_order_per_stage * mesh.stage_count))
-    growth = min(
-        max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
-    )
-    more = min(
-        max(
-            ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_order_increase
-        ),
-        SPECIAL_POINT_SETTINGS.max_order_increase,
-    )
-    return replace(mesh, order=mesh.order + more, interval_count=ceil(growth * mesh.interval_count))
 
 
 def _with_mesh_errors(

@@ -100,7 +100,7 @@ class SpecialKind(IntEnum):
 class EndReason(IntEnum):
     """Reason for the end of a branch at a special point of kind `end`. range_end (end of the parameter range)
     and crushed (the force nearly crushes the rod) are true ends; no_cycle_found and list_full (maximum number
-    of cycles) are failures."""
+    of cycles, or limit of the work on the rod) are failures."""
 
     range_end = 1
     crushed = 2

@@ -3,7 +3,7 @@
 from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..arc import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import bordered_matrix_of
@@ -32,10 +32,9 @@ class BranchSegment:
         return self.end.predicted_orbit(-self._length_along_end_tangent * (1 - length / self.length))
 
     def set_mesh(self, mesh: OrbitMesh) -> None:
-        """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted by the
-        cubic."""
+        """Sets the mesh on which `cycle_at` solves cycles. The first cycle on this mesh is predicted from the
+        last cycle on the mesh before; on the first mesh, by the cubic."""
         self.mesh = mesh
-        self._last_solved = None
 
     def cycle_at(self, length: float) -> ConvergedOrbit:
         """The cycle at the arc length `length` from `start`, with the matrix of a nearby orbit; raises
@@ -45,7 +44,8 @@ class BranchSegment:
         else:
             last, orbit, tangent = self._last_solved
             # From the last cycle along its tangent: a secant method changes the length only a little.
-            start = moved_orbit(orbit, self.start.scale.parameter_name, (length - last) * tangent)
+            moved = moved_orbit(orbit, self.start.scale.parameter_name, (length - last) * tangent)
+            start = moved if mesh_of(moved) == self.mesh else self.mesh.interpolated_orbit(moved)
         condition = self.start.arc_length_condition(length)
         workspace = self.start.workspace
         found = condition.solve_cycle(

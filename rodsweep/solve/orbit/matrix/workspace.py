@@ -6,12 +6,13 @@ are needed.
 """
 
 from dataclasses import dataclass
-from math import prod
+from math import inf, prod
 from typing import NamedTuple
 
 import numpy as np
 
 from ....arrays import Array
+from ...point import WorkLimitReached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +22,10 @@ class WorkspaceSettings:
     max_kept_buffer_size: int = 2**23
     """Largest size of a buffer that is not freed between rods, in double-precision numbers: 64 MB, enough for
     most rods."""
+    max_matrix_share: float = 0.125
+    """Largest work of a single matrix, divided by the limit of the work on a rod. Several matrices are needed
+    for one cycle or special point; a matrix of a larger share would use up the limit, and the memory of the
+    machine, before a result is found."""
 
 
 WORKSPACE_SETTINGS = WorkspaceSettings()
@@ -42,11 +47,28 @@ class NewtonFactors(NamedTuple):
 
 
 class NewtonWorkspace:
-    """Buffer for the factors of one Newton matrix at a time; it grows to the largest requested size."""
+    """Buffer for the factors of one Newton matrix at a time; it grows to the largest requested size.
+
+    The workspace also counts the work of the eliminations, K s^2 n^3 for K intervals of s stages with n
+    unknowns, which is proportional to their computing time on every machine."""
 
     def __init__(self) -> None:
         self._buffer = np.empty(0)
         self._reservation = 0
+        self._max_work = inf
+        self._work = 0.0
+
+    def limit_work(self, max_work: float) -> None:
+        """Starts to count the work anew. max_work: limit of the work until `release`, in multiplications."""
+        self._max_work = max_work
+        self._work = 0.0
+
+    def add_work(self, work: float) -> None:
+        """Counts the work of the next matrix; raises WorkLimitReached if the matrix exceeds the limit.
+        work: number of multiplications."""
+        if work > WORKSPACE_SETTINGS.max_matrix_share * self._max_work or self._work + work > self._max_work:
+            raise WorkLimitReached("the limit of the work (option `work`) is reached")
+        self._work += work
 
     def reserve(self, size: int) -> int:
         """Starts a new reservation of the buffer, ends earlier reservations, and returns the number of the
@@ -65,9 +87,10 @@ class NewtonWorkspace:
         return self._buffer
 
     def release(self) -> None:
-        """Ends the last reservation, and frees the buffer if it is larger than
+        """Ends the last reservation and the limit of the work, and frees the buffer if it is larger than
         WORKSPACE_SETTINGS.max_kept_buffer_size."""
         self._reservation += 1
+        self.limit_work(inf)
         if len(self._buffer) > WORKSPACE_SETTINGS.max_kept_buffer_size:
             self._buffer = np.empty(0)
 
@@ -79,6 +102,7 @@ class MatrixMemory:
     def __init__(self, workspace: NewtonWorkspace, intervals: int, stages: int, unknowns: int) -> None:
         self.workspace = workspace
         self._shape = (intervals, stages, stages, unknowns, unknowns)
+        workspace.add_work(float(prod(self._shape)) * unknowns)
         self._reservation = workspace.reserve(prod(self._shape))
         self.propagator = np.zeros((unknowns, unknowns))
         """P, (n, n), which stays valid when the workspace is used again."""

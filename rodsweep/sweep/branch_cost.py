@@ -1,0 +1,69 @@
+"""Estimated time of branches of limit cycles before the start of a sweep, from sampled points."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from ..model.material.build import Build
+from ..model.material.laws import LINEAR
+from .cost_estimate import Estimate, sampled_points
+from .points.points import Points
+
+COSTLIER_IF_LARGER = frozenset({"k1", "F"})
+"""Parameters for which large values make branches of cycles expensive. For all other parameters, small values
+are expensive."""
+BRANCH_SECONDS_PER_FORCE = 0.004
+"""All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 +
+F/k2)^BRANCH_BENDING_EXPONENT, in seconds, where F is the largest force of the range, or k1. Fourteen random
+rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to 21 s, all within a
+factor of three of the formula and most within two; some near F = k1 take four times as long. Branches of six
+cones, over F and over the taper, took 0.6 to 2 times as long as foreseen (0.2 to 11 s, tapers from 0.5 to
+1.5)."""
+BRANCH_ACCURACY_EXPONENT = -0.17
+"""Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
+BRANCH_BENDING_EXPONENT = 1.5
+"""Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS_PER_FORCE."""
+MEASURED_TAPERS = (0.5, 1.5)
+"""Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
+0.19 takes some hundred times as long as the formula says, swelling rubber thirty times."""
+MAX_MEASURED_LOAD = 0.9
+"""Largest force, divided by the force that crushes the rod, for which the formula of BRANCH_SECONDS_PER_FORCE
+holds."""
+
+
+def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
+    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
+
+    reach: smallest and largest value of the parameter. accuracy: relative accuracy of the cycles. For rods
+    without measured times the estimate has a `doubt`.
+    """
+    indices = sampled_points(points)
+    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
+    taper = np.asarray(values.get("taper", 1.0))
+    weakest = np.minimum(taper, 1.0) ** 2
+    F = np.clip(values["F"], 0.0, values["k1"] * weakest)  # a rod under tension has no cycles
+    per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
+    # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
+    each = per_force * F / taper**2 * (1 + F / (values["k2"] * weakest)) ** BRANCH_BENDING_EXPONENT
+    if not indices.size:
+        return Estimate(0.0)
+    builds = [points.build_of(int(index)) for index in indices]
+    return Estimate(float(np.mean(each)) * points.count, doubt=_doubt(builds, values | {"F": F}, taper))
+
+
+def _doubt(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
+    """Kind of rods among the sampled rods whose branches may take many times as long as estimated; empty if
+    there are none.
+
+    builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,).
+    """
+    narrowest, widest = MEASURED_TAPERS
+    if any(build.constitutive_law is not LINEAR for build in builds):
+        return "branches of rubber"
+    if any(build.profile is not None for build in builds):
+        return "branches of arms with a profile"
+    if bool(((taper < narrowest) | (taper > widest)).any()):
+        return f"branches of cones with a taper outside {narrowest:g} to {widest:g}"
+    load = np.asarray(values["F"] / (values["k1"] * np.minimum(taper, 1.0) ** 2))
+    return "branches near the crushing force" if bool((load > MAX_MEASURED_LOAD).any()) else ""

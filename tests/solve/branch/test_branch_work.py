@@ -1,0 +1,118 @@
+"""Work on branches: its limit ends a branch and says so, and special points are located on fitting meshes."""
+
+import numpy as np
+import pytest
+from surveyed import survey_only
+
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
+from rodsweep.solve.branch.branches import BranchStatus, solve_branches
+from rodsweep.solve.branch.errors import BranchCalibration
+from rodsweep.solve.branch.special import locating
+from rodsweep.solve.branch.special.located_meshes import first_mesh
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
+
+ROD = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-3)
+TORUS = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
+"""Its branch passes a torus point at F = 205.36."""
+
+
+def branches_of(rod, stop, work=None):
+    return solve_branches(rod, BranchRequest("F", 0.0, stop, 1e-5, False, 500, 50, work))
+
+
+def test_branch_ends_where_its_work_is_used_up():
+    whole = branches_of(ROD, 60.0)
+    part = branches_of(ROD, 60.0, work=0.2)
+    assert (whole.status, part.status) == (BranchStatus.ok, BranchStatus.stopped)
+    (curve,) = part.curves
+    assert curve.special_points[-1].reason == EndReason.list_full
+    assert "`work`" in part.message
+    known = [point.at for point in whole.curves[0].points]
+    assert 1 <= len(curve.points) < len(known)
+    assert [point.at for point in curve.points] == pytest.approx(known[: len(curve.points)], rel=1e-5)
+
+
+def test_rod_after_a_limited_rod_has_its_own_work():
+    workspace = NewtonWorkspace()
+    request = BranchRequest("F", 0.0, 60.0, 1e-5, False, 500, 50, 0.2)
+    first, second = (solve_branches(ROD, request, workspace) for _ in range(2))
+    assert len(first.curves[0].points) == len(second.curves[0].points) > 0
+
+
+def test_branch_without_work_for_its_first_cycle_says_so():
+    (curve,) = branches_of(ROD, 60.0, work=1e-6).curves
+    assert not curve.points
+    assert curve.special_points[-1].reason == EndReason.list_full
+
+
+def test_special_point_has_its_error_on_the_meshes_that_the_work_allows(monkeypatch):
+    solved = []
+    of_mesh = locating._zero_by_secants
+
+    def limited(kind, segment, guess, slope):
+        if len(solved) == 2:
+            segment.start.workspace.limit_work(1.0)
+        solved.append(segment.mesh)
+        try:
+            return of_mesh(kind, segment, guess, slope)
+        finally:
+            segment.start.workspace.limit_work(np.inf)
+
+    exact = torus_of(branches_of(TORUS, 207.0))
+    monkeypatch.setattr(locating, "_zero_by_secants", limited)
+    rough = torus_of(branches_of(TORUS, 207.0))
+    assert len(solved) == 3
+    assert not rough.message
+    assert exact.error < 1e-9 * exact.at < rough.error < 1e-4 * exact.at
+    assert abs(rough.at - exact.at) <= rough.error + exact.error
+
+
+def torus_of(found):
+    (torus,) = (one for one in found.curves[0].special_points if one.kind == SpecialKind.torus)
+    return torus
+
+
+def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_point():
+    """The errors of a cone of taper 0.19: with four stages 114 intervals are needed, with five about 50."""
+    errors = np.full(ERROR_COUNT, 1e-8)
+    known = Calibration(
+        OrbitMesh((0.0, 0.5, 1.0), 20, 38, 4),
+        errors,
+        errors,
+        np.full(ERROR_COUNT, 1.0),
+        np.full(ERROR_COUNT, 6.0),
+        np.array([1e-4, 1e-4, 1.0]),
+        0.0,
+    )
+    branch = BranchCalibration(known, np.full(2, 1e-8), 1.0)
+    mesh = first_mesh(branch, 1e-9)
+    assert mesh.stages == 5
+    assert mesh.intervals < 2 * known.mesh.intervals
+    assert branch.cheapest_mesh_for_parameter(2e-10).intervals > 2 * known.mesh.intervals
+
+
+def test_unit_of_work_is_the_documented_number_of_multiplications():
+    assert BranchRequest("F", 0.0, 1.0, 1e-5, False, 1, 1, 2.0).max_work == 2 * WORK_UNIT == 2e9
+
+
+@survey_only
+def test_torus_point_of_a_narrow_cone_needs_no_mesh_of_gigabytes(monkeypatch):
+    meshes = []
+    of_mesh = locating._zero_by_secants
+
+    def recorded(kind, segment, guess, slope):
+        meshes.append(segment.mesh)
+        return of_mesh(kind, segment, guess, slope)
+
+    monkeypatch.setattr(locating, "_zero_by_secants", recorded)
+    cone = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.19)
+    found = solve_branches(cone, BranchRequest("F", 0.0, 15.0, 1e-7, False, 500, 50))
+    torus = torus_of(found)
+    assert found.status == BranchStatus.ok
+    assert torus.at == pytest.approx(14.5390404204, abs=torus.error + 1e-9)
+    assert torus.error < 1e-9 * torus.at
+    assert max(mesh.intervals for mesh in meshes) < 80, "114 in the first mesh, 137 in the second before"

@@ -1,0 +1,46 @@
+"""Estimates of branches say for which rods no times were measured."""
+
+import numpy as np
+import pytest
+
+from rodsweep.cli.checking import print_job_check
+from rodsweep.model.material.build import STANDARD, Build
+from rodsweep.sweep.branch_cost import estimate_branches
+from rodsweep.sweep.points.points import Points
+from rodsweep.tasks.running.job import make_job
+
+
+def points_of(build=None, **columns):
+    values = {"k1": 1e4, "k2": 1e4, "gamma3": 1e-3, "taper": 1.0} | columns
+    columns = {name: np.atleast_1d(value) for name, value in values.items()}
+    length = max(map(len, columns.values()))
+    full = {name: np.resize(value, length) for name, value in columns.items()}
+    return Points(tuple(full), tuple(full.values()), is_grid=False, build=build or STANDARD)
+
+
+@pytest.mark.parametrize(
+    ("columns", "build", "doubt"),
+    [
+        ({}, None, ""),
+        ({"taper": 0.5}, None, ""),
+        ({"taper": [1.0, 0.19]}, None, "branches of cones with a taper outside 0.5 to 1.5"),
+        ({"taper": 2.0}, None, "branches of cones with a taper outside 0.5 to 1.5"),
+        ({"k1": [1e4, 60.0]}, None, "branches near the crushing force"),
+        ({}, Build("neo_hookean", "swelling"), "branches of rubber"),
+        ({}, Build("neo_hookean", "fixed"), "branches of rubber"),
+    ],
+)
+def test_rods_without_measured_times_are_in_doubt(columns, build, doubt):
+    assert estimate_branches(points_of(build, **columns), "F", (0.0, 60.0), 1e-7).doubt == doubt
+
+
+@pytest.mark.parametrize(("material", "known"), [("", True), ("material: {law: neo_hookean}\n", False)])
+def test_check_of_a_diagram_with_cycles_says_when_its_time_is_not_known(tmp_path, capsys, material, known):
+    path = tmp_path / "d.yaml"
+    path.write_text(
+        "task: phase_diagram\nparameters: {F: [0, 60], k1: [330, 600], k2: 1.0e4, gamma3: 1.0e-4}\n"
+        f"{material}phase_diagram: {{cycles: true}}\n"
+    )
+    print_job_check(make_job(path, ()))
+    text = " ".join(capsys.readouterr().out.split())
+    assert ("time and memory are not known: branches of rubber" in text) is not known
