@@ -49,7 +49,7 @@ def material_derivative_at_nodes(rod: Rod, name: str, grid: Mesh) -> Material:
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
-def profile_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
+def relative_bending_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
     `build`.
 

@@ -107,7 +107,7 @@ LARGEST_TAPER = 100.0
 stiffness."""
 
 
-def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
+def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
     """The table row of a stiffness that may be inf.
 
     name, symbol, meaning: fields of `Parameter`. rigid: adjective for a rod with infinite stiffness.
@@ -138,8 +138,8 @@ PARAMETERS = {
             remark=" at the tip, along -e1",
             allowed=Range(isfinite, "a finite number below k1 (negative values pull)"),
         ),
-        stiffness("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
-        stiffness("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
+        stiffness_parameter("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
+        stiffness_parameter("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
         Parameter(
             name="gamma3",
             symbol=r"\tilde\gamma_3",
@@ -180,7 +180,7 @@ LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[na
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
 """Names of the parameters that a result file contains only if the config contains them."""
-SCALED_COEFFICIENTS = tuple(
+SCALING_PAIRS = tuple(
     (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
 )
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
@@ -193,7 +193,7 @@ CRUSHING_PARAMETERS = ("F", "k1")
 """Names of the force and of the stretch stiffness: a rod of linear material is crushed if F >= k1."""
 
 
-def names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
+def parameter_names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
     """All names in `names` except `varied`. names: parameter names, by default the parameters of the
     transverse linear problem.
     """

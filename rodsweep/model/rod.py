@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from .balance import Material, first_component
-from .material.build import STANDARD, Build, LocalCoefficients, Sections
+from .balance import Material, vector_with_first_component
+from .material.build import UNIFORM_LINEAR_BUILD, Build, LocalCoefficients, Sections
 from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
-from .scaling import compression_factor, local_coefficients_at_base
+from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 
 
 class Crushed(ValueError):
@@ -37,10 +37,10 @@ class Coefficients(NamedTuple):
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
     """Coefficients for parameter values by name, floats or arrays (n,) for n rods. Ranges are not checked."""
-    own = local_coefficients_at_base(values)
+    own = stiffnesses_and_drags_at_base(values)
     F = own["F"]
     k1 = own["k1"]
-    return Coefficients(F, compression_factor(F, k1), 1 / own["k2"], own["gamma3"])
+    return Coefficients(F, stretch_of_straight_rod(F, k1), 1 / own["k2"], own["gamma3"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class Rod:
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral_value
     taper: float = PARAMETERS["taper"].neutral_value
-    build: Build = field(default=STANDARD, repr=False)
+    build: Build = field(default=UNIFORM_LINEAR_BUILD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
     _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)
@@ -91,7 +91,7 @@ class Rod:
 
     def local(self, u: Array) -> LocalCoefficients:
         """Coefficients of the transverse operator at points u, (points,), away from breaks of the profile."""
-        return self.build.local(self.F, local_coefficients_at_base(self.values), u)
+        return self.build.local(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
     @staticmethod
     def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
@@ -100,7 +100,7 @@ class Rod:
             return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
-        local = rods[0].build.local(values["F"], local_coefficients_at_base(values), u)
+        local = rods[0].build.local(values["F"], stiffnesses_and_drags_at_base(values), u)
         whole = (len(rods), *u.shape)
         return LocalCoefficients(*(x if x.shape == whole else np.broadcast_to(x, whole) for x in local))
 
@@ -166,7 +166,7 @@ class Rod:
     @property
     def stretch_stiffness(self) -> float:
         """Stretch stiffness at the base, in k3/L^2; inf for an inextensible rod."""
-        return float(local_coefficients_at_base(self.values)["k1"])
+        return float(stiffnesses_and_drags_at_base(self.values)["k1"])
 
     @property
     def c1(self) -> float:
@@ -176,7 +176,7 @@ class Rod:
     @property
     def c2(self) -> float:
         """Shear compliance 1/k2 at the base, in L^2/k3; 0 for an unshearable rod."""
-        return 1 / float(local_coefficients_at_base(self.values)["k2"])
+        return 1 / float(stiffnesses_and_drags_at_base(self.values)["k2"])
 
     @property
     def nu(self) -> float:
@@ -191,12 +191,12 @@ class Rod:
     @property
     def rotational_drag(self) -> float:
         """Rotational drag at the base, in gamma2 L^2."""
-        return float(local_coefficients_at_base(self.values)["gamma3"])
+        return float(stiffnesses_and_drags_at_base(self.values)["gamma3"])
 
     @property
     def axial_drag(self) -> float:
         """Axial drag at the base, in gamma2."""
-        return float(local_coefficients_at_base(self.values)["gamma1"])
+        return float(stiffnesses_and_drags_at_base(self.values)["gamma1"])
 
     def direction(self, name: str) -> Coefficients:
         """Derivative of the affine `coefficients` with respect to the coordinate of the parameter `name`."""
@@ -212,11 +212,11 @@ class Rod:
         """Coefficients of the nonlinear balance of the uniform rod, for motion in the plane."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
-        return Material(compliance, drag, self.F, first_component(self.nu, 3))
+        return Material(compliance, drag, self.F, vector_with_first_component(self.nu, 3))
 
     def sections(self, u: Array) -> Sections:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
-        return self.build.sections(self.F, local_coefficients_at_base(self.values), u)
+        return self.build.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
     def section_changes(self, name: str, u: Array) -> Sections:
         """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
@@ -229,7 +229,7 @@ class Rod:
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
         drag = np.array([axial, normal, normal, twist_drag, rotational, rotational])
-        return Material(compliance, drag, self.F, first_component(self.nu, 6))
+        return Material(compliance, drag, self.F, vector_with_first_component(self.nu, 6))
 
     def material_change(self, name: str) -> Material:
         """Derivative of `material` with respect to the coordinate of the parameter `name`."""
@@ -237,7 +237,7 @@ class Rod:
         F, nu, c2, gamma3 = self.direction(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
-        return Material(compliance, drag, F, first_component(nu, 3))
+        return Material(compliance, drag, F, vector_with_first_component(nu, 3))
 
     def _derivatives_by_coordinate(self, name: str) -> dict[str, float]:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
@@ -245,6 +245,6 @@ class Rod:
         Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
         compliances and drags are products of coordinates: a derivative is the product of all other factors.
         """
-        others = local_coefficients_at_base({**self.values, name: 1.0})
+        others = stiffnesses_and_drags_at_base({**self.values, name: 1.0})
         changing = PARAMETERS[name].scaled_names or (name,)
         return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

@@ -24,8 +24,8 @@ from .backend.solver_pools import destroy_pooled_solvers
 P = ParamSpec("P")
 R = TypeVar("R")
 
-_one = RLock()
-_signals = tuple(map(int, signal.valid_signals()))
+_solve_lock = RLock()
+_signal_numbers = tuple(map(int, signal.valid_signals()))
 """Numbers of all signals, listed once because listing takes longer than replacing the handlers."""
 
 
@@ -34,7 +34,7 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with _one:
+        with _solve_lock:
             return function(*values, **named)
 
     return call
@@ -83,7 +83,7 @@ class DeferredSignals:
         if current_thread() is not main_thread():
             return self
         try:
-            for number in _signals:
+            for number in _signal_numbers:
                 handler = getsignal(number)
                 if callable(handler):
                     self._handlers[number] = handler

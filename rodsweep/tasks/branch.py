@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
     from ..solve.branch.special.point import SpecialPoint
-    from ..solve.changes.unstable_modes import Crossing
+    from ..solve.changes.unstable_modes import Threshold
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ SPECIAL_POINT_FIELDS = {
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
-def _special_point_values(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
+def _special_point_values(point: "SpecialPoint", start: int, hopf: "Threshold | None") -> dict[str, Any]:
     """Variables of the file for one special point.
 
     start: index, among all cycles of the rod, of the first cycle of the point's branch. hopf: crossing of the

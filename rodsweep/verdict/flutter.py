@@ -8,7 +8,7 @@ from math import inf, pi
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
-from ..solve.changes.unstable_modes import ChangeKind, Crossing
+from ..solve.changes.unstable_modes import ChangeKind, Threshold
 from ..solve.exclusive import exclusive_solve
 from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
 
@@ -57,7 +57,7 @@ class FlutterForces:
             return ""
         return found.message or "the list of thresholds is not proved complete"
 
-    def first(self, kind: ChangeKind) -> Crossing | None:
+    def first(self, kind: ChangeKind) -> Threshold | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 

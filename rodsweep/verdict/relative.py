@@ -138,11 +138,11 @@ def _first_of_varied(path: Path, end: float) -> float:
     `end` at which a pair of modes becomes unstable; inf if no pair does. Raises FlutterSearchFailed if the
     search along F fails or a smaller F is not excluded.
     """
-    from ..solve.changes.along_path import pair_crossings
+    from ..solve.changes.along_path import find_axis_crossings
     from ..solve.point import FAILURES, cause_of
 
     try:
-        found = pair_crossings(path, 0.0, end)
+        found = find_axis_crossings(path, 0.0, end)
     except FAILURES as error:
         raise FlutterSearchFailed(
             f"the search for the flutter threshold to which a relative load refers fails: {cause_of(error)}"

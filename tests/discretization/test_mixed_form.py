@@ -12,7 +12,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
-from rodsweep.model.longitudinal import longitudinal_rates
+from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 
 INF = np.inf
@@ -92,7 +92,7 @@ def test_reference_holds_filaments_and_rods_that_shear_without_rotational_drag(r
 
 def test_longitudinal_modes_are_in_the_spectrum():
     found = finite_eigenvalues(mixed_form(SOFT.changed(gamma1=GAMMA1), 1, 24))
-    for rate in longitudinal_rates(SOFT.k1, GAMMA1, 3):
+    for rate in longitudinal_eigenvalues(SOFT.k1, GAMMA1, 3):
         assert np.abs(found - rate).min() <= 1e-11 * abs(rate)
 
 

@@ -363,8 +363,8 @@ def find_provenance(solving: bool) -> None:
     if solving:
         from rodsweep.solve.backend import blas_kernel
 
-        blas_kernel.blas = cache(blas_kernel.blas)
-        blas_kernel.blas()
+        blas_kernel.blas_description = cache(blas_kernel.blas_description)
+        blas_kernel.blas_description()
 
 
 def draw() -> None:

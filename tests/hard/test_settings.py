@@ -36,7 +36,7 @@ from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
-from rodsweep.model.compiled.digest import digest, kernel_of
+from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.settings import CompiledSettings
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -45,7 +45,7 @@ from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
@@ -57,8 +57,8 @@ from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
-from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, integrator
+from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
+from rodsweep.solve.motion.integrator import RunEnding, destroy_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
@@ -140,7 +140,7 @@ def curve_of_folds(accuracy: float) -> Answer:
 
 def coefficients(accuracy: float) -> Answer:
     """Normal form of a Hopf point of a rod that is soft in shear, at a high force."""
-    crossing = pair_crossings(Path(SOFT_IN_SHEAR, "F"), 0.0, 25.0).crossings[-1]
+    crossing = find_axis_crossings(Path(SOFT_IN_SHEAR, "F"), 0.0, 25.0).crossings[-1]
     try:
         found = hopf_coefficients(SOFT_IN_SHEAR.changed(F=crossing.at), crossing, accuracy)
     except FAILURES:
@@ -372,7 +372,7 @@ def longitudinal(accuracy: float) -> Answer:
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
     beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    z = equilibrium_at_tip(beam, 0.5, 0.4)
+    z = bent_state_with_tip_at(beam, 0.5, 0.4)
     x, y, _ = beam.tip_coordinates(z)
     if np.hypot(x - 0.5, y - 0.4) > 1e-6:
         return None
@@ -391,7 +391,7 @@ def motion(accuracy: float) -> Answer:
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
     start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
-    forget_integrators()
+    destroy_integrators()
     run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
     if run.ending is not RunEnding.reached:
         return None
@@ -720,9 +720,9 @@ def digests() -> dict[Any, str]:
     for title, module in list(sys.modules.items()):
         for value in list(vars(module).values()) if title.startswith("rodsweep.") else ():
             if isinstance(value, Dispatcher):
-                found[value] = digest(kernel_of(value.py_func, value.targetoptions), parts)
+                found[value] = kernel_digest(kernel_of(value.py_func, value.targetoptions), parts)
             elif isinstance(value, CFunc):
-                found[value] = digest(kernel_of(value.__wrapped__, {"signature": "C"}), parts)
+                found[value] = kernel_digest(kernel_of(value.__wrapped__, {"signature": "C"}), parts)
     return found
 
 

@@ -12,7 +12,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
 from rodsweep.discretization.stress.balance import write_balance, write_balance_derivative
 from rodsweep.model.algebra import SE2, SE3
-from rodsweep.model.compiled.digest import digest, kernel_of
+from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
 from rodsweep.model.rod import Rod
 
@@ -85,5 +85,5 @@ def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text
         spec = importlib.util.spec_from_file_location("of_a_test", path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        digests.append(digest(kernel_of(module.f.unrolled_for(SE2), {}), {}))
+        digests.append(kernel_digest(kernel_of(module.f.unrolled_for(SE2), {}), {}))
     assert (digests[0] == digests[1]) == same

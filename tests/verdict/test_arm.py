@@ -9,13 +9,19 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
-from rodsweep.model.arm.drag import cox, gray_hancock, lighthill, max_rotational_drag, min_rotational_drag
+from rodsweep.model.arm.drag import (
+    cox_drag,
+    gray_hancock_drag,
+    lighthill_drag,
+    max_rotational_drag,
+    min_rotational_drag,
+)
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
-from rodsweep.model.units import share_of_flutter
-from rodsweep.solve.changes.along_path import Transitions
+from rodsweep.model.units import load_over_flutter
+from rodsweep.solve.changes.along_path import ThresholdSearchResult
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, empty_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind, Crossing
+from rodsweep.solve.changes.unstable_modes import ChangeKind, Threshold
 from rodsweep.verdict import flutter
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
 from rodsweep.verdict.planes import PlaneOfMotion, Planes
@@ -57,9 +63,11 @@ def test_silicone_arm_by_hand():
 
 def test_drag_by_hand():
     """L/a = 20: ln 40 = 3.688879, ln 160 = 5.075174, ln 3.6 = 1.280934; per viscosity."""
-    assert cox(1, 20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
-    assert gray_hancock(1, 20) == pytest.approx((2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6)
-    assert lighthill(1, 20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
+    assert cox_drag(1, 20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
+    assert gray_hancock_drag(1, 20) == pytest.approx(
+        (2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6
+    )
+    assert lighthill_drag(1, 20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
     assert (min_rotational_drag(1, 1), max_rotational_drag(1, 1)) == pytest.approx((math.pi, 4 * math.pi))
 
 
@@ -142,7 +150,7 @@ def test_only_time_scales_with_viscosity():
     ],
 )
 def test_a_load_relative_to_flutter_is_read_as_people_write_it(given, share):
-    assert share_of_flutter(given) == (None if share is None else pytest.approx(share, rel=1e-15))
+    assert load_over_flutter(given) == (None if share is None else pytest.approx(share, rel=1e-15))
 
 
 @pytest.mark.parametrize(
@@ -284,8 +292,8 @@ def test_numbers_need_no_solver_and_help_no_units():
 
 def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
-    crossings = tuple(Crossing(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
-    transitions = Transitions(crossings=crossings, proved=True)
+    crossings = tuple(Threshold(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
+    transitions = ThresholdSearchResult(crossings=crossings, proved=True)
     return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
 
 
@@ -337,7 +345,7 @@ def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certa
     inaccurate = tuple(replace(c, error=0.1 if c.at == 20.0 else 0.0) for c in known.thresholds.crossings)
     thresholds = replace(
         known.thresholds,
-        transitions=Transitions(crossings=inaccurate, proved=True),
+        transitions=ThresholdSearchResult(crossings=inaccurate, proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))

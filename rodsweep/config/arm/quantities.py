@@ -6,9 +6,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ...errors import InputError
-from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
-from ...model.arm.quantities import RELATIVE_LOADS, UNITS
-from ...model.units import in_si, share_of_flutter, split_quantity, value_in_unit
+from ...model.arm.drag import DRAG_NAMES, DRAG_RANGE_NAME
+from ...model.arm.quantities import LOAD_BY_RELATIVE_NAME, UNITS_AND_EXAMPLES
+from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_float, short_repr
 
 RANGE_ENDS = ("start", "stop")
@@ -44,7 +44,7 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
     """
     ends = [end for end in ("start", "stop") if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
-    unit = UNITS[name][0]
+    unit = UNITS_AND_EXAMPLES[name][0]
     return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""
 
 
@@ -55,7 +55,7 @@ def _si_number(name: str, value: Any) -> float:
     if not isinstance(value, str):
         return as_float(value)
     try:
-        return in_si(f"parameters.arm.{name}", value, *UNITS[name])
+        return quantity_in_si(f"parameters.arm.{name}", value, *UNITS_AND_EXAMPLES[name])
     except InputError as error:
         raise ValueError(str(error)) from None
 
@@ -68,7 +68,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
     found = dict(given)
-    for name, load in RELATIVE_LOADS.items():
+    for name, load in LOAD_BY_RELATIVE_NAME.items():
         shares, is_relative = _loads_in_flutter_loads(given.get(load))
         if not is_relative:
             continue
@@ -91,7 +91,7 @@ def _loads_in_flutter_loads(value: Any) -> tuple[list[float | None], bool]:
     """Returns (shares, is_relative). shares: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
-    shares = [None if one is None else share_of_flutter(one) for one in _written_values(value)]
+    shares = [None if one is None else load_over_flutter(one) for one in _written_values(value)]
     return shares, any(share is not None for share in shares)
 
 
@@ -100,19 +100,19 @@ def as_drags(value: Any) -> Axis:
     if isinstance(value, Axis):
         return value
     names = value if isinstance(value, list | tuple) else [value]
-    if value == RANGE_OF_DRAG:
-        names = list(DRAGS)
-    if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
+    if value == DRAG_RANGE_NAME:
+        names = list(DRAG_NAMES)
+    if not names or not all(isinstance(name, str) and name in DRAG_NAMES for name in names):
         raise ValueError(
-            f"{short_repr(value)} is not a drag; write {RANGE_OF_DRAG}, one of the names {', '.join(DRAGS)}, "
-            "or a list of these names"
+            f"{short_repr(value)} is not a drag; write {DRAG_RANGE_NAME}, one of the names "
+            f"{', '.join(DRAG_NAMES)}, or a list of these names"
         )
-    return Axis(values=tuple(float(index) for index in sorted({DRAGS.index(name) for name in names})))
+    return Axis(values=tuple(float(index) for index in sorted({DRAG_NAMES.index(name) for name in names})))
 
 
 def drag_names(values: list[float]) -> list[str]:
     """Names of drag estimates from `values`, their indices in DRAGS."""
-    return [DRAGS[int(index)] for index in values]
+    return [DRAG_NAMES[int(index)] for index in values]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
@@ -120,7 +120,7 @@ def typed_unit(name: str, axis: Axis) -> str:
     was typed.
     """
     units = [split_quantity(value)[1] for value in _written_values(axis.written) if isinstance(value, str)]
-    return next(filter(None, units), UNITS[name][0])
+    return next(filter(None, units), UNITS_AND_EXAMPLES[name][0])
 
 
 def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
@@ -134,10 +134,12 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":
             names = drag_names(axis.array().tolist())
-            words.append(f"drag {RANGE_OF_DRAG if len(names) == len(DRAGS) else ' and '.join(names)}")
+            words.append(f"drag {DRAG_RANGE_NAME if len(names) == len(DRAG_NAMES) else ' and '.join(names)}")
             continue
-        unit = typed_unit(name, axis) if name in UNITS else ""
-        texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
+        unit = typed_unit(name, axis) if name in UNITS_AND_EXAMPLES else ""
+        texts = [
+            f"{value_in_unit(end, unit, UNITS_AND_EXAMPLES[name][0]) if unit else end:.6g}" for end in ends
+        ]
         words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
         if unit and not all(isinstance(one, str) for one in _written_values(axis.written)):
             bare.append(name)
@@ -162,7 +164,7 @@ def _quantity_schema() -> dict[str, Any]:
     }
 
 
-DRAG_NAME_SCHEMA = {"enum": list(DRAGS)}
+DRAG_NAME_SCHEMA = {"enum": list(DRAG_NAMES)}
 """JSON schema of the name of a drag estimate."""
 Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_quantity_schema())]
 Drags = Annotated[
@@ -171,7 +173,7 @@ Drags = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"enum": [RANGE_OF_DRAG, *DRAGS]},
+                {"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]},
                 {"type": "array", "items": DRAG_NAME_SCHEMA, "minItems": 1},
             ]
         }

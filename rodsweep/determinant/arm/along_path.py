@@ -20,8 +20,8 @@ from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_of_family_arm, eigenvalue_of_family_arm
 from .newton import refine_eigenvalue_and_error
 
-CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
-FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
+CENTRAL_DIFFERENCE_STENCIL = ((1, 0.5), (-1, -0.5))
+FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Differences of second order for a first derivative: pairs (offset in steps, weight times step)."""
 
 
@@ -170,12 +170,12 @@ class ArmAlongPath:
         """
         step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
-            return FORWARD_DIFFERENCE, step
+            return FORWARD_DIFFERENCE_STENCIL, step
         for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_shortenings):
             if self._is_valid_at(p + step) and self._is_valid_at(p - step):
                 break
             step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor
-        return CENTRAL_DIFFERENCE, step
+        return CENTRAL_DIFFERENCE_STENCIL, step
 
     def _is_valid_at(self, p: float) -> bool:
         """Whether the arm at p is valid."""

@@ -12,11 +12,11 @@ from math import isnan
 from types import SimpleNamespace
 
 from ...errors import InputError
-from ..material.build import STANDARD, Build
+from ..material.build import UNIFORM_LINEAR_BUILD, Build
 from ..parameters import PARAMETERS
-from ..units import Given, share_of_flutter
-from .drag import DRAGS, Drag
-from .quantities import LOADS, UNITS, number_in_si, quoted_quantity
+from ..units import GivenQuantity, load_over_flutter
+from .drag import DRAG_NAMES, Drag
+from .quantities import LOADS, UNITS_AND_EXAMPLES, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
@@ -37,23 +37,23 @@ class SlenderArm:
     Raises InputError, naming the quantity.
     """
 
-    length: Given | None = None
-    young: Given | None = None
-    viscosity: Given
-    radius: Given | None = None
-    inner_radius: Given | None = None
-    tip_radius: Given | None = None
-    width: Given | None = None
-    height: Given | None = None
-    segments: Sequence[str | Mapping[str, Given]] | None = None
-    pressure: Given | None = None
-    force: Given | None = None
+    length: GivenQuantity | None = None
+    young: GivenQuantity | None = None
+    viscosity: GivenQuantity
+    radius: GivenQuantity | None = None
+    inner_radius: GivenQuantity | None = None
+    tip_radius: GivenQuantity | None = None
+    width: GivenQuantity | None = None
+    height: GivenQuantity | None = None
+    segments: Sequence[str | Mapping[str, GivenQuantity]] | None = None
+    pressure: GivenQuantity | None = None
+    force: GivenQuantity | None = None
     poisson: float = 0.5
-    law: str = STANDARD.law
-    section: str = STANDARD.section
-    fluid_density: Given = "1000 kg/m^3"
-    density_difference: Given | None = None
-    drag: str = DRAGS[0]
+    law: str = UNIFORM_LINEAR_BUILD.law
+    section: str = UNIFORM_LINEAR_BUILD.section
+    fluid_density: GivenQuantity = "1000 kg/m^3"
+    density_difference: GivenQuantity | None = None
+    drag: str = DRAG_NAMES[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Quantities of UNITS in SI units; nan if not given. `length`, `young` (base): of segments, if any."""
     si_segments: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
@@ -62,7 +62,7 @@ class SlenderArm:
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
         object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
-        numbers = {name: number_in_si(name, getattr(self, name)) for name in UNITS}
+        numbers = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS_AND_EXAMPLES}
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**numbers))
         object.__setattr__(self, "segments", texts)
@@ -142,7 +142,7 @@ class SlenderArm:
     @property
     def share_of_flutter(self) -> float | None:
         """Load divided by the flutter load; None for an absolute load and for an arm without load."""
-        return None if self.load is None else share_of_flutter(getattr(self, self.load))
+        return None if self.load is None else load_over_flutter(getattr(self, self.load))
 
     def mass_at(self, station: Station) -> float:
         """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore.
@@ -219,7 +219,7 @@ class SlenderArm:
     @property
     def chosen_drag(self) -> Drag:
         """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
-        return self.drags[DRAGS.index(self.drag)]
+        return self.drags[DRAG_NAMES.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
         """Dimensionless rotational drag gamma3/(gamma2 L^2) for the drag estimate `drag` (Sec. VI)."""

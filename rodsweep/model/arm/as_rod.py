@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..material.build import STANDARD
+from ..material.build import UNIFORM_LINEAR_BUILD
 from ..material.profile import FACTOR_NAMES
 from ..parameters import NONLINEAR_PARAMETERS
 from .arm import SlenderArm
@@ -24,7 +24,10 @@ def material_of(arm: SlenderArm) -> dict[str, Any]:
     Possible keys are law, section and profile.
     """
     build = arm.build
-    words = {"law": (build.law, STANDARD.law), "section": (build.section, STANDARD.section)}
+    words = {
+        "law": (build.law, UNIFORM_LINEAR_BUILD.law),
+        "section": (build.section, UNIFORM_LINEAR_BUILD.section),
+    }
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}
     if build.profile is not None:
         columns = (build.profile.u, *zip(*build.profile.rows, strict=True))

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..material.profile import FACTOR_NAMES, RADIUS_POWERS, Profile
-from .drag import Drag, range_of_drag
+from .drag import Drag, drag_estimates
 from .section import Circle, Section, Tube
 
 BUCKLING_NODE_COUNT = 400
@@ -79,7 +79,7 @@ class Shape:
     def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
         """Drag estimates at a station, in the order of DRAGS. viscosity: in Pa s."""
         section = station.section
-        return range_of_drag(viscosity, self.length, section.drag_radius, section.half_height)
+        return drag_estimates(viscosity, self.length, section.drag_radius, section.half_height)
 
     def profile(self, poisson: float, drag: int) -> Profile | None:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
@@ -118,7 +118,7 @@ class Shape:
         base = self.drags(self.base, 1.0)[drag]
         rows = list[tuple[float, ...]]()
         for radius in (radii * self.base.section.drag_radius).tolist():
-            own = range_of_drag(1.0, self.length, radius, radius)[drag]
+            own = drag_estimates(1.0, self.length, radius, radius)[drag]
             factors = {"gamma1": own.axial / base.axial, "gamma2": own.across / base.across}
             rows.append(tuple(factors.get(name, 1.0) for name in FACTOR_NAMES))
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))

@@ -24,7 +24,7 @@ from .compilation import compiled_for_vectors
 P = ParamSpec("P")
 R = TypeVar("R")
 
-ALWAYS_KNOWN = {"range": range}
+ALWAYS_KNOWN_VALUES = {"range": range}
 """Names with known values during unrolling, in addition to the algebra."""
 
 
@@ -70,9 +70,9 @@ class UnrolledOverAlgebra(Generic[P, R]):
             elif name in self.function.__globals__:
                 namespace[name] = value
         tree.body = [
-            _UnrollingTransformer({first: g, **ALWAYS_KNOWN}, _SharedState(set(), others, {}, {})).visit(
-                definition
-            )
+            _UnrollingTransformer(
+                {first: g, **ALWAYS_KNOWN_VALUES}, _SharedState(set(), others, {}, {})
+            ).visit(definition)
         ]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
         written: Any = namespace[definition.name]

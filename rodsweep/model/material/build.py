@@ -111,7 +111,7 @@ class Build:
 
         taper: taper of the arm.
         """
-        return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
+        return self.constitutive_law.largest_load * _smallest_factor_along(self.profile, taper, "k1")
 
     def relative_load(self, F: float, k1: float, taper: float) -> float:
         """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: at the
@@ -122,7 +122,7 @@ class Build:
         """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
         base.
         """
-        return _smallest_factor(self.profile, taper, "gamma3")
+        return _smallest_factor_along(self.profile, taper, "gamma3")
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
@@ -210,7 +210,7 @@ class Build:
 
 
 @lru_cache(maxsize=1024)
-def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
+def _smallest_factor_along(profile: Profile | None, taper: float, name: str) -> float:
     """Smallest k1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at the
     base.
     """
@@ -229,5 +229,5 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     return min(*rows, float(between.min()))
 
 
-STANDARD = Build()
+UNIFORM_LINEAR_BUILD = Build()
 """Build of a uniform arm of linear material."""

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, names_except
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
 from .thresholds import CROSSING_LIST_RULE, search_variables
 from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
@@ -76,5 +76,7 @@ def layout(config: dict[str, Any]) -> Layout:
         (*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points"
     )
     return Layout(
-        variables, {ALONG: config["criticality"]["crossings"]}, names_except("F", NONLINEAR_PARAMETERS)
+        variables,
+        {ALONG: config["criticality"]["crossings"]},
+        parameter_names_except("F", NONLINEAR_PARAMETERS),
     )

@@ -13,7 +13,7 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.unstable_modes import Crossing
+from ..changes.unstable_modes import Threshold
 from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
@@ -62,7 +62,7 @@ class HopfBranchStart:
     """A Hopf point along the continuation parameter `name`, with the normal form of the cycles that branch
     off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf point."""
 
-    crossing: Crossing
+    crossing: Threshold
     rod: Rod
     name: str
     coordinate: float
@@ -124,7 +124,7 @@ class HopfBranchStart:
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_point(path: Path, crossing: Crossing) -> HopfBranchStart:
+def hopf_point(path: Path, crossing: Threshold) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)

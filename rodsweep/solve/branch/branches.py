@@ -11,8 +11,8 @@ from functools import cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ...watch import solve_part
-from ..changes.along_path import Transitions, pair_crossings
-from ..changes.unstable_modes import Crossing
+from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
+from ..changes.unstable_modes import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
@@ -93,7 +93,7 @@ class BranchesOfRod:
     status: BranchStatus
     message: str = ""
     seconds: float = 0.0
-    crossings: tuple[Crossing, ...] = ()
+    crossings: tuple[Threshold, ...] = ()
     unstable_at_start: int = -1
     proved: bool = False
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
@@ -129,7 +129,7 @@ def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace
         why = "the force crushes the rod everywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
     path = Path(rod.changed(**{request.along: low}), request.along)
-    found = pair_crossings(path, low, high, request.certify)
+    found = find_axis_crossings(path, low, high, request.certify)
     hopfs = []
     failures = []
     for crossing in found.crossings:
@@ -221,7 +221,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
 
 
 def _status_and_message(
-    found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+    found: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
     and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on

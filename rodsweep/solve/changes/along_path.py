@@ -19,7 +19,7 @@ from .arm.path import ArmPath, path_problem
 from .leading_eigenvalue import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
-from .unstable_modes import ChangeKind, Crossing, ModeCounter
+from .unstable_modes import ChangeKind, ModeCounter, Threshold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,11 +37,11 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Transitions:
+class ThresholdSearchResult:
     """Result of a search along a path: all thresholds, in increasing order of the parameter, and whether the
     list is proved complete."""
 
-    crossings: tuple[Crossing, ...] = ()
+    crossings: tuple[Threshold, ...] = ()
     searched_interval: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
@@ -74,7 +74,7 @@ class AxisCrossings:
     crossings. search_end: end of the search. box_count: number of evaluations of D in the covering."""
 
     path: Path
-    crossings: list[Crossing]
+    crossings: list[Threshold]
     gaps: list[tuple[float, float]]
     search_end: SearchEnd
     box_count: int = 0
@@ -96,9 +96,9 @@ class AxisCrossings:
         return (end, stop) if self.path.is_compliance else (start, end)
 
 
-def transitions(
+def find_thresholds(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
-) -> Transitions:
+) -> ThresholdSearchResult:
     """All thresholds along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
@@ -130,19 +130,19 @@ def transitions(
         counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
     if certify and not tracer.leaders_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
-    counted = _counted(counts, unstable, crossings, at_end)
-    counted = _with_searched(counted, found, (start, stop))
+    counted = _result_with_counts(counts, unstable, crossings, at_end)
+    counted = _with_searched_interval(counted, found, (start, stop))
     return replace(counted, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
-def pair_crossings(
+def find_axis_crossings(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
-) -> Transitions:
+) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
-    exchanges of the leading eigenvalue; takes half the time of `transitions`.
+    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`.
 
     `proved` then means that the covering is complete and every count agrees. certify, most: as in
-    `transitions`, as are the conditions under which the search ends early or raises Unsolvable.
+    `find_thresholds`, as are the conditions under which the search ends early or raises Unsolvable.
     """
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
@@ -152,14 +152,18 @@ def pair_crossings(
     ordered = sorted(found.crossings, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
     crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
-    return _with_searched(_counted(counts, unstable, crossings, at_end), found, (start, stop))
+    return _with_searched_interval(
+        _result_with_counts(counts, unstable, crossings, at_end), found, (start, stop)
+    )
 
 
-def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of the thresholds `crossings`, whose unstable modes are counted. counts: the gaps and
-    doubts of the search. unstable, at_end: numbers of unstable modes at the two ends."""
+def _result_with_counts(
+    counts: ModeCounter, unstable: int, crossings: tuple[Threshold, ...], at_end: int
+) -> ThresholdSearchResult:
+    """`ThresholdSearchResult` of the thresholds `crossings`, whose unstable modes are counted. counts: the
+    gaps and doubts of the search. unstable, at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
-    return Transitions(
+    return ThresholdSearchResult(
         crossings=crossings,
         open_range=_hull_of_gaps(counts.gaps),
         unstable_at_start=unstable,
@@ -169,7 +173,9 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
     )
 
 
-def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
+def _with_searched_interval(
+    counted: ThresholdSearchResult, found: AxisCrossings, asked: tuple[float, float]
+) -> ThresholdSearchResult:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched_interval(*asked)
     reason = found.search_end.reason
@@ -213,7 +219,7 @@ def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 
 
 def _pairs_missed_as_leaders(
-    path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
+    path: Path, crossings: tuple[Threshold, ...], oscillates: bool, unstable: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
     oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
@@ -228,7 +234,7 @@ def _pairs_missed_as_leaders(
     return missed
 
 
-def _hopf_crossing(path: Path, zero: LocatedZero) -> Crossing:
+def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
@@ -236,7 +242,7 @@ def _hopf_crossing(path: Path, zero: LocatedZero) -> Crossing:
     growing = (-there.D_p / there.D_w).real > 0
     kind = ChangeKind.hopf if growing != path.is_compliance else ChangeKind.hopf_reverse
     at, error = path.value(zero.p, zero.error_of_p)
-    return Crossing(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
+    return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
 
 def _undecided_intervals(path: Path, left: list[Box]) -> list[tuple[float, float]]:

@@ -19,12 +19,17 @@ import numpy as np
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
-from .anchor_interpolation import exclude_exchange, next_anchor, only_double_eigenvalue, only_overtaking
+from .anchor_interpolation import (
+    excludes_exchange,
+    has_only_double_eigenvalue,
+    has_only_overtaking,
+    next_anchor_position,
+)
 from .anchors import Anchor
 from .exchange import double_eigenvalue_between, overtaking_between
 from .path_problem import PathProblem
 from .search_range import SearchedIntervals, SearchEnd
-from .unstable_modes import ChangeKind, Crossing
+from .unstable_modes import ChangeKind, Threshold
 
 ANCHOR_MODE_COUNT = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
@@ -105,10 +110,10 @@ class LeaderExchangeSearch:
                 w[i] = polished
         return Anchor(p, w, slope, *self.problem.relaxation(p))
 
-    def changes(self, edges: list[float]) -> tuple[list[Crossing], SearchEnd]:
+    def changes(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
         """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
         first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
-        found: list[Crossing] = []
+        found: list[Threshold] = []
         intervals = SearchedIntervals(edges)
         self.anchor(edges[0])
         for a, b in intervals:
@@ -118,7 +123,7 @@ class LeaderExchangeSearch:
                 intervals.end_within((a, b), str(why))
         return found, intervals.end
 
-    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
+    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Threshold]:
         """The exchange between the anchors at a and b, in a list; an empty list without an exchange, or if
         the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends the
         proof if it is too short; raises Unsolvable."""
@@ -126,13 +131,13 @@ class LeaderExchangeSearch:
         right = self.anchor(b)
         share = 0.5
         if left.oscillates == right.oscillates:
-            share, hides = next_anchor(left, right)
+            share, hides = next_anchor_position(left, right)
             settings = LEADING_EIGENVALUE_SETTINGS
             smallest = settings.smallest_hiding_interval if hides else settings.smallest_interval
             if len(self.anchors) > settings.max_anchors:
                 smallest = settings.close_anchors
             close = b - a <= settings.close_anchors * intervals.length
-            if share == 0.0 or (close and exclude_exchange(left, right, hides)):
+            if share == 0.0 or (close and excludes_exchange(left, right, hides)):
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
@@ -152,12 +157,12 @@ class LeaderExchangeSearch:
         return []
 
     def _alone_or_divided(
-        self, change: Crossing, left: Anchor, right: Anchor, intervals: SearchedIntervals
-    ) -> list[Crossing]:
+        self, change: Threshold, left: Anchor, right: Anchor, intervals: SearchedIntervals
+    ) -> list[Threshold]:
         """The exchange `change` between two anchors, in a list, if no further exchange lies between them;
         else an empty list, after the division of the interval next to the exchange. An interval too short to
         be divided ends the proof."""
-        alone = only_double_eigenvalue if change.frequency == 0 else only_overtaking
+        alone = has_only_double_eigenvalue if change.frequency == 0 else has_only_overtaking
         if alone(left, right):
             return [change]
         length = right.p - left.p
@@ -170,7 +175,7 @@ class LeaderExchangeSearch:
         intervals.add_parts(*pairwise(places))
         return []
 
-    def _exchange_between(self, left: Anchor, right: Anchor) -> Crossing | None:
+    def _exchange_between(self, left: Anchor, right: Anchor) -> Threshold | None:
         """The exchange between an anchor with a leading pair and an anchor with a real leading eigenvalue.
         None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
@@ -195,5 +200,5 @@ class LeaderExchangeSearch:
             if count.number in (meeting, None):
                 self.leaders_proved = self.leaders_proved and count.number == meeting
                 at, error = self.path.value(found.p, found.error_of_p)
-                return Crossing(at, kind, found.frequency, found.growth_rate, error)
+                return Threshold(at, kind, found.frequency, found.growth_rate, error)
         return None

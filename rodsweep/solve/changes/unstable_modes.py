@@ -73,7 +73,7 @@ class ChangeKind(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Crossing:
+class Threshold:
     """One threshold along a path, at parameter value `at` with error `error`; the eigenvalue is growth_rate +
     i frequency, in 1/tau2.
 
@@ -121,7 +121,7 @@ class ModeCounter:
                 return number
         return -1
 
-    def count_at_start(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
+    def count_at_start(self, start: float, stop: float, hopfs: list[Threshold]) -> int:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
         crossings `hopfs`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
@@ -129,15 +129,15 @@ class ModeCounter:
         return number if number >= 0 else self.count_between(start, until)
 
     def crossings_with_counts(
-        self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
-    ) -> tuple[tuple[Crossing, ...], int]:
+        self, ordered: list[Threshold], ends: tuple[float, float], unstable: int
+    ) -> tuple[tuple[Threshold, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
         the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
         unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` are those of
         this call only."""
         self.doubts = []
-        out: list[Crossing] = []
+        out: list[Threshold] = []
         start = ends[0]
         for crossing in ordered:
             kind = crossing.kind

@@ -21,7 +21,7 @@ from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..motion.integrator import RunLimit, Trajectory, forget_integrators, integrator, relax_fast_components
+from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integrator, relax_fast_components
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
@@ -52,7 +52,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
     """Outcome of a rod's motion from its leading mode, by time integration; a failure becomes a status."""
 
     def failed(cause: str) -> Cycle:
-        forget_integrators()  # after an error inside PETSc its objects are unusable
+        destroy_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
     return outcome_or_failure(lambda: _MarchedMotion(rod, request).cycle(), failed)

@@ -17,7 +17,7 @@ from ...discretization.straight.elements import TRANSVERSE
 from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.unstable_modes import Crossing
+from ..changes.unstable_modes import Threshold
 from .normal_form import (
     NORMAL_FORM_SETTINGS,
     NormalForm,
@@ -98,7 +98,7 @@ class HopfCoefficients:
         return max(self.landau_error, self.growth_slope_error)
 
 
-def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoefficients:
+def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoefficients:
     """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
     Unsolvable.
 

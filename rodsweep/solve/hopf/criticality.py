@@ -10,8 +10,8 @@ from functools import cache, lru_cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..changes.along_path import Transitions, pair_crossings
-from ..changes.unstable_modes import Crossing, end_below_crushing
+from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
+from ..changes.unstable_modes import Threshold, end_below_crushing
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
 from .coefficient_errors import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
@@ -76,14 +76,14 @@ class Criticality:
     seconds: computing time."""
 
     status: CriticalityStatus
-    transitions: Transitions
+    transitions: ThresholdSearchResult
     coefficients: tuple[HopfCoefficients, ...]
     end: float
     seconds: float = 0.0
     message: str = ""
 
     @property
-    def crossings(self) -> tuple[Crossing, ...]:
+    def crossings(self) -> tuple[Threshold, ...]:
         """All Hopf points, with or without coefficients, by increasing force."""
         return self.transitions.crossings
 
@@ -120,11 +120,11 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
-    return pair_crossings(path, 0.0, end, certify, most)
+def _hopf_points(path: Path, end: float, certify: bool, most: int) -> ThresholdSearchResult:
+    return find_axis_crossings(path, 0.0, end, certify, most)
 
 
-def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
+def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> HopfCoefficients:
     """Coefficients of the Hopf point `hopf`; if the computation fails they are NaN, with the cause as
     message."""
     try:
@@ -136,7 +136,7 @@ def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> Hopf
 def _empty_criticality(end: float, cause: str) -> Criticality:
     return Criticality(
         status=CriticalityStatus.failed,
-        transitions=Transitions(proved=False),
+        transitions=ThresholdSearchResult(proved=False),
         coefficients=(),
         end=end,
         message=cause,
@@ -144,7 +144,7 @@ def _empty_criticality(end: float, cause: str) -> Criticality:
 
 
 def _status_and_message(
-    found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
+    found: ThresholdSearchResult, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
     problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""

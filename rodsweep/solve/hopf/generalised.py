@@ -19,7 +19,7 @@ from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
 from ..changes.arm.path import path_problem
 from ..changes.diagram.boundary_curves import BoundaryCurve
-from ..changes.unstable_modes import ChangeKind, Crossing
+from ..changes.unstable_modes import ChangeKind, Threshold
 from ..point import FAILURES, Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
@@ -152,7 +152,7 @@ class HopfCurve:
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
         error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
-        hopf = Crossing(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
+        hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
         return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
 
     def generalised_hopf_between(self, first: int, last: int) -> GeneralisedHopfPoint | None:

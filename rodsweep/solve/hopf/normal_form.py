@@ -63,7 +63,7 @@ of `NORMAL_FORM_SETTINGS.found`, below rounding error; after one iteration the e
 the stated error of c."""
 
 
-HARMONIC_WAVES = 2
+HARMONIC_WAVE_NUMBER_RATIO = 2
 """Wave number of h20 and h11, which determine c, divided by the wave number of q."""
 
 
@@ -156,7 +156,7 @@ def elements_for_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
     mesh rule for eigenvalues."""
     accuracy *= NORMAL_FORM_SETTINGS.accuracy_share
-    waves = HARMONIC_WAVES * wave_number(rod, w)
+    waves = HARMONIC_WAVE_NUMBER_RATIO * wave_number(rod, w)
     if not rod.standard:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)

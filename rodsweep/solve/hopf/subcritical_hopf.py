@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..changes.along_path import pair_crossings
+from ..changes.along_path import find_axis_crossings
 from ..changes.unstable_modes import end_below_crushing
 from .coefficient_errors import hopf_coefficients
 
@@ -56,7 +56,7 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
     if not 0 < low < high:
         return None
-    crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
+    crossings = find_axis_crossings(Path(rod, "F"), low, high, certify=False).crossings
     above = [one for one in crossings if one.at > rod.F]
     below = [one for one in crossings if one.at <= rod.F]
     nearest = above[:1] + below[-1:]

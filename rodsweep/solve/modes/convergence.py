@@ -42,20 +42,20 @@ class ModeMeshSettings:
 MODE_MESH_SETTINGS = ModeMeshSettings()
 
 
-def vector_accuracy(accuracy: float) -> float:
+def mesh_accuracy_for_modes(accuracy: float) -> float:
     """Relative accuracy of eigenvalues for which the first mesh is chosen if the modes need the relative
     accuracy `accuracy`."""
     return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.finest_accuracy)
 
 
-def converged_vectors(
+def converged_modes(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> ModeVectors | None:
     """Modes of `eigenvalues`, (modes,), at `points` in [0, 1], (n,), from the mesh with the smallest error
     estimate. wave: wave number that the mesh must resolve. accuracy: requested relative accuracy, at which
     the refinement ends. None if even the second mesh has more than `ModeMeshSettings.max_unknowns`
     unknowns."""
-    mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
+    mesh = mesh_for(rod, wave, mesh_accuracy_for_modes(accuracy))
     gaps = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best: ModeVectors | None = None

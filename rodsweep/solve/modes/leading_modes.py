@@ -24,7 +24,7 @@ from ...model.rod import Rod
 from ..point import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
-from .convergence import converged_vectors
+from .convergence import converged_modes
 from .inverse_iteration import ModeVectors, placeholder_vectors
 from .transient_growth import Growth, growth_of
 
@@ -123,7 +123,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     spectrum = outcome.spectrum
     wave = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
     points = lobatto_points(request.nodes)
-    vectors = converged_vectors(rod, spectrum.eigenvalues, points, wave, request.accuracy)
+    vectors = converged_modes(rod, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
         return replace(
             outcome,

@@ -48,7 +48,7 @@ class FixedTipSettings:
 FIXED_TIP_SETTINGS = FixedTipSettings()
 
 
-def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
+def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
 
     A target beyond `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails

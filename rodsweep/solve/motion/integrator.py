@@ -221,7 +221,7 @@ def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
     return _integrators.get(key)
 
 
-def forget_integrators() -> None:
+def destroy_integrators() -> None:
     """Destroys all pooled integrators, after an error or a change of PETSc options."""
     _integrators.destroy_all()
 

@@ -10,7 +10,7 @@ from llvmlite import binding
 from numba import types
 from numba.core import typing
 
-from ..backend.c_functions import INT, LIBRARY, POINTER
+from ..backend.c_functions import INT, PETSC_LIBRARY, POINTER
 
 ENUM = types.int32
 
@@ -23,7 +23,7 @@ def _int_function(name: str, *arguments: Any) -> Any:
 
 
 def _compiled_symbol(name: str, signature: Any) -> Any:
-    binding.add_symbol(name, ctypes.cast(getattr(LIBRARY, name), ctypes.c_void_p).value)
+    binding.add_symbol(name, ctypes.cast(getattr(PETSC_LIBRARY, name), ctypes.c_void_p).value)
     return types.ExternalFunction(name, signature)
 
 

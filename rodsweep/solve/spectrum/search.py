@@ -13,10 +13,10 @@ from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accu
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import outcome_or_failure
-from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
+from .candidates import Candidates, CountComparison, candidates_on_mesh, compare_with_count
 from .problem import TransverseProblem, transverse_problem
 from .search_settings import SEARCH_SETTINGS
-from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, vectors_on_nodes
+from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
 
 __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
@@ -96,7 +96,7 @@ class Search:
             if too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
                 break
             tight = self.with_vectors or turn > 0
-            found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
+            found = candidates_on_mesh(self.problem, self.mesh, self.requested, self.with_vectors, tight)
             judged = self.checked_or_retry(found)
             if judged is None:
                 continue
@@ -245,6 +245,6 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
         certified=proved and not undecided,
         elements=best.candidates.mesh.elements,
         order=best.candidates.mesh.order,
-        vectors=vectors_on_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),
+        vectors=modes_at_lobatto_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),
         message=message,
     )

@@ -102,7 +102,7 @@ class FollowedPoints:
     is_accepted: NDArray[np.bool_]
 
 
-def vectors_on_nodes(
+def modes_at_lobatto_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: Complex | None
 ) -> Complex | None:
     """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_nodes); None if `found` is None.

@@ -12,10 +12,10 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_UNITS, RELATIVE_LOADS, SCALE_NAME
+from ...model.arm.quantities import ARM_SCALES, LOAD_BY_RELATIVE_NAME, SCALE_NAME_BY_LOAD
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
-from ...model.material.build import STANDARD, Build
-from ...model.parameters import NONLINEAR_PARAMETERS, names_except
+from ...model.material.build import UNIFORM_LINEAR_BUILD, Build
+from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from .flutter_forces import FlutterForce
 from .points import Points
 
@@ -33,7 +33,7 @@ def grid_of_arms(
     beside: Mapping[str, Array],
     names: tuple[str, ...],
     flutter: FlutterOf,
-    build: Build = STANDARD,
+    build: Build = UNIFORM_LINEAR_BUILD,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
     values.
@@ -46,20 +46,22 @@ def grid_of_arms(
     loads = section.quantity_axes[section.load_axis].array() if section.load_axis else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    own = (*names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
+    own = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
     table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own}
-    units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_UNITS}
+    units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
-    if section.load_axis in RELATIVE_LOADS:
+    if section.load_axis in LOAD_BY_RELATIVE_NAME:
         coverage = _with_flutter(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
-        if section.load_axis in RELATIVE_LOADS:
-            units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
+        if section.load_axis in LOAD_BY_RELATIVE_NAME:
+            units[section.load] = table["F"] * units[SCALE_NAME_BY_LOAD[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
-    builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.is_nonuniform else ()
+    builds = (
+        tuple(arm.build if arm else UNIFORM_LINEAR_BUILD for arm in arms) if section.is_nonuniform else ()
+    )
     if "F" in table:
         shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
@@ -101,7 +103,11 @@ def _unit_load_forces(
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
-    beside = [None] if tapers is None or section.load_axis not in RELATIVE_LOADS else tapers.ravel().tolist()
+    beside = (
+        [None]
+        if tapers is None or section.load_axis not in LOAD_BY_RELATIVE_NAME
+        else tapers.ravel().tolist()
+    )
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
         found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
@@ -119,9 +125,9 @@ def _unit_load_force(
     """
     if arm is None or not section.load:
         return NO_FLUTTER_FORCE
-    if section.load_axis in RELATIVE_LOADS:
+    if section.load_axis in LOAD_BY_RELATIVE_NAME:
         return flutter(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
+    return FlutterForce(1.0 / getattr(arm, SCALE_NAME_BY_LOAD[section.load]))
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:

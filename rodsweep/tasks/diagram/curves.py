@@ -115,9 +115,9 @@ class DiagramCurves:
         limit = {}
         if names == CRUSHING_PARAMETERS and self.task.config.standard:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
-            from ...solve.changes.thresholds import filament_hopf
+            from ...solve.changes.thresholds import filament_flutter_force
 
-            Fc = filament_hopf()
+            Fc = filament_flutter_force()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
         variables = curve_record(found, names, **limit)
         criticalities = self._criticality(plane, found) if options.criticality or options.cycles else []

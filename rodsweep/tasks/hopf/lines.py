@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import UNIFORM_LINEAR_BUILD, Build
 from ...model.rod import Rod
 from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_points_of
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.along_path import Transitions
-    from ...solve.changes.unstable_modes import Crossing
+    from ...solve.changes.along_path import ThresholdSearchResult
+    from ...solve.changes.unstable_modes import Threshold
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +33,12 @@ class HopfLine:
     """The fixed parameters of the straight rod."""
     start: float
     stop: float
-    build: Build = STANDARD
+    build: Build = UNIFORM_LINEAR_BUILD
 
-    def search(self) -> "Transitions | None":
+    def search(self) -> "ThresholdSearchResult | None":
         """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""
         from ...determinant.parameter_path import Path
-        from ...solve.changes.along_path import pair_crossings
+        from ...solve.changes.along_path import find_axis_crossings
         from ...solve.changes.unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
         from ...solve.point import FAILURES
 
@@ -58,7 +58,7 @@ class HopfLine:
             return None
         at_start: dict[str, Any] = self.fixed | {self.name: start}
         try:
-            return pair_crossings(Path(Rod(**at_start, build=self.build), self.name), start, stop)
+            return find_axis_crossings(Path(Rod(**at_start, build=self.build), self.name), start, stop)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
 
@@ -110,7 +110,7 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 
 
 def hopf_variables(
-    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
+    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdSearchResult | None]"
 ) -> tuple[FilledVariable, ...]:
     """Hopf points of all lines, one line after another, as variables of a file.
 
@@ -126,7 +126,7 @@ def hopf_variables(
     )
 
 
-def _hopf_point_values(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
+def _hopf_point_values(line: HopfLine, crossing: "Threshold") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
     rod = line.fixed | {line.name: crossing.at}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {

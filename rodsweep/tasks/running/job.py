@@ -205,7 +205,7 @@ def attributes_of(job: Job, statuses: Sequence[PointStatus], kernels: str) -> di
         "task": job.config.task,
         "time_unit": "tau2 = gamma2 L^4/k3",
         "config": job.text,
-        "petsc_options": petsc.options(),
+        "petsc_options": petsc.options_text(),
         "shard": "",
         "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in statuses),
         provenance.KERNELS_ATTRIBUTE: kernels,

@@ -15,7 +15,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
@@ -143,7 +143,7 @@ def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_som
 
 def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force):
     """Along k2 the path variable is the compliance: a bound is known for stiff arms only."""
-    found = transitions(Path(STEPPED.changed(F=30.0), "k2"), 1e3, 1e5)
+    found = find_thresholds(Path(STEPPED.changed(F=30.0), "k2"), 1e3, 1e5)
     assert found.ended_early
     assert 1e3 < found.searched_interval[0] < 1e5
     assert found.searched_interval[1] == 1e5
@@ -221,12 +221,12 @@ def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(m
 def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
     """Neither a crossing just beyond the end belongs to the search, nor is one just before the end lost."""
     path = Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
-    at = transitions(path, 0.0, 20.0).crossings[-1].at
+    at = find_thresholds(path, 0.0, 20.0).crossings[-1].at
     for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
-        found = transitions(path, 0.0, end)
+        found = find_thresholds(path, 0.0, end)
         assert found.proved_to_the_end, found.doubt_text
         assert len(across_the_axis(found)) == number
         assert found.searched_interval == (0.0, end)
-    from_there = transitions(path, at * (1 - 1e-7), 20.0)
+    from_there = find_thresholds(path, at * (1 - 1e-7), 20.0)
     assert len(across_the_axis(from_there)) == 1
     assert from_there.proved_to_the_end

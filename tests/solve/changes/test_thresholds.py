@@ -11,7 +11,7 @@ from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
-from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
@@ -113,7 +113,7 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
         k1, k2 = (10 ** rng.uniform(1.3, 6) if rng.random() < 0.85 else inf for _ in range(2))
         gamma3 = 10 ** rng.uniform(-6, 1) if rng.random() < 0.85 else 0.0
         end = min(150.0, 0.999 * k1)
-        found = transitions(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
+        found = find_thresholds(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
         forces = np.sort(rng.uniform(0, end, 20))
         for F, motion, unstable in zip(forces, *classes_and_unstable_counts(found, forces), strict=True):
             spectrum = solve_spectrum(Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), SpectrumRequest(2, 1e-6, True))
@@ -133,7 +133,7 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
     ],
 )
 def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, start, stop):
-    found = transitions(Path(fixed, name), start, stop).crossings
+    found = find_thresholds(Path(fixed, name), start, stop).crossings
     assert found
     for crossing in found:
         values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.at}
@@ -185,7 +185,7 @@ def test_what_overflows_fails_with_a_reason():
 
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
     """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
-    found = transitions(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
+    found = find_thresholds(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
     kinds = [c.kind for c in found.crossings]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
@@ -222,7 +222,7 @@ def test_a_narrow_window_of_oscillations_is_found(beyond):
 def test_a_pair_about_to_cross_the_axis_leads():
     """The onset and an overtaking lie close together before it, between two spectra that agree in kind."""
     rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
-    found = transitions(Path(rod, "F"), -27.170544378578725, 100.0)
+    found = find_thresholds(Path(rod, "F"), -27.170544378578725, 100.0)
     kinds = [c.kind for c in found.crossings]
     assert ChangeKind.onset in kinds
     assert ChangeKind.real_leads in kinds
@@ -238,7 +238,7 @@ def test_no_change_outside_the_path_is_reported():
     assert before.status == ThresholdStatus.ok
     assert [c.kind for c in before.crossings] == [ChangeKind.onset]
     assert before.transitions.unstable_at_end == 0
-    beyond = transitions(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
+    beyond = find_thresholds(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
     assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
 
 
@@ -246,7 +246,7 @@ def test_no_change_outside_the_path_is_reported():
 def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
     hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == ChangeKind.hopf)
-    found = transitions(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
+    found = find_thresholds(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
     assert [c.unstable_after for c in found.crossings if c.kind == ChangeKind.hopf] == [2]
 
 

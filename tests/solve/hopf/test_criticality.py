@@ -19,7 +19,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.changes.along_path import pair_crossings, transitions
+from rodsweep.solve.changes.along_path import find_axis_crossings, find_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
@@ -215,7 +215,7 @@ def test_hopf_points_are_those_of_all_transitions():
     ):
         end = min(200.0, rod.k1 * (1 - 1e-6))
         path = Path(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
-        every, pairs = transitions(path, 0.0, end), pair_crossings(path, 0.0, end)
+        every, pairs = find_thresholds(path, 0.0, end), find_axis_crossings(path, 0.0, end)
         crossings = [c for c in every.crossings if not c.kind.changes_leader]
         assert [(c.at, c.kind, c.unstable_after) for c in pairs.crossings] == [
             (c.at, c.kind, c.unstable_after) for c in crossings

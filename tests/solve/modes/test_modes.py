@@ -745,7 +745,7 @@ def test_a_failing_mesh_is_a_status(monkeypatch):
 
 
 def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
-    monkeypatch.setattr(convergence_module, "vector_accuracy", lambda _: 1.0)
+    monkeypatch.setattr(convergence_module, "mesh_accuracy_for_modes", lambda _: 1.0)
     result = solve_modes(rod_of(*FIG_2A), SHAPES)
     assert result.status == SpectrumStatus.ok
     assert result.vectors.resolution.order > 16

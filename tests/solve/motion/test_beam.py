@@ -8,7 +8,7 @@ from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import shape_from_strains, uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
 from rodsweep.model.balance import ad
-from rodsweep.model.longitudinal import longitudinal_rates
+from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.motion.context import MAX_STAGE_POINTS
@@ -17,7 +17,7 @@ from rodsweep.solve.motion.integrator import (
     Integrator,
     RunEnding,
     RunLimit,
-    forget_integrators,
+    destroy_integrators,
     integrator,
 )
 from rodsweep.solve.motion.leading_mode import leading_mode
@@ -135,7 +135,7 @@ def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
     beam = Beam(rod.changed(gamma1=0.8), uniform_mesh(1, 20))
     values = np.linalg.eigvals(beam.jacobian(np.zeros(60)))
     transverse = solve_spectrum(rod, SpectrumRequest(4, 1e-12, True)).eigenvalues
-    for w in np.concatenate([transverse, longitudinal_rates(rod.k1, 0.8, 3)]):
+    for w in np.concatenate([transverse, longitudinal_eigenvalues(rod.k1, 0.8, 3)]):
         assert np.abs(values - w).min() <= 1e-9 * abs(w)
     assert leading_mode(beam).w == pytest.approx(transverse[0], rel=1e-9)
 
@@ -285,12 +285,12 @@ def petsc_options():
     def give(name, value):
         given.append(name)
         PETSc.Options()[name] = value
-        forget_integrators()
+        destroy_integrators()
 
     yield give
     for name in given:
         PETSc.Options().delValue(name)
-    forget_integrators()
+    destroy_integrators()
 
 
 def test_users_options_override_the_method(petsc_options):
@@ -313,7 +313,7 @@ def test_newtons_method_may_be_petscs(petsc_options):
 
 def test_defaults_of_the_method_are_not_recorded_as_the_users_options():
     before = PETSc.Options().getAll()
-    forget_integrators()
+    destroy_integrators()
     integrator(uniform_mesh(1, 8), TimeScheme())
     assert PETSc.Options().getAll() == before
 

@@ -152,7 +152,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
         wanted.append(number)
         return whole(rod_problem, mesh, number, vectors, tight)
 
-    monkeypatch.setattr(search, "candidates_on", attempt)
+    monkeypatch.setattr(search, "candidates_on_mesh", attempt)
     monkeypatch.setattr(search, "SEARCH_SETTINGS", replace(search.SEARCH_SETTINGS, max_unproved_modes=2))
     if not countable:
         monkeypatch.setattr(problem, "hull_of", lambda rod: UNBOUNDED_HULL)

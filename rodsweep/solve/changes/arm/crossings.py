@@ -12,7 +12,7 @@ import numpy as np
 
 from ...point import Unsolvable
 from ..search_range import SearchedIntervals, SearchEnd
-from ..unstable_modes import ChangeKind, Crossing
+from ..unstable_modes import ChangeKind, Threshold
 from .axis_modes import AxisModes, AxisModesOfPath, next_count_position
 from .path import ArmPath
 
@@ -64,10 +64,10 @@ class CrossingSearch:
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.axis_modes = AxisModesOfPath(problem, certify)
-        self.crossings_by_p: dict[float, Crossing] = {}
+        self.crossings_by_p: dict[float, Threshold] = {}
         self.gaps: list[tuple[float, float]] = []
 
-    def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
+    def crossings(self, edges: list[float], most: float) -> tuple[list[Threshold], SearchEnd]:
         """Returns (crossings, end). crossings: all crossings from the first of `edges` to the end of the
         search, in increasing order of p. end: end of the search.
 
@@ -94,7 +94,7 @@ class CrossingSearch:
         found = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
         return [one for one in found if self._may_lie_within(one, edges[0], edges[-1])], intervals.end
 
-    def _may_lie_within(self, crossing: Crossing, low: float, high: float) -> bool:
+    def _may_lie_within(self, crossing: Threshold, low: float, high: float) -> bool:
         """Whether path variables from `low` to `high` lie within the error of `crossing`."""
         near = crossing.at - crossing.error, crossing.at + crossing.error
         first, last = sorted(map(self.problem.path.coordinate, near))
@@ -143,7 +143,7 @@ class CrossingSearch:
         intervals.add_parts((a, middle), (middle, b))
 
     def _intervals_between_crossings(
-        self, crossings: list[Crossing], left: AxisModes, right: AxisModes, length: float
+        self, crossings: list[Threshold], left: AxisModes, right: AxisModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
         after a crossing do not confirm the crossing. length: length of the path.
@@ -173,7 +173,7 @@ class CrossingSearch:
             start = behind
         return [*parts, (start, right.p)]
 
-    def _crossings_between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
+    def _crossings_between(self, left: AxisModes, right: AxisModes) -> list[Threshold]:
         """Crossings between the arms with the modes `left` and `right`, in increasing order of p, that
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
@@ -185,7 +185,7 @@ class CrossingSearch:
         if many:
             self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         grows = change > 0
-        found: dict[float, Crossing] = {}
+        found: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
         # tried first.
         for start, growing in ((left, not grows), (right, grows)):
@@ -202,7 +202,7 @@ class CrossingSearch:
 
     def _newton_crossing(
         self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool
-    ) -> Crossing | None:
+    ) -> Threshold | None:
         """The crossing of the imaginary axis by the eigenvalue with index i in `start.w`, by Newton's method
         for p; None if Newton's method does not converge within `ends`, or converges to another crossing.
 
@@ -229,7 +229,9 @@ class CrossingSearch:
                 return None if unresolved else self._crossing_at(p, w, slope, blur, grows)
         return None
 
-    def _crossing_at(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
+    def _crossing_at(
+        self, p: float, w: complex, slope: complex, blur: float, grows: bool
+    ) -> Threshold | None:
         """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
         opposite to `grows`. slope: dw/dp. blur: error of p. grows: as in `_newton_crossing`."""
         # Newton's method may find another pair, which crosses in the opposite direction.
@@ -239,10 +241,10 @@ class CrossingSearch:
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
         error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # at fixed p, and by the error of p
-        return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
+        return Threshold(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
-def _are_same_crossing(one: Crossing, other: Crossing) -> bool:
+def _are_same_crossing(one: Threshold, other: Threshold) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
     apart = abs(one.at - other.at) <= ARM_CROSSING_SETTINGS.max_distance_in_errors * (one.error + other.error)
     return (

@@ -19,9 +19,9 @@ from ...point import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
     BOUNDARY_STEPS,
+    BoundaryCurveProblem,
     BoundaryEnd,
     BoundaryPoint,
-    ChangeCurveProblem,
 )
 
 
@@ -70,7 +70,7 @@ def trace_boundary(
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
     """
-    curve = ChangeCurveProblem(Boundary(plane, sign))
+    curve = BoundaryCurveProblem(Boundary(plane, sign))
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
@@ -90,7 +90,7 @@ def trace_boundary(
 
 
 def _curve_with_folds(
-    curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
+    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
 ) -> BoundaryCurve:
     """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
     ends."""
@@ -113,7 +113,7 @@ def _curve_with_folds(
     return BoundaryCurve(boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
-def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
+def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
     """The fold between the points a and b, where the tangent has no component along `axis`; None if not
     found."""
     boundary = curve.boundary

@@ -86,7 +86,7 @@ class BoundaryPoint(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class ChangeCurveProblem:
+class BoundaryCurveProblem:
     """A boundary of the spectrum, as a problem for `follow_curve`."""
 
     boundary: Boundary

@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point import outcome_or_failure
-from ..along_path import Transitions, transitions
+from ..along_path import ThresholdSearchResult, find_thresholds
 from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
 from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
@@ -104,7 +104,7 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
         stop = rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)
     if name == "k1" and not uncrushed.all():
         start = rod.F / (share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)) if rod.F > 0 else start
-    found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
+    found = find_thresholds(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
     classes, unstable = classes_and_unstable_counts(found, values)
     # Nearly crushed rods lie outside the searched range.
     classes[crushed] = RodClass.crushed
@@ -127,7 +127,7 @@ def _row_of_one_class(
 
 
 def classes_and_unstable_counts(
-    found: Transitions, values: Array
+    found: ThresholdSearchResult, values: Array
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
     the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
