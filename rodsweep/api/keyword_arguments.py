@@ -18,7 +18,7 @@ from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAG_NAMES
 from ..model.arm.quantities import LOAD_BY_RELATIVE_NAME, LOADS
-from ..model.material.build import UNIFORM_LINEAR_BUILD
+from ..model.material.build import DEFAULT_BUILD
 from ..solve.exclusive import defer_signals
 from ..tasks.running.job import Job, job_of, machine_memory
 
@@ -26,8 +26,8 @@ ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Class of an arm."""
 DEFAULT_VALUES = {
     "drag": DRAG_NAMES[0],
-    "law": UNIFORM_LINEAR_BUILD.law,
-    "section": UNIFORM_LINEAR_BUILD.section,
+    "law": DEFAULT_BUILD.law,
+    "section": DEFAULT_BUILD.section,
 }
 """Default values of drag, law and section. A key of an arm with its default value is not written into the
 config tree."""

@@ -18,7 +18,7 @@ from ..config.values import as_float, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.as_rod import material_of, parameters_of
-from ..model.material.build import UNIFORM_LINEAR_BUILD
+from ..model.material.build import DEFAULT_BUILD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
 from .answers.answer import Answer
@@ -90,7 +90,7 @@ class SoftRod:
             name: _parameter_value(name, value) for name, value in values.items() if value is not None
         }
         self._material = _material_section(material)
-        build = UNIFORM_LINEAR_BUILD if self._material is None else self._material.build
+        build = DEFAULT_BUILD if self._material is None else self._material.build
         if arm is not None and build.section == "swelling":
             replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
         refuse_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)

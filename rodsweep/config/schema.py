@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from ..model.material.build import UNIFORM_LINEAR_BUILD, Build
+from ..model.material.build import DEFAULT_BUILD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
@@ -73,7 +73,7 @@ class Config(StrictSection):
         """
         if self.stated_build is not None:
             return self.stated_build
-        return UNIFORM_LINEAR_BUILD if self.parameters.arm is None else self.parameters.arm.build
+        return DEFAULT_BUILD if self.parameters.arm is None else self.parameters.arm.build
 
     @property
     def standard(self) -> bool:

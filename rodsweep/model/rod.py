@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from .balance import Material, vector_with_first_component
-from .material.build import UNIFORM_LINEAR_BUILD, Build, LocalCoefficients, Sections
+from .material.build import DEFAULT_BUILD, Build, LocalCoefficients, Sections
 from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
 from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 
@@ -59,7 +59,7 @@ class Rod:
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral_value
     taper: float = PARAMETERS["taper"].neutral_value
-    build: Build = field(default=UNIFORM_LINEAR_BUILD, repr=False)
+    build: Build = field(default=DEFAULT_BUILD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
     _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)

@@ -11,7 +11,7 @@ from functools import partial
 from math import inf, isinf, isnan, log10, nan
 from typing import Any
 
-from ...model.material.build import UNIFORM_LINEAR_BUILD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ..peers import Peers
@@ -51,7 +51,7 @@ class ThresholdCase:
     hopf: float
     search_end: float = 60.0
     taper: float = 1.0
-    build: Build = UNIFORM_LINEAR_BUILD
+    build: Build = DEFAULT_BUILD
 
     def rod(self, F: float) -> Rod:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)

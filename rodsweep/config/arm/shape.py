@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from ...errors import InputError
 from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
-from ...model.material.build import UNIFORM_LINEAR_BUILD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.units import unit_of, value_in_unit
 from .axes import UncoveredArm
 
@@ -54,7 +54,7 @@ def build_of(arm: "ArmSection") -> Build:
 
     Raises ValueError if the arms of a grid of parameters have different profiles.
     """
-    alike = Build(arm.law or UNIFORM_LINEAR_BUILD.law, arm.section or UNIFORM_LINEAR_BUILD.section)
+    alike = Build(arm.law or DEFAULT_BUILD.law, arm.section or DEFAULT_BUILD.section)
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
         return alike
     if arm.is_grid and len(set(builds_of(arm))) > 1:

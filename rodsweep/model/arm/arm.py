@@ -12,7 +12,7 @@ from math import isnan
 from types import SimpleNamespace
 
 from ...errors import InputError
-from ..material.build import UNIFORM_LINEAR_BUILD, Build
+from ..material.build import DEFAULT_BUILD, Build
 from ..parameters import PARAMETERS
 from ..units import GivenQuantity, load_over_flutter
 from .drag import DRAG_NAMES, Drag
@@ -49,8 +49,8 @@ class SlenderArm:
     pressure: GivenQuantity | None = None
     force: GivenQuantity | None = None
     poisson: float = 0.5
-    law: str = UNIFORM_LINEAR_BUILD.law
-    section: str = UNIFORM_LINEAR_BUILD.section
+    law: str = DEFAULT_BUILD.law
+    section: str = DEFAULT_BUILD.section
     fluid_density: GivenQuantity = "1000 kg/m^3"
     density_difference: GivenQuantity | None = None
     drag: str = DRAG_NAMES[0]

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..material.build import UNIFORM_LINEAR_BUILD
+from ..material.build import DEFAULT_BUILD
 from ..material.profile import FACTOR_NAMES
 from ..parameters import NONLINEAR_PARAMETERS
 from .arm import SlenderArm
@@ -25,8 +25,8 @@ def material_of(arm: SlenderArm) -> dict[str, Any]:
     """
     build = arm.build
     words = {
-        "law": (build.law, UNIFORM_LINEAR_BUILD.law),
-        "section": (build.section, UNIFORM_LINEAR_BUILD.section),
+        "law": (build.law, DEFAULT_BUILD.law),
+        "section": (build.section, DEFAULT_BUILD.section),
     }
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}
     if build.profile is not None:

@@ -229,5 +229,5 @@ def _smallest_factor_along(profile: Profile | None, taper: float, name: str) -> 
     return min(*rows, float(between.min()))
 
 
-UNIFORM_LINEAR_BUILD = Build()
+DEFAULT_BUILD = Build()
 """Build of a uniform arm of linear material."""

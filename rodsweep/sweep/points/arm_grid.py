@@ -14,7 +14,7 @@ from ...config.arm.section import ArmSection
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_BY_RELATIVE_NAME, SCALE_NAME_BY_LOAD
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
-from ...model.material.build import UNIFORM_LINEAR_BUILD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from .flutter_forces import FlutterForce
 from .points import Points
@@ -33,7 +33,7 @@ def grid_of_arms(
     beside: Mapping[str, Array],
     names: tuple[str, ...],
     flutter: FlutterOf,
-    build: Build = UNIFORM_LINEAR_BUILD,
+    build: Build = DEFAULT_BUILD,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
     values.
@@ -59,9 +59,7 @@ def grid_of_arms(
         if section.load_axis in LOAD_BY_RELATIVE_NAME:
             units[section.load] = table["F"] * units[SCALE_NAME_BY_LOAD[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
-    builds = (
-        tuple(arm.build if arm else UNIFORM_LINEAR_BUILD for arm in arms) if section.is_nonuniform else ()
-    )
+    builds = tuple(arm.build if arm else DEFAULT_BUILD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
         shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.material.build import UNIFORM_LINEAR_BUILD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.rod import Rod
 from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_points_of
 from ...results.layouts.variables import FilledVariable
@@ -33,7 +33,7 @@ class HopfLine:
     """The fixed parameters of the straight rod."""
     start: float
     stop: float
-    build: Build = UNIFORM_LINEAR_BUILD
+    build: Build = DEFAULT_BUILD
 
     def search(self) -> "ThresholdSearchResult | None":
         """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""

@@ -16,7 +16,7 @@ from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.plane import write_balance, write_balance_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.material.build import UNIFORM_LINEAR_BUILD, Build
+from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.response import LocalSection, stress_beyond_rest
@@ -139,7 +139,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
 
 
 @pytest.mark.parametrize(
-    "build", [Build(profile=ONES), UNIFORM_LINEAR_BUILD], ids=["profile of ones", "taper of nearly 1"]
+    "build", [Build(profile=ONES), DEFAULT_BUILD], ids=["profile of ones", "taper of nearly 1"]
 )
 def test_an_arm_that_does_not_vary_beats_as_the_uniform_rod(build):
     values = {"F": 50.0, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
@@ -346,7 +346,7 @@ def test_the_normal_form_is_the_limit_of_cycles(build):
 def test_inextensible_cones_of_every_law_are_one(build):
     """With k1 = inf no law acts but through the bending factor at h1 = 1, which is 1."""
     values = {"F": 20.0, "k1": math.inf, "k2": math.inf, "gamma3": 0.0, "taper": 0.6}
-    linear, arm = (solve_cycle(Rod(**values, build=b), request(1e-7)) for b in (UNIFORM_LINEAR_BUILD, build))
+    linear, arm = (solve_cycle(Rod(**values, build=b), request(1e-7)) for b in (DEFAULT_BUILD, build))
     assert arm.status == linear.status
     assert arm.measures.period == pytest.approx(linear.measures.period, rel=2e-7)
     assert arm.measures.tip_y_max == pytest.approx(linear.measures.tip_y_max, rel=2e-7)
