@@ -94,8 +94,8 @@ def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
 
 
 def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
-    """Returns (points, nodes) of the k jumps. points: indices in `points_inside` of the points before and
-    behind each jump, (k, 2). nodes: node of each jump, (k,).
+    """Returns (points, nodes) of the k jumps. points: indices in the flat `points_inside_elements` of the
+    points before and behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
     jumps = build.jumps
     ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
@@ -106,7 +106,8 @@ def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, Integ
 def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each.
 
-    sections: the coefficients at the `points_inside` of the mesh, or derivatives of the coefficients.
+    sections: the coefficients at the `points_inside_elements` of the mesh, or derivatives of the
+    coefficients.
     """
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
@@ -117,7 +118,7 @@ def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, 
 
 
 def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
-    """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside`,
+    """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside_elements`,
     (m, points).
     """
     element, weights = _nodes_and_weights_of_points(grid)
@@ -127,8 +128,8 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _nodes_and_weights_of_points(grid: Mesh) -> tuple[IntegerArray, Array]:
-    """Returns (nodes, weights) of all `points_inside`, (elements (order + 1),) each: node of the mesh, and
-    quadrature weight within the element.
+    """Returns (nodes, weights) of all `points_inside_elements`, (elements (order + 1),) each: node of the
+    mesh, and quadrature weight within the element.
     """
     weights = grid.lengths[:, None] / 2 * gauss_lobatto_rule(grid.order)[1]
     return grid.element_nodes.ravel(), weights.ravel()

@@ -109,8 +109,8 @@ def _cached_drag_arrays(
 def _drag_arrays(
     drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
-    """Returns (drag, mobility, second, unknown_velocities), fields of a `NodalRod`. drag: drags of the
-    components, (d, 1) or (d, nodes + 1).
+    """Returns (drag, mobility, mobility_laplacian, unknown_velocities), fields of a `NodalRod`. drag: drags
+    of the components, (d, 1) or (d, nodes + 1).
     """
     drag = _expanded_to_nodes(drag, grid.nodes + 1)
     mobility = np.zeros(drag.shape)

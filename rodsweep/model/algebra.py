@@ -41,7 +41,7 @@ class Algebra(NamedTuple):
 
 
 def algebra_from_constants(size: int, terms: list[StructureConstant]) -> Algebra:
-    """The Lie algebra of dimension `size` whose nonzero structure constants are `structure_constants`."""
+    """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}

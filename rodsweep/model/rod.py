@@ -180,12 +180,13 @@ class Rod:
 
     @property
     def nu(self) -> float:
-        """Stretch of the straight uniform rod under its force, nu = 1 - F c1 (Sec. V)."""
+        """Stretch of the straight uniform rod of linear material under its force, nu = 1 - F c1 (Sec. V).
+        Raises NotUniform for other rods."""
         return self.coefficients.nu
 
     @property
     def g(self) -> float:
-        """Coupling of shear and rotation, g = nu + F c2 = mu/k2 (Sec. V)."""
+        """Coupling of shear and rotation, g = nu + F c2 = mu/k2 (Sec. V). Raises NotUniform as `nu`."""
         return self.nu + self.F * self.c2
 
     @property
@@ -209,7 +210,8 @@ class Rod:
 
     @property
     def material(self) -> Material:
-        """Coefficients of the nonlinear balance of the uniform rod, for motion in the plane."""
+        """Coefficients of the nonlinear balance of the uniform rod of linear material, for motion in the
+        plane. Raises NotUniform for other rods."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return Material(compliance, drag, self.F, vector_with_first_component(self.nu, 3))

@@ -16,7 +16,7 @@ def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any
     """Force, stiffnesses and drags at the base, by name, from the parameter values by name.
 
     A result is the value of the parameter of the same name, times the values of all parameters that multiply
-    this parameter, see `Parameter.scaled_names`.
+    this parameter (`Parameter.scaled_names`). All other values, such as the taper, are passed on unchanged.
     """
     if not SCALING_PAIRS:
         return values

@@ -166,7 +166,7 @@ def value_in_unit(value: float, unit: str, si: str) -> float:
 def load_over_flutter(given: GivenQuantity) -> float | None:
     """Load divided by the flutter load, from a text like "1.2 of flutter" or "20 % above flutter".
 
-    None for a load that is not given relative to flutter.
+    None for a number, for any other text, and for 100 % or more below flutter.
     """
     if not isinstance(given, str):
         return None
@@ -182,8 +182,8 @@ def load_over_flutter(given: GivenQuantity) -> float | None:
 def with_si_prefix(value: float, unit: str) -> tuple[float, str]:
     """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
-    The SI prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm"). For a value that is 0, inf
-    or nan, returns (1.0, `unit`).
+    The SI prefix makes the number readable: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a value that is
+    0, inf or nan, returns (1.0, `unit`).
     """
     if not value or not math.isfinite(value):
         return 1.0, unit

@@ -62,7 +62,8 @@ class ArmAlongPath:
         return arm_determinant(self.path.rod_at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """Returns (w, dw/dp, error of w) of the eigenvalue w near `guess`, for the arm at p."""
+        """Returns (w, dw/dp, absolute error of w) of the eigenvalue w near `guess`, for the arm at p: from
+        the family that contains p if the result is accurate, else from the arm itself."""
         family = self.family(p)
         # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
         if family is not None and abs(guess) < family.largest_w / 2:

@@ -88,6 +88,7 @@ def prove_complete(
 
     line: if positive, or if no hull exists, nothing is proved. known, error: known eigenvalues and their
     absolute errors, (n,) each. Complex eigenvalues without their conjugate in `known` are treated as unknown.
+    Raises FloatingPointError if no elements resolve the arm.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0

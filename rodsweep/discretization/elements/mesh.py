@@ -137,7 +137,7 @@ class ShapeIntegrationMatrices(NamedTuple):
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def shape_integration_matrices(order: int) -> ShapeIntegrationMatrices:
-    """The `ShapeIntegrationMatrices` matrices of elements of order `order`, cached."""
+    """The `ShapeIntegrationMatrices` of elements of order `order`, cached."""
     x = gauss_lobatto_rule(order)[0]
     g = gauss_legendre_rule(order + RECONSTRUCTION_SETTINGS.extra_points)[0]
     return ShapeIntegrationMatrices(

@@ -66,8 +66,8 @@ class StressForm(RodOnMesh):
         return layout.state(self.stresses_on_mesh(grid, x), V)
 
     def parameter_derivative(self, name: str) -> NodalChange:
-        """Derivative of `nodal` with respect to the coordinate of the parameter `name`: 1/k for a stiffness
-        k, else the parameter itself.
+        """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a
+        stiffness k, else the parameter itself.
         """
         change = material_derivative_at_nodes(self.rod, name, self.mesh)
         return nodal_change(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))

@@ -72,8 +72,8 @@ class Effect:
     limit: float
     """The model does not apply if `value` is larger than this."""
     viscosity_factor: Array
-    """Factor on the viscosity of the fluid with which `value` would equal `limit`; inf if no viscosity is
-    high enough."""
+    """Factor on the viscosity of the fluid with which `value` would equal `limit`. For an effect that does
+    not depend on the viscosity: 0 if `value` is at most `limit`, else inf."""
     of_cycles_only: bool = False
     """Whether the effect changes only limit cycles, not the thresholds of the straight arm."""
 

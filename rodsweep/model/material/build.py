@@ -193,8 +193,9 @@ class Build:
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
-        """Stiffnesses and drags at points u, divided by their values at the base, by name; arrays of the
-        shape of u. taper: a number, or an array for n arms, (n, 1, ...).
+        """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the
+        shape of u. taper: a number, or an array for n arms, (n, 1, ...); factors that depend on the taper
+        then have the shape (n, *u.shape).
         """
         if self.profile is None:
             factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))

@@ -26,7 +26,8 @@ from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCu
 
 class BautinEnd(IntEnum):
     """Reason why a curve ends. none: the point is not an end. range_end: end of the third parameter's range.
-    plane_edge: end of the range of another parameter. not_found: no point was found beyond the end."""
+    plane_edge: end of the range of another parameter. not_found: no point was found beyond the end.
+    list_full: maximum number of points. closed: the curve returns to its first point."""
 
     none = 0
     range_end = 1
@@ -154,8 +155,8 @@ class BautinSpace:
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
-        """Whether the curve has more than `BAUTIN.min_loop_points` points, and the first point of the curve
-        lies between its last point and `there`."""
+        """Whether the curve has more than `BAUTIN_SETTINGS.min_loop_points` points, and the first point of
+        the curve lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))
@@ -215,8 +216,8 @@ def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurv
 
 
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` in the direction `space.side` of the third parameter, including points at its
-    requested values; reason for the end of the curve)."""
+    """(points from `start` in the direction `space.first_direction` of the third parameter, including points
+    at its requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + space.direction * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report_point_count)

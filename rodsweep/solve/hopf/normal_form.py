@@ -59,8 +59,8 @@ class NormalFormSettings:
 NORMAL_FORM_SETTINGS = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM_SETTINGS.found`, below rounding error; after one iteration the error of the mode would exceed
-the stated error of c."""
+of `NORMAL_FORM_SETTINGS.converged_distance`, below rounding error; after one iteration the error of the mode
+would exceed the stated error of c."""
 
 
 HARMONIC_WAVE_NUMBER_RATIO = 2
@@ -185,7 +185,7 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
-    `accuracy` and `NORMAL_FORM_SETTINGS.found`, or if the mesh has too many nodes.
+    `accuracy` and `NORMAL_FORM_SETTINGS.converged_distance`, or if the mesh has too many nodes.
     """
     nodes = elements.nodes
     limit = NORMAL_FORM_SETTINGS.max_nodes if rod.standard else NORMAL_FORM_SETTINGS.max_arm_nodes

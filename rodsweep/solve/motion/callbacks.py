@@ -1,8 +1,9 @@
 """Equations of the rod as C functions that PETSc calls without Python.
 
 numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
-iteration of 5 us would take 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`.
-The memory of this record belongs to a `CallbackWorkspace`, which must outlive the TS.
+iteration of 5 us would take 200 us. PETSc passes each function one pointer, to a record of type
+`context.CONTEXT_DTYPE`. The memory of this record belongs to a `CallbackWorkspace`, which must outlive the
+TS.
 
 The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even if the full Jacobian
 of the step is implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.

@@ -34,10 +34,11 @@ ROD_ARRAY_FIELDS = (
 """Fields of `CONTEXT_DTYPE` with the addresses of the integrated rod's arrays. `roots`: square roots of the
 compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
 WORKSPACE_ARRAY_FIELDS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Fields of `CONTEXT_DTYPE` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns,
-unknowns); the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,), and states,
-(2 MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of each stage,
-(MAX_STAGES, MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
+"""Fields of `CONTEXT_DTYPE` with the addresses of a `CallbackWorkspace`'s arrays: the last Jacobian,
+(unknowns, unknowns); the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,),
+and states, (2 MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of
+each stage, (MAX_STAGES, MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,)
+each."""
 PETSC_HANDLE_FIELDS = ("ts", "matrix", "ksp", "residual", "correction")
 """Fields of `CONTEXT_DTYPE` with the handles of PETSc objects."""
 CONTEXT_DTYPE = np.dtype(

@@ -65,7 +65,8 @@ RELAXATION = TimeScheme(
 
 class RunEnding(IntEnum):
     """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
-    `RunLimit.is_reached`. too_many_steps: `RunLimit.max_steps`."""
+    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps: `RunLimit.max_steps`. failed: an
+    error or a failed step of PETSc, or a state that is not finite."""
 
     reached = 0
     stopped = 1
@@ -87,8 +88,8 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class RunLimit:
-    """Conditions that end a run early: a step ends at a state z for which `reached(z)` is true, or
-    `max_steps` steps are made."""
+    """Conditions that end a run early: a step ends at a state z for which `is_reached(z)` is true, or
+    `max_steps` steps are made. is_reached: None without such a condition."""
 
     is_reached: Callable[[Array], bool] | None = None
     max_steps: int = INTEGRATOR_SETTINGS.max_steps

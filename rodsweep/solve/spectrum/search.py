@@ -29,7 +29,8 @@ class CheckedCandidates:
     candidates: Candidates
     comparison: CountComparison | None
     error_over_limit: float
-    """Largest ratio of an error to the allowed error; `SEARCH.max_error_over_limit` ends the search."""
+    """Largest ratio of an error to the allowed error; a ratio of at most
+    `SEARCH_SETTINGS.max_error_over_limit` ends the search."""
 
     @property
     def sort_key(self) -> tuple[bool, float]:
@@ -165,8 +166,9 @@ class Search:
         self.request_eigenvalues(more)
 
     def needs_eigenvalues_beyond_axis(self, found: Candidates) -> bool:
-        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed for a count or, up to
-        SEARCH.max_unproved_modes, for a list without a proof."""
+        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed: for a count if one
+        can succeed, else while fewer than `SEARCH_SETTINGS.max_unproved_modes` modes are found. False without
+        a requested certificate, and for a uniform rod, whose count needs no decaying mode."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable

@@ -111,8 +111,8 @@ class LoadedPencil(NamedTuple):
 
 class ShiftInvertSolver(ABC):
     """Krylov-Schur solver for pencils of one sparsity pattern; `solve` may be called any number of times.
-
-    mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector.
+    mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's matrices
+    A - shift B and B of the rod in `loaded_pencil`. eps: SLEPc's solver.
     """
 
     def __init__(self, pattern: PencilPattern, mass: Array):

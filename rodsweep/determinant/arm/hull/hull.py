@@ -147,7 +147,8 @@ def _smallest_region(
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
     if no bound is found.
 
-    F, lengths, local, averaged_regions: as in `HullSamples`. largest: bound of c.
+    F, lengths, local: as in `HullSamples`. averaged: `averaged_regions` of `HullSamples`. largest: bound of
+    c.
     """
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0

@@ -59,8 +59,9 @@ CRUSHED_MARGIN = 4
 
 
 class BoundaryEnd(IntEnum):
-    """Reasons for the end of a boundary curve. edge: edge of the plane. crushed: crushed rod. closed: the
-    curve returns to its first point. list_full: maximum number of points."""
+    """Reasons for the end of a boundary curve. none: the point is not an end. edge: edge of the plane.
+    crushed: crushed rod. closed: the curve returns to its first point. not_followed: no further point was
+    found. list_full: maximum number of points."""
 
     none = 0
     edge = 1

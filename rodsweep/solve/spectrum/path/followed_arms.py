@@ -24,7 +24,7 @@ class FollowedArms:
     nearest point.
 
     Eigenvalues are followed from point to point only as far as the largest requested p. If following fails at
-    a point, a new interval starts at a later point.
+    a point, a new interval starts at a later point. intervals: the intervals followed so far.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
