@@ -17,7 +17,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAG_NAMES
-from ..model.arm.quantities import LOAD_BY_RELATIVE_NAME, LOADS
+from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
 from ..model.material.build import DEFAULT_BUILD
 from ..solve.exclusive import defer_signals
 from ..tasks.running.job import Job, job_of, machine_memory
@@ -69,11 +69,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
-        names = [
-            n
-            for n in ArmSection.model_fields
-            if n not in LOAD_BY_RELATIVE_NAME and (loaded or n not in LOADS)
-        ]
+        names = [n for n in ArmSection.model_fields if n not in LOAD_OF_RATIO and (loaded or n not in LOADS)]
         known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
@@ -117,7 +113,7 @@ def require_allowed_keys(tree: ConfigTree) -> None:
     which the ranks of the run share.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
-    if arm is None or arm.load_axis not in LOAD_BY_RELATIVE_NAME:
+    if arm is None or arm.load_axis not in LOAD_OF_RATIO:
         job_from(tree)
 
 

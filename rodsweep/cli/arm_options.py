@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from ..model.arm.quantities import QUANTITIES, UNITS_AND_EXAMPLES
+from ..model.arm.quantities import QUANTITIES, UNITS
 from ..model.arm.segments import EXAMPLE_SEGMENT
 from ..model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 
@@ -46,7 +46,7 @@ def arm_options(
     """
 
     def add_options(command: CommandFunction) -> CommandFunction:
-        for name in reversed([name for name in UNITS_AND_EXAMPLES if name not in left_out]):
+        for name in reversed([name for name in UNITS if name not in left_out]):
             command = _quantity_option(name, is_needed and QUANTITIES[name].needed)(command)
         for option, settings in reversed(MATERIAL_OPTIONS.items()):
             command = click.option(option, **settings)(command)

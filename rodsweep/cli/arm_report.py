@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import Console
 
 from ..errors import InputError
-from ..model.arm.quantities import UNITS_AND_EXAMPLES
+from ..model.arm.quantities import UNITS
 
 LINE_STYLES = {"headline": "bold", "warning": "yellow"}
 """Text styles of the printed lines, by kind of line."""
@@ -31,7 +31,7 @@ def describe_arm(given: dict[str, str | None], poisson: float, segments: tuple[s
         console.print(line, markup=False, style=LINE_STYLES.get(kind, ""))
 
 
-QUANTITY_NAMES = "|".join((*UNITS_AND_EXAMPLES, "segments"))
+QUANTITY_NAMES = "|".join((*UNITS, "segments"))
 """Regular expression of all names of quantities."""
 QUANTITY_IN_SENTENCE = re.compile(rf"^({QUANTITY_NAMES})|(?<= and )({QUANTITY_NAMES})(?= = | are )")
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""

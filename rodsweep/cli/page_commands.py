@@ -7,7 +7,7 @@ import click
 
 from ..config.values import printable
 from ..errors import InputError
-from ..model.arm.quantities import UNITS_AND_EXAMPLES
+from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
 from .file_names import link_target, with_suffix_replaced
@@ -160,7 +160,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
     require_portrait(output)
     parameters = {name: value for name, value in options.items() if name in PARAMETERS}
     material = {name: options[name] for name in ("law", "section", "profile")}
-    quantities = {name: value for name, value in options.items() if name in (*UNITS_AND_EXAMPLES, "poisson")}
+    quantities = {name: value for name, value in options.items() if name in (*UNITS, "poisson")}
     quantities["segments"] = options["segment"] or None
     rod = rod_of_options(parameters, quantities, material)
     with solve_with_progress(ProgressReporter(None, "portrait", "solved"), solved_view) as solve:

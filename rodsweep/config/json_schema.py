@@ -17,7 +17,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ..model.arm.quantities import LOAD_BY_RELATIVE_NAME, LOADS, QUANTITIES, SECTION_SIZE_NAMES
+from ..model.arm.quantities import LOAD_OF_RATIO, LOADS, QUANTITIES, SECTION_SIZE_NAMES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .arm.axes import LOAD_AXES, NON_LOAD_KEYS
 from .document.refusals import value_type_of_key
@@ -30,7 +30,7 @@ QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
-    **{name: {"minimum": 0} for name in LOAD_BY_RELATIVE_NAME},
+    **{name: {"minimum": 0} for name in LOAD_OF_RATIO},
 }
 """Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
 DIALECT = "http://json-schema.org/draft-07/schema#"

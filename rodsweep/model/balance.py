@@ -73,12 +73,12 @@ class Material(NamedTuple):
     @property
     def straight(self) -> Values:
         """Ebar, the deformation of the rod without load: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
-        return vector_with_first_component(1.0, len(self.drag))
+        return axial_vector(1.0, len(self.drag))
 
     @property
     def tip_stress(self) -> Values:
         """Sigma(1), the stress at the tip: (-F, 0, ...), (3,) or (6,)."""
-        return vector_with_first_component(-self.F, len(self.drag))
+        return axial_vector(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
         """Deformation E = Ebar + C Sigma under the stress Sigma, (3, ...) or (6, ...)."""
@@ -113,7 +113,7 @@ def embed_in_se3(plane: Values) -> Values:
     return space
 
 
-def vector_with_first_component(number: float, size: int) -> Values:
+def axial_vector(number: float, size: int) -> Values:
     """The vector (number, 0, ..., 0) of length `size`."""
     element = np.zeros(size)
     element[0] = number

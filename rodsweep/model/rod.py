@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from .balance import Material, vector_with_first_component
+from .balance import Material, axial_vector
 from .material.build import DEFAULT_BUILD, Build, LocalCoefficients, Sections
 from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
 from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
@@ -180,8 +180,7 @@ class Rod:
 
     @property
     def nu(self) -> float:
-        """Stretch of the straight uniform rod of linear material under its force, nu = 1 - F c1 (Sec. V).
-        Raises NotUniform for other rods."""
+        """Stretch of the straight rod, nu = 1 - F c1 (Sec. V). Raises NotUniform as `coefficients`."""
         return self.coefficients.nu
 
     @property
@@ -210,11 +209,10 @@ class Rod:
 
     @property
     def material(self) -> Material:
-        """Coefficients of the nonlinear balance of the uniform rod of linear material, for motion in the
-        plane. Raises NotUniform for other rods."""
+        """Coefficients of the balance for motion in the plane. Raises NotUniform as `coefficients`."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
-        return Material(compliance, drag, self.F, vector_with_first_component(self.nu, 3))
+        return Material(compliance, drag, self.F, axial_vector(self.nu, 3))
 
     def sections(self, u: Array) -> Sections:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
@@ -231,7 +229,7 @@ class Rod:
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
         drag = np.array([axial, normal, normal, twist_drag, rotational, rotational])
-        return Material(compliance, drag, self.F, vector_with_first_component(self.nu, 6))
+        return Material(compliance, drag, self.F, axial_vector(self.nu, 6))
 
     def material_change(self, name: str) -> Material:
         """Derivative of `material` with respect to the coordinate of the parameter `name`."""
@@ -239,7 +237,7 @@ class Rod:
         F, nu, c2, gamma3 = self.direction(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
-        return Material(compliance, drag, F, vector_with_first_component(nu, 3))
+        return Material(compliance, drag, F, axial_vector(nu, 3))
 
     def _derivatives_by_coordinate(self, name: str) -> dict[str, float]:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.

@@ -3,7 +3,7 @@
 from math import floor, log10
 
 from ..model.arm.arm import SlenderArm
-from ..model.arm.quantities import UNITS_AND_EXAMPLES
+from ..model.arm.quantities import UNITS
 from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
 from .flutter import Span
 
@@ -48,7 +48,7 @@ class Load:
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
         given = getattr(arm, self.name)
-        si = UNITS_AND_EXAMPLES[self.name][0]
+        si = UNITS[self.name][0]
         self.unit = (
             unit_of(given, si)
             if given is not None

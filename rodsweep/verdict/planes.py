@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.quantities import UNITS_AND_EXAMPLES
+from ..model.arm.quantities import UNITS
 from ..model.units import with_si_prefix
 from ..solve.changes.unstable_modes import ChangeKind
 from .flutter import FlutterRange, flutter_range
@@ -81,12 +81,12 @@ def with_load(planes: Planes) -> Planes:
     force = first.flutter_range.forces[0].force(ChangeKind.hopf)
     scale = first.arm.load_scale
     if force is None:
-        end = f"{float(f'{first.flutter_range.end * scale:.3g}'):g} {UNITS_AND_EXAMPLES[load][0]}"
+        end = f"{float(f'{first.flutter_range.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
             f"not flutter up to {end}; give an absolute load"
         )
-    factor, unit = with_si_prefix(share * force * scale, UNITS_AND_EXAMPLES[load][0])
+    factor, unit = with_si_prefix(share * force * scale, UNITS[load][0])
     given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
     return Planes(replace(first, arm=replace(first.arm, **given)), second)

@@ -7,7 +7,7 @@ from math import isnan
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Effect, Validity
-from ..model.arm.quantities import UNITS_AND_EXAMPLES
+from ..model.arm.quantities import UNITS
 from ..model.units import unit_of, value_in_unit
 from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
@@ -66,7 +66,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     if effect_kind(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
     if effect_kind(effect) == "weight":
-        si = UNITS_AND_EXAMPLES["density_difference"][0]
+        si = UNITS["density_difference"][0]
         unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
         most = rounded_down(value_in_unit(abs(arm.si.density_difference) * share, unit, si))
         return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
@@ -80,7 +80,7 @@ def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> st
     """Clause with the smallest viscosity of the fluid, and the largest thickness of the arm if known, for
     which inertia is within its limit.
     """
-    si = UNITS_AND_EXAMPLES["viscosity"][0]
+    si = UNITS["viscosity"][0]
     unit = unit_of(arm.viscosity, si)
     factor = viscosity_factor(assessment.at_flutter)
     viscosity = f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAG_NAMES, cox_drag, gray_hancock_drag, lighthill_drag
-from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects, smallest_normal_drag
+from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects, smallest_drag
 from rodsweep.model.arm.shape import MAX_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
@@ -145,7 +145,7 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
     assert arm.crushing_force * arm.force_scale == pytest.approx(thin.k1 * thin.force_scale, rel=1e-12)
     own = {e.name: float(e.value) for e in neglected_effects(arm, 2.0, 1.0)}
     found = [
-        {e.name: float(e.value) for e in neglected_effects(each, 2.0, 1.0, drag=smallest_normal_drag(each))}
+        {e.name: float(e.value) for e in neglected_effects(each, 2.0, 1.0, drag=smallest_drag(each))}
         for each in (thick, thin)
     ]
     for name in ("inertia of the arm", "inertia of the fluid", "Reynolds number"):

@@ -16,7 +16,7 @@ from rodsweep.model.arm.neglected import (
     Validity,
     largest_angular_frequency,
     neglected_effects,
-    smallest_normal_drag,
+    smallest_drag,
     worst_validity,
 )
 from rodsweep.model.arm.unsteady_drag import MAX_SERIES_FREQUENCY, drag_phase_lag
@@ -118,7 +118,7 @@ def test_least_drag_moves_fastest():
     arm = SlenderArm(**WATER)
     rates = [170.0 / arm.tau2_with(drag) for drag in arm.drags]
     assert largest_angular_frequency(arm, 170.0) == pytest.approx(max(rates))
-    assert smallest_normal_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
+    assert smallest_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
 
 
 def test_validity_goes_by_tenths_of_the_limit_and_is_of_arrays():

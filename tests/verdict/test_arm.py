@@ -19,7 +19,7 @@ from rodsweep.model.arm.drag import (
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import load_over_flutter
-from rodsweep.solve.changes.along_path import ThresholdSearchResult
+from rodsweep.solve.changes.along_path import ThresholdList
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, empty_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind, Threshold
 from rodsweep.verdict import flutter
@@ -293,7 +293,7 @@ def test_numbers_need_no_solver_and_help_no_units():
 def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
     crossings = tuple(Threshold(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
-    transitions = ThresholdSearchResult(crossings=crossings, proved=True)
+    transitions = ThresholdList(crossings=crossings, proved=True)
     return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
 
 
@@ -345,7 +345,7 @@ def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certa
     inaccurate = tuple(replace(c, error=0.1 if c.at == 20.0 else 0.0) for c in known.thresholds.crossings)
     thresholds = replace(
         known.thresholds,
-        transitions=ThresholdSearchResult(crossings=inaccurate, proved=True),
+        transitions=ThresholdList(crossings=inaccurate, proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))

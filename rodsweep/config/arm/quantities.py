@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ...errors import InputError
 from ...model.arm.drag import DRAG_NAMES, DRAG_RANGE_NAME
-from ...model.arm.quantities import LOAD_BY_RELATIVE_NAME, UNITS_AND_EXAMPLES
+from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
 from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_float, short_repr
 
@@ -44,7 +44,7 @@ def _without_unit(name: str, span: dict[str, Any]) -> str:
     """
     ends = [end for end in ("start", "stop") if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
-    unit = UNITS_AND_EXAMPLES[name][0]
+    unit = UNITS[name][0]
     return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""
 
 
@@ -55,7 +55,7 @@ def _si_number(name: str, value: Any) -> float:
     if not isinstance(value, str):
         return as_float(value)
     try:
-        return quantity_in_si(f"parameters.arm.{name}", value, *UNITS_AND_EXAMPLES[name])
+        return quantity_in_si(f"parameters.arm.{name}", value, *UNITS[name])
     except InputError as error:
         raise ValueError(str(error)) from None
 
@@ -68,7 +68,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
     found = dict(given)
-    for name, load in LOAD_BY_RELATIVE_NAME.items():
+    for name, load in LOAD_OF_RATIO.items():
         shares, is_relative = _loads_in_flutter_loads(given.get(load))
         if not is_relative:
             continue
@@ -120,7 +120,7 @@ def typed_unit(name: str, axis: Axis) -> str:
     was typed.
     """
     units = [split_quantity(value)[1] for value in _written_values(axis.written) if isinstance(value, str)]
-    return next(filter(None, units), UNITS_AND_EXAMPLES[name][0])
+    return next(filter(None, units), UNITS[name][0])
 
 
 def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
@@ -136,10 +136,8 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
             names = drag_names(axis.array().tolist())
             words.append(f"drag {DRAG_RANGE_NAME if len(names) == len(DRAG_NAMES) else ' and '.join(names)}")
             continue
-        unit = typed_unit(name, axis) if name in UNITS_AND_EXAMPLES else ""
-        texts = [
-            f"{value_in_unit(end, unit, UNITS_AND_EXAMPLES[name][0]) if unit else end:.6g}" for end in ends
-        ]
+        unit = typed_unit(name, axis) if name in UNITS else ""
+        texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
         words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
         if unit and not all(isinstance(one, str) for one in _written_values(axis.written)):
             bare.append(name)

@@ -11,14 +11,7 @@ from pydantic import Field, model_validator
 from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import (
-    ARM_SCALES,
-    LOAD_BY_RELATIVE_NAME,
-    LOADS,
-    QUANTITIES,
-    SCALE_NAME_BY_LOAD,
-    UNITS_AND_EXAMPLES,
-)
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAMES, UNITS
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..material import LawName, SectionName
@@ -125,14 +118,12 @@ class ArmSection(StrictSection):
     @property
     def load(self) -> str | None:
         """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
-        return LOAD_BY_RELATIVE_NAME.get(str(self.load_axis), self.load_axis)
+        return LOAD_OF_RATIO.get(str(self.load_axis), self.load_axis)
 
     @property
     def varying_quantities(self) -> tuple[str, ...]:
         """Names of the quantities that have several values or are relative to flutter."""
-        return tuple(
-            n for n, axis in self.quantity_axes.items() if axis.size > 1 or n in LOAD_BY_RELATIVE_NAME
-        )
+        return tuple(n for n, axis in self.quantity_axes.items() if axis.size > 1 or n in LOAD_OF_RATIO)
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
@@ -160,12 +151,10 @@ class ArmSection(StrictSection):
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
             low = float(axis.array()[0])
-            if name in LOAD_BY_RELATIVE_NAME and low < 0:
+            if name in LOAD_OF_RATIO and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
-            if name in UNITS_AND_EXAMPLES and not (QUANTITIES[name].signed or low > 0):
-                raise ValueError(
-                    f"parameters.arm.{name} = {low:.6g} {UNITS_AND_EXAMPLES[name][0]} is not above 0"
-                )
+            if name in UNITS and not (QUANTITIES[name].signed or low > 0):
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
             self.arm_of(self.first_values, loaded=True)
 
@@ -207,7 +196,7 @@ class ArmSection(StrictSection):
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
             axes = {
-                "F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAME_BY_LOAD[self.load]))
+                "F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAMES[self.load]))
             } | axes
         return axes
 

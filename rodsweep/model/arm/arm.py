@@ -16,7 +16,7 @@ from ..material.build import DEFAULT_BUILD, Build
 from ..parameters import PARAMETERS
 from ..units import GivenQuantity, load_over_flutter
 from .drag import DRAG_NAMES, Drag
-from .quantities import LOADS, UNITS_AND_EXAMPLES, arm_quantity_in_si, quoted_quantity
+from .quantities import LOADS, UNITS, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
@@ -62,7 +62,7 @@ class SlenderArm:
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
         object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
-        numbers = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS_AND_EXAMPLES}
+        numbers = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS}
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**numbers))
         object.__setattr__(self, "segments", texts)

@@ -103,7 +103,7 @@ def neglected_effects(
     default the smallest estimate, for which inertia is largest. amplitude: amplitude of the tip divided by L.
     Weight is included if the arm has a density difference, flattening of the wall if the arm has a bore.
     """
-    drag = smallest_normal_drag(arm) if drag is None else drag
+    drag = smallest_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
     motion = abs(motion)
     effects = [
@@ -132,14 +132,14 @@ def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.
     return np.maximum.reduce(list(counted))
 
 
-def smallest_normal_drag(arm: SlenderArm) -> Drag:
+def smallest_drag(arm: SlenderArm) -> Drag:
     """The drag estimate with the smallest gamma2, for which the motion of the arm is fastest."""
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
 def largest_angular_frequency(arm: SlenderArm, frequency: ArrayLike) -> Array:
     """Angular frequency in rad/s for the smallest drag of the arm. frequency: in rad/tau2, (...,)."""
-    return np.asarray(frequency, float) / arm.tau2_with(smallest_normal_drag(arm))
+    return np.asarray(frequency, float) / arm.tau2_with(smallest_drag(arm))
 
 
 def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:

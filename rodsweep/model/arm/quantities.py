@@ -54,9 +54,9 @@ QUANTITIES = {
     },
 }
 """All quantities of an arm that a user may give, by name."""
-UNITS_AND_EXAMPLES = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
+UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
 """(SI unit, example) of each quantity with a unit, by name."""
-LOAD_BY_RELATIVE_NAME = {f"{load}_over_flutter": load for load in LOADS}
+LOAD_OF_RATIO = {f"{load}_over_flutter": load for load in LOADS}
 """Name of the load, "pressure" or "force", by name of the relative load: the load divided by the load at
 first flutter with the likeliest drag."""
 SECTION_SIZE_NAMES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
@@ -67,7 +67,7 @@ ARM_SCALES = {
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
-SCALE_NAME_BY_LOAD = {load: f"{load}_scale" for load in LOADS}
+SCALE_NAMES = {load: f"{load}_scale" for load in LOADS}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
 ALL_QUANTITIES = QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
@@ -81,7 +81,7 @@ def arm_quantity_in_si(name: str, given: GivenQuantity | None) -> float:
     """
     if given is None or (name in LOADS and load_over_flutter(given) is not None):
         return float("nan")
-    value = quantity_in_si(name, given, *UNITS_AND_EXAMPLES[name])
+    value = quantity_in_si(name, given, *UNITS[name])
     if not (QUANTITIES[name].signed or value > 0):
         raise InputError(f"{quoted_quantity(name, given)} is not above 0")
     return value
@@ -93,6 +93,4 @@ def quoted_quantity(name: str, given: GivenQuantity) -> str:
     """
     if isinstance(given, str):
         return f"{name} = '{given}'"
-    return (
-        f"{name} = {quantity_in_si(name, given, *UNITS_AND_EXAMPLES[name]):.6g} {UNITS_AND_EXAMPLES[name][0]}"
-    )
+    return f"{name} = {quantity_in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

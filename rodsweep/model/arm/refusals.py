@@ -12,7 +12,7 @@ from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
 from ..units import unit_of, value_in_unit
 from .drag import DRAG_NAMES, DRAG_RANGE_NAME, LEAST_SLENDERNESS
-from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS_AND_EXAMPLES
+from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS
 from .section import BoreTooWide
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ def refuse_crushed(arm: "SlenderArm") -> None:
     if loaded is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return
     limit = arm.crushing_force * arm.load_scale
-    si = UNITS_AND_EXAMPLES[loaded][0]
+    si = UNITS[loaded][0]
     unit = unit_of(getattr(arm, loaded), si)
     where = "the weakest section of" if arm.shape.varies else ""
     raise InputError(

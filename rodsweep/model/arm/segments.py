@@ -133,10 +133,8 @@ def _segment_in_si(number: int, written: WrittenSegment) -> ArmSegment:
 
 def _value_with_unit(name: str, given: GivenQuantity) -> str:
     """Value of the quantity `name` as text with its unit."""
-    from .quantities import UNITS_AND_EXAMPLES
+    from .quantities import UNITS
 
     return (
-        given.strip()
-        if isinstance(given, str)
-        else f"{arm_quantity_in_si(name, given)!r} {UNITS_AND_EXAMPLES[name][0]}"
+        given.strip() if isinstance(given, str) else f"{arm_quantity_in_si(name, given)!r} {UNITS[name][0]}"
     )

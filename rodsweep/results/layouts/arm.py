@@ -22,13 +22,7 @@ from ...config.axes import Axes
 from ...config.tasks import makes_diagram
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.neglected import Validity
-from ...model.arm.quantities import (
-    ALL_QUANTITIES,
-    LOAD_BY_RELATIVE_NAME,
-    LOADS,
-    SCALE_NAME_BY_LOAD,
-    UNITS_AND_EXAMPLES,
-)
+from ...model.arm.quantities import ALL_QUANTITIES, LOAD_OF_RATIO, LOADS, SCALE_NAMES, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
 from .variables import ANGULAR_UNIT, DIMENSIONS, FilledVariable, Layout, Variable, real, word
@@ -71,7 +65,7 @@ SI_UNITS = {
     "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
 }
 """SI units of the dimensionless units of time, length, energy and power."""
-FORCE_UNITS = {load: SIUnit(UNITS_AND_EXAMPLES[load][0], (SCALE_NAME_BY_LOAD[load],)) for load in LOADS}
+FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAMES[load],)) for load in LOADS}
 """SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
@@ -124,7 +118,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
     variable.
     """
-    as_force = any(LOAD_BY_RELATIVE_NAME.get(name, name) == "force" for name in config["parameters"]["arm"])
+    as_force = any(LOAD_OF_RATIO.get(name, name) == "force" for name in config["parameters"]["arm"])
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
 
@@ -211,7 +205,7 @@ def _data_of(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)
-    if name in UNITS_AND_EXAMPLES and getattr(arm, name) is not None:
+    if name in UNITS and getattr(arm, name) is not None:
         variable = replace(variable, typed=typed_unit(name, getattr(arm, name)))
     if name == "drag":
         variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAG_NAMES)))

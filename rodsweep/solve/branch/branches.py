@@ -11,7 +11,7 @@ from functools import cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ...watch import solve_part
-from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
+from ..changes.along_path import ThresholdList, find_axis_crossings
 from ..changes.unstable_modes import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
@@ -221,7 +221,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
 
 
 def _status_and_message(
-    found: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+    found: ThresholdList, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
     and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on

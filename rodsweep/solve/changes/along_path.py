@@ -37,7 +37,7 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ThresholdSearchResult:
+class ThresholdList:
     """Result of a search along a path: all thresholds, in increasing order of the parameter, and whether the
     list is proved complete."""
 
@@ -98,7 +98,7 @@ class AxisCrossings:
 
 def find_thresholds(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
-) -> ThresholdSearchResult:
+) -> ThresholdList:
     """All thresholds along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
@@ -130,14 +130,14 @@ def find_thresholds(
         counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
     if certify and not tracer.leaders_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
-    counted = _result_with_counts(counts, unstable, crossings, at_end)
-    counted = _with_searched_interval(counted, found, (start, stop))
+    counted = _with_counts(counts, unstable, crossings, at_end)
+    counted = _with_interval(counted, found, (start, stop))
     return replace(counted, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
 def find_axis_crossings(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
-) -> ThresholdSearchResult:
+) -> ThresholdList:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
     exchanges of the leading eigenvalue; takes half the time of `find_thresholds`.
 
@@ -152,18 +152,16 @@ def find_axis_crossings(
     ordered = sorted(found.crossings, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
     crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
-    return _with_searched_interval(
-        _result_with_counts(counts, unstable, crossings, at_end), found, (start, stop)
-    )
+    return _with_interval(_with_counts(counts, unstable, crossings, at_end), found, (start, stop))
 
 
-def _result_with_counts(
+def _with_counts(
     counts: ModeCounter, unstable: int, crossings: tuple[Threshold, ...], at_end: int
-) -> ThresholdSearchResult:
-    """`ThresholdSearchResult` of the thresholds `crossings`, whose unstable modes are counted. counts: the
+) -> ThresholdList:
+    """`ThresholdList` of the thresholds `crossings`, whose unstable modes are counted. counts: the
     gaps and doubts of the search. unstable, at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
-    return ThresholdSearchResult(
+    return ThresholdList(
         crossings=crossings,
         open_range=_hull_of_gaps(counts.gaps),
         unstable_at_start=unstable,
@@ -173,9 +171,7 @@ def _result_with_counts(
     )
 
 
-def _with_searched_interval(
-    counted: ThresholdSearchResult, found: AxisCrossings, asked: tuple[float, float]
-) -> ThresholdSearchResult:
+def _with_interval(counted: ThresholdList, found: AxisCrossings, asked: tuple[float, float]) -> ThresholdList:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched_interval(*asked)
     reason = found.search_end.reason

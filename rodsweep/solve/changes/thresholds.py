@@ -9,7 +9,7 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point import outcome_or_failure
 from ..status import PointStatus
-from .along_path import ThresholdSearchResult, find_thresholds
+from .along_path import ThresholdList, find_thresholds
 from .unstable_modes import ChangeKind, Threshold, end_below_crushing
 
 
@@ -63,7 +63,7 @@ class Thresholds:
     """Result of a search: all thresholds along a path up to the parameter value `end`, with a status."""
 
     status: ThresholdStatus
-    transitions: ThresholdSearchResult
+    transitions: ThresholdList
     end: float
     seconds: float = 0.0
     message: str = ""
@@ -89,13 +89,11 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
     value at the end of the search. message: reason for a failure."""
-    found = ThresholdSearchResult(proved=status == ThresholdStatus.ok)
+    found = ThresholdList(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
-def thresholds_with_status(
-    found: ThresholdSearchResult, accuracy: float, certify: bool, most: int
-) -> Thresholds:
+def thresholds_with_status(found: ThresholdList, accuracy: float, certify: bool, most: int) -> Thresholds:
     """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
     requested. most: maximum number of thresholds in the list."""
     status = ThresholdStatus.ok

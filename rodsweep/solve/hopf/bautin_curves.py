@@ -25,9 +25,8 @@ from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCu
 
 
 class BautinEnd(IntEnum):
-    """Reason why a curve ends. none: the point is not an end. range_end: end of the third parameter's range.
-    plane_edge: end of the range of another parameter. not_found: no point was found beyond the end.
-    list_full: maximum number of points. closed: the curve returns to its first point."""
+    """Reason why a curve ends. none: no end. range_end: end of the third parameter's range. plane_edge: end
+    of another range. not_found: no further point. list_full: too many points. closed: at its first point."""
 
     none = 0
     range_end = 1

@@ -10,7 +10,7 @@ from functools import cache, lru_cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
+from ..changes.along_path import ThresholdList, find_axis_crossings
 from ..changes.unstable_modes import Threshold, end_below_crushing
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
@@ -76,7 +76,7 @@ class Criticality:
     seconds: computing time."""
 
     status: CriticalityStatus
-    transitions: ThresholdSearchResult
+    transitions: ThresholdList
     coefficients: tuple[HopfCoefficients, ...]
     end: float
     seconds: float = 0.0
@@ -120,7 +120,7 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, most: int) -> ThresholdSearchResult:
+def _hopf_points(path: Path, end: float, certify: bool, most: int) -> ThresholdList:
     return find_axis_crossings(path, 0.0, end, certify, most)
 
 
@@ -136,7 +136,7 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
 def _empty_criticality(end: float, cause: str) -> Criticality:
     return Criticality(
         status=CriticalityStatus.failed,
-        transitions=ThresholdSearchResult(proved=False),
+        transitions=ThresholdList(proved=False),
         coefficients=(),
         end=end,
         message=cause,
@@ -144,7 +144,7 @@ def _empty_criticality(end: float, cause: str) -> Criticality:
 
 
 def _status_and_message(
-    found: ThresholdSearchResult, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
+    found: ThresholdList, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
     problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""

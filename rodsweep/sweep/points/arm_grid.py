@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_BY_RELATIVE_NAME, SCALE_NAME_BY_LOAD
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
@@ -52,12 +52,12 @@ def grid_of_arms(
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
-    if section.load_axis in LOAD_BY_RELATIVE_NAME:
+    if section.load_axis in LOAD_OF_RATIO:
         coverage = _with_flutter(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
-        if section.load_axis in LOAD_BY_RELATIVE_NAME:
-            units[section.load] = table["F"] * units[SCALE_NAME_BY_LOAD[section.load]]
+        if section.load_axis in LOAD_OF_RATIO:
+            units[section.load] = table["F"] * units[SCALE_NAMES[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else DEFAULT_BUILD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
@@ -101,11 +101,7 @@ def _unit_load_forces(
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
-    beside = (
-        [None]
-        if tapers is None or section.load_axis not in LOAD_BY_RELATIVE_NAME
-        else tapers.ravel().tolist()
-    )
+    beside = [None] if tapers is None or section.load_axis not in LOAD_OF_RATIO else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
         found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
@@ -123,9 +119,9 @@ def _unit_load_force(
     """
     if arm is None or not section.load:
         return NO_FLUTTER_FORCE
-    if section.load_axis in LOAD_BY_RELATIVE_NAME:
+    if section.load_axis in LOAD_OF_RATIO:
         return flutter(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_NAME_BY_LOAD[section.load]))
+    return FlutterForce(1.0 / getattr(arm, SCALE_NAMES[section.load]))
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:

@@ -21,13 +21,7 @@ from ...config.arm.axes import NON_LOAD_KEYS, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
-from ...model.arm.neglected import (
-    LARGE_AMPLITUDE,
-    Validity,
-    neglected_effects,
-    smallest_normal_drag,
-    worst_validity,
-)
+from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
 from ...model.material.laws import LINEAR
 from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import CLASSES
@@ -180,7 +174,7 @@ class ArmValidity:
     def _validity_variables(
         self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
     ) -> dict[str, Any]:
-        drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_normal_drag(arm)
+        drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force_of_points(arm, motion, index)
         effects = neglected_effects(

@@ -19,7 +19,7 @@ from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.along_path import ThresholdSearchResult
+    from ...solve.changes.along_path import ThresholdList
     from ...solve.changes.unstable_modes import Threshold
 
 
@@ -35,7 +35,7 @@ class HopfLine:
     stop: float
     build: Build = DEFAULT_BUILD
 
-    def search(self) -> "ThresholdSearchResult | None":
+    def search(self) -> "ThresholdList | None":
         """Hopf points on the line; None if the search fails, or if all rods on the line are crushed."""
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import find_axis_crossings
@@ -110,7 +110,7 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 
 
 def hopf_variables(
-    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdSearchResult | None]"
+    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdList | None]"
 ) -> tuple[FilledVariable, ...]:
     """Hopf points of all lines, one line after another, as variables of a file.
 

@@ -10,7 +10,7 @@ from ....config.arm.axes import PARAMETER_STORED_ALONG
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAG_NAMES
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_BY_RELATIVE_NAME
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
 from ....model.units import value_in_unit
 from ....results.file.view import View
 from ...summary.arm.arm import quantity_words
@@ -44,7 +44,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 def given_quantities(view: View) -> list[str]:
     """Names of the quantities that the user gave for the arm of a file."""
-    return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_BY_RELATIVE_NAME)]
+    return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_OF_RATIO)]
 
 
 def quantity_at_point(view: View, name: str, number: int) -> float:

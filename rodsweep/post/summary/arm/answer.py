@@ -7,7 +7,7 @@ import numpy as np
 
 from ....config.arm.axes import NOT_SLENDER
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import SCALE_NAME_BY_LOAD, UNITS_AND_EXAMPLES
+from ....model.arm.quantities import SCALE_NAMES, UNITS
 from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
@@ -67,7 +67,7 @@ def unit_range(view: View, values: np.ndarray, si: str, errors: np.ndarray | flo
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return unit_range(view, loads, UNITS_AND_EXAMPLES[load_kind(view)][0])
+    return unit_range(view, loads, UNITS[load_kind(view)][0])
 
 
 def _add_failed(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
@@ -219,7 +219,7 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
     v = view.variables
-    scale = np.broadcast_to(v[SCALE_NAME_BY_LOAD[load_kind(view)]], rods.shape)[rods]
+    scale = np.broadcast_to(v[SCALE_NAMES[load_kind(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     return _flutter_lines(view, forces * scale, last * scale, frequency), []

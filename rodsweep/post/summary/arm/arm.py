@@ -10,13 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ....model.arm.drag import DRAG_NAMES
-from ....model.arm.quantities import (
-    ALL_QUANTITIES,
-    ARM_SCALES,
-    LOAD_BY_RELATIVE_NAME,
-    SCALE_NAME_BY_LOAD,
-    UNITS_AND_EXAMPLES,
-)
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
@@ -123,7 +117,7 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     factor = value_in_unit(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
-    if name in LOAD_BY_RELATIVE_NAME:
+    if name in LOAD_OF_RATIO:
         return f"{extent} of flutter"
     return f"{quantity_words(name)} {extent} {unit}".rstrip()
 
@@ -202,9 +196,7 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
     force, (n,).
     """
     load = load_kind(view)
-    return range_in_unit(
-        view, F * _values_at(view.quantities[SCALE_NAME_BY_LOAD[load]], points), UNITS_AND_EXAMPLES[load][0]
-    )
+    return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAMES[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:

@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point import outcome_or_failure
-from ..along_path import ThresholdSearchResult, find_thresholds
+from ..along_path import ThresholdList, find_thresholds
 from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
 from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
@@ -127,7 +127,7 @@ def _row_of_one_class(
 
 
 def classes_and_unstable_counts(
-    found: ThresholdSearchResult, values: Array
+    found: ThresholdList, values: Array
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
     the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
