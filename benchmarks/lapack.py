@@ -30,7 +30,7 @@ def whole_matrices(rod: Rod, mesh: Resolution | ArmMesh) -> tuple[Array, Array]:
         A = np.zeros((pencil.unknowns, pencil.unknowns))
         A[pencil.rows, pencil.columns] = found.A
         return A, found.B
-    form = dense_form(rod, assemble_pencil(mesh.elements, mesh.order))
+    form = dense_form(rod, assemble_pencil(mesh.element_count, mesh.order))
     return form.A, form.B
 
 

@@ -103,7 +103,7 @@ def rod_file(form: StressForm) -> bytes:
     """Content of the file `rod`, from which AUTO's equations read the mesh in space and the parameters."""
     rod, matrices = form.rod, form.mesh.matrices
     numbers = np.array([rod.c1, rod.c2, rod.axial_drag, rod.rotational_drag])
-    parts = (np.int32(form.mesh.nodes), matrices.D_transposed, matrices.weights, numbers)
+    parts = (np.int32(form.mesh.node_count), matrices.D_transposed, matrices.weights, numbers)
     return b"".join(part.tobytes() for part in parts)
 
 

@@ -28,7 +28,7 @@ Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """Template of a regular expression for a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].signed},
+    **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].may_be_nonpositive},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
     **{name: {"minimum": 0} for name in LOAD_OF_RATIO},
 }

@@ -83,7 +83,7 @@ class Config(StrictSection):
         if "taper" in (self.parameters.columns or ()):
             return False
         tapers = self.parameters.given_axes.get("taper")
-        return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))
+        return self.build.is_uniform_and_linear and (tapers is None or bool((tapers.array() == 1).all()))
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
@@ -115,7 +115,7 @@ class Config(StrictSection):
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
         numbers = dict(self.parameters.constant_parameters)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
-        if self.material is not None and not self.build.standard:
+        if self.material is not None and not self.build.is_uniform_and_linear:
             meant["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
             return meant

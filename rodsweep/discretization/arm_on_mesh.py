@@ -29,7 +29,7 @@ def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
 
     Elements of the mesh must end at the breaks of the arm's profile.
     """
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return rod.material
     compliance, drag, rest = _mean_coefficients_at_nodes(
         rod.sections(grid.points_inside_elements.ravel()), grid
@@ -41,10 +41,10 @@ def material_derivative_at_nodes(rod: Rod, name: str, grid: Mesh) -> Material:
     """The derivative of `material_at_nodes` with respect to the coordinate of the parameter `name`: 1/k for a
     stiffness k, else the parameter itself.
     """
-    if rod.standard and name != "taper":
-        return rod.material_change(name)
+    if rod.is_uniform_and_linear and name != "taper":
+        return rod.material_derivative(name)
     compliance, drag, rest = _mean_coefficients_at_nodes(
-        rod.section_changes(name, grid.points_inside_elements.ravel()), grid
+        rod.section_derivatives(name, grid.points_inside_elements.ravel()), grid
     )
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
@@ -56,7 +56,7 @@ def relative_bending_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
     At a jump the value is the mean of both sides, so that its product with m3 is the mean bending strain.
     """
     if build.profile is None:
-        return np.ones(grid.nodes + 1)
+        return np.ones(grid.node_count + 1)
     return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside_elements.ravel())[2:], grid)[0]
 
 
@@ -88,7 +88,7 @@ def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
     inside, at = _indices_beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_JUMP_CHANGE
-    changes = rod.section_changes(name, grid.points_inside_elements.ravel()[inside].ravel())
+    changes = rod.section_derivatives(name, grid.points_inside_elements.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
@@ -97,8 +97,8 @@ def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, Integ
     """Returns (points, nodes) of the k jumps. points: indices in the flat `points_inside_elements` of the
     points before and behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
-    jumps = build.jumps
-    ends = np.array([e for e in range(1, grid.elements) if grid.edges[e] in jumps], np.int64)
+    jumps = build.jump_positions
+    ends = np.array([e for e in range(1, grid.element_count) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
     return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
 

@@ -115,7 +115,7 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     # replaces this value.
     out = E.copy()
     p = source.order
-    element = np.searchsorted(source.edges, target.positions, side="right") - 1
+    element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
     at_jumps = [int(node) // p for node in here]
     for e, node in zip(at_jumps, here, strict=True):
         for side in (e - 1, e):

@@ -76,8 +76,8 @@ def nodal_rod(
     unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law.
     jumps: jumps of the material on this mesh.
     """
-    size = grid.nodes + 1
-    rest = _expanded_to_nodes(material.rest, size)
+    size = grid.node_count + 1
+    rest = _expanded_to_nodes(material.rest_strain, size)
     compliance = _expanded_to_nodes(material.compliance, size)
     resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, grid, unknown_velocities)
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
@@ -86,8 +86,8 @@ def nodal_rod(
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) -> NodalChange:
     """The `NodalChange` of a mesh. change: derivative of the material by a parameter. sides: derivatives at
     the jumps, (k, 2, 3), as in `NodalChange`."""
-    fields = change.rest, change.compliance, change.drag
-    rest, compliance, drag = (_expanded_to_nodes(field, grid.nodes + 1) for field in fields)
+    fields = change.rest_strain, change.compliance, change.drag
+    rest, compliance, drag = (_expanded_to_nodes(field, grid.node_count + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
 
@@ -112,7 +112,7 @@ def _drag_arrays(
     """Returns (drag, mobility, mobility_laplacian, unknown_velocities), fields of a `NodalRod`. drag: drags
     of the components, (d, 1) or (d, nodes + 1).
     """
-    drag = _expanded_to_nodes(drag, grid.nodes + 1)
+    drag = _expanded_to_nodes(drag, grid.node_count + 1)
     mobility = np.zeros(drag.shape)
     eliminated = [a for a in range(len(drag)) if a not in unknown_velocities]
     mobility[eliminated] = 1 / drag[eliminated]

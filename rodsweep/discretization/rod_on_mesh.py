@@ -54,10 +54,11 @@ class RodOnMesh(ABC):
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in a state."""
-        return plane_layout(self.mesh.nodes, self.unknown_velocities)
+        return plane_layout(self.mesh.node_count, self.unknown_velocities)
 
     @property
     def unknowns(self) -> int:
+        """Number of unknowns in a state."""
         return self.layout.unknowns
 
     @cached_property
@@ -152,7 +153,7 @@ class RodOnMesh(ABC):
         # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         push = q1 - F * ratio  # (h1 - 1)/c1
-        stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
+        stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
         return stored
 
     def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:

@@ -44,7 +44,7 @@ class Parameter:
     remark: str = ""
     """Text that is appended to the meaning of the parameter in result files."""
     allowed: Range
-    linear: bool = True
+    in_linear_problem: bool = True
     """Whether the transverse linear problem contains the parameter."""
     rigid_adjective: str = ""
     """Adjective for a rod whose parameter is inf, like "inextensible"; empty if inf is not allowed."""
@@ -67,19 +67,19 @@ class Parameter:
             )
 
     @property
-    def by_compliance(self) -> bool:
+    def has_inverse_coordinate(self) -> bool:
         """Whether the coordinate of the parameter is 1/value; then the value may be inf."""
         return bool(self.rigid_adjective or set(self.scaled_names) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
         """The coordinate, in which the equations are affine: 1/value for a stiffness, otherwise the value."""
-        return 1 / value if self.by_compliance else value
+        return 1 / value if self.has_inverse_coordinate else value
 
     def value(self, coordinate: float) -> float:
         """Value of the parameter with the given coordinate: 1/coordinate for a stiffness (inf for 0),
         otherwise the coordinate.
         """
-        if self.by_compliance:
+        if self.has_inverse_coordinate:
             return 1 / coordinate if coordinate else inf
         return coordinate
 
@@ -95,7 +95,7 @@ class Parameter:
         """Meaning and remark of the parameter, for the attribute `long_name` in result files."""
         return self.meaning + self.remark
 
-    def require(self, value: float) -> None:
+    def require_in_range(self, value: float) -> None:
         """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.description}")
@@ -153,7 +153,7 @@ PARAMETERS = {
             unit="gamma2",
             meaning="axial drag",
             allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
-            linear=False,
+            in_linear_problem=False,
             default=1.0,
         ),
         Parameter(
@@ -176,7 +176,7 @@ PARAMETERS = {
 
 NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
 """Names of the parameters of the nonlinear rod, without the optional parameters."""
-LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].linear)
+LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].in_linear_problem)
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
 """Names of the parameters that a result file contains only if the config contains them."""

@@ -83,7 +83,7 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
-    after = {crossing.at: crossing for crossing in result.crossings}
+    after = {crossing.value: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
     specials = [
         _special_point_values(one, starts[number - 1], after.get(one.at))

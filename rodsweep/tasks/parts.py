@@ -58,7 +58,7 @@ class CertifiedTask(Task):
         By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
         imaginary axis.
         """
-        accuracy = mesh_accuracy(ANCHOR_SETTINGS.place_accuracy, vectors=False)
+        accuracy = mesh_accuracy(ANCHOR_SETTINGS.arm_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, ANCHOR_SETTINGS.min_known_modes, accuracy)
@@ -125,7 +125,7 @@ def crushing_clause(config: Config) -> str:
     """
     if config.standard:
         return ", or to just below k1"
-    crushed = np.isfinite(config.build.constitutive_law.largest_load)
+    crushed = np.isfinite(config.build.constitutive_law.crushing_load)
     return ", or to just below the force that crushes the weakest section" * bool(crushed)
 
 
@@ -189,7 +189,7 @@ def arms_line(
     mesh = first_mesh()
     if mesh is None:
         return arms
-    count = counted(mesh.elements, "element")
+    count = counted(mesh.element_count, "element")
     several = any(len(np.unique(c)) > 1 for c in columns.values())
     return f"{arms}; at first {count} of order {mesh.order}{', for the finest mesh' * several}"
 

@@ -68,7 +68,7 @@ class Assessment:
         arm flutters for no drag.
         """
         first = first_flutter_of(self.found)
-        return None if first is None else first.at
+        return None if first is None else first.value
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -90,7 +90,7 @@ class Assessment:
         on cycles alone are left out.
         """
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
-        return sorted(counted, key=lambda effect: -float(effect.excess))
+        return sorted(counted, key=lambda effect: -float(effect.value_over_limit))
 
 
 def first_flutter_of(found: FlutterRange) -> Threshold | None:
@@ -108,7 +108,7 @@ def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ..
     if first is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
-        arm, largest_angular_frequency(arm, abs(first.frequency)), equivalent_base_force(arm, first.at)
+        arm, largest_angular_frequency(arm, abs(first.frequency)), equivalent_base_force(arm, first.value)
     )
 
 

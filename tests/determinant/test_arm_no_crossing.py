@@ -31,7 +31,7 @@ def followed_path(rng):
         name = str(rng.choice(list(CHANGES)))
         path = Path(rod, name)
         ends = np.array([1.0, CHANGES[name]]) * getattr(rod, name)
-        p = np.linspace(*(1 / ends if path.is_compliance else ends), 64)
+        p = np.linspace(*(1 / ends if path.is_compliance_path else ends), 64)
         try:
             found = follow_interval(path, p, REQUEST)
         except ValueError:  # crushed before the end of the path

@@ -45,7 +45,9 @@ def dense(rod, elements, order):
     pencil = assemble_pencil(elements, order)
     A = np.zeros((pencil.unknowns,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness_entries(rod)
-    T = np.linalg.solve(A, np.diag(pencil.mass_diagonal(rod)))[: 2 * pencil.nodes, : 2 * pencil.nodes]
+    T = np.linalg.solve(A, np.diag(pencil.mass_diagonal(rod)))[
+        : 2 * pencil.node_count, : 2 * pencil.node_count
+    ]
     inverse = np.linalg.eigvals(T)
     w = 1 / inverse[np.abs(inverse) > 1e-13 * np.abs(inverse).max()]
     return w[np.argsort(-w.real)]
@@ -66,7 +68,7 @@ def test_pencil_at_rest_is_symmetric_and_negative():
     rod = Rod(F=0.0, k1=50.0, k2=30.0, gamma3=0.5)
     A = np.zeros((pencil.unknowns,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness_entries(rod)
-    n = pencil.nodes
+    n = pencil.node_count
     sign = np.where(np.arange(3 * n) < 2 * n, 1.0, -1.0)[:, None]  # the third row is a constraint
     assert np.abs(sign * A - (sign * A).T).max() < 1e-12 * np.abs(A).max()
     assert dense(rod, 2, 7).real.max() < 0

@@ -91,7 +91,7 @@ def test_reference_holds_filaments_and_rods_that_shear_without_rotational_drag(r
 
 
 def test_longitudinal_modes_are_in_the_spectrum():
-    found = finite_eigenvalues(mixed_form(SOFT.changed(gamma1=GAMMA1), 1, 24))
+    found = finite_eigenvalues(mixed_form(SOFT.with_values(gamma1=GAMMA1), 1, 24))
     for rate in longitudinal_eigenvalues(SOFT.k1, GAMMA1, 3):
         assert np.abs(found - rate).min() <= 1e-11 * abs(rate)
 
@@ -145,8 +145,8 @@ def test_jacobian_is_the_derivative_of_the_rate(rod, elements, order):
 def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
     """By the derivative within each element, of whose residuals those of shared nodes are the sum."""
     form, material = (
-        mixed_form(SOFT.changed(gamma1=GAMMA1), elements, order),
-        SOFT.changed(gamma1=GAMMA1).material,
+        mixed_form(SOFT.with_values(gamma1=GAMMA1), elements, order),
+        SOFT.with_values(gamma1=GAMMA1).material,
     )
     X = some_state(form)
     S, V = form.stresses_and_velocities(X)
@@ -176,7 +176,7 @@ def test_derivative_is_summed_by_parts(elements, order):
     )
     ends[0, 0], ends[-1, -1] = -1, 1
     assert np.abs(WD + WD.T - ends).max() <= 1e-13
-    form = mixed_form(FILAMENT.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(FILAMENT.with_values(gamma1=GAMMA1), elements, order)
     u, W = form.mesh.positions, form.mesh.quadrature
     assert WD @ u**order == pytest.approx(W * order * u ** (order - 1), abs=1e-13)
 
@@ -198,7 +198,7 @@ def test_energy_law_holds_on_the_mesh_to_rounding(rod, elements, order):
 
 @MESHES
 def test_consistent_velocities_satisfy_their_equation(elements, order):
-    form = mixed_form(SOFT.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(SOFT.with_values(gamma1=GAMMA1), elements, order)
     X = some_state(form)
     moving = consistent(form, X)
     left = mixed.rate(form, moving)[form.stress_count :]
@@ -246,7 +246,7 @@ def test_tip_of_a_small_motion_moves_with_the_reaction(rod):
 
 def test_clamp_and_tip_are_met_in_the_limit():
     """V(0) = 0 is natural and r(V) tends to -V(1): both by the leading mode."""
-    form = mixed_form(SOFT.changed(gamma1=GAMMA1), 1, 26)
+    form = mixed_form(SOFT.with_values(gamma1=GAMMA1), 1, 26)
     values, vectors = np.linalg.eig(np.linalg.solve(form.A, np.diag(form.M)))
     X = vectors[:, np.argmax(values.real)]  # of 1/w: the one that grows
     _, V = form.stresses_and_velocities(X)

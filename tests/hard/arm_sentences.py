@@ -462,7 +462,7 @@ def _validity_line(view, page, fine):
             effects = neglected_effects(arm, largest_angular_frequency(arm, rate), F, amplitude=amplitude)
         of = [e for e in effects if cycles or not e.of_cycles_only]
         applies.append(int(np.max(worst_validity(effects, of_cycles=cycles))))
-        excess.append(max(float(np.nanmax(np.append(e.excess, -1.0))) for e in of))
+        excess.append(max(float(np.nanmax(np.append(e.value_over_limit, -1.0))) for e in of))
     found, count = [], len(excess)
     for line, match in read(
         page,
@@ -700,7 +700,7 @@ class ArmTruth:
         for line, match in read(page, r"within NUMBER (\S+) of the fluid's"):
             q = self.q | {"density_difference": float(match[1]) * UNITS.get(match[2], 1.0)}
             weight = next(
-                float(e.excess)
+                float(e.value_over_limit)
                 for e in neglected_effects(SlenderArm(**q), np.nan, np.nan)
                 if e.name == "weight"
             )
@@ -740,7 +740,9 @@ class ArmTruth:
         arm = SlenderArm(**q)
         rate = 2 * pi * flutter["hertz"][0] * drags_of(q)[0][1] / min(d[1] for d in drags_of(q))
         return max(
-            float(e.excess) for e in neglected_effects(arm, rate, flutter["hopf"][0]) if "inertia" in e.name
+            float(e.value_over_limit)
+            for e in neglected_effects(arm, rate, flutter["hopf"][0])
+            if "inertia" in e.name
         )
 
     def _effects(self):

@@ -78,11 +78,13 @@ def random_case(index: int) -> Case:
 def cycles_of(case: Case) -> Iterator[ArcPoint]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
     rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
-    crossings = find_axis_crossings(Path(rod, "F"), 0.0, case.stop).crossings
+    crossings = find_axis_crossings(Path(rod, "F"), 0.0, case.stop).thresholds
     if not crossings:
         return
     here = last = first_cycle(
-        hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy, NewtonWorkspace()
+        hopf_point(Path(rod.with_values(gamma1=case.gamma1), "F"), crossings[0]),
+        case.accuracy,
+        NewtonWorkspace(),
     )
     yield last
     waiting: list[ArcPoint] = []

@@ -57,15 +57,15 @@ def test_the_reference_obeys_the_disguise():
 
 def mirrored(k1, end):
     found = solve_thresholds(Rod(F=0.0, k1=k1, k2=inf, gamma3=0.0), ThresholdsRequest(end, 1e-10, True, 60))
-    at = np.array([c.at for c in found.crossings])
+    at = np.array([c.value for c in found.thresholds])
     assert at + at[::-1] == pytest.approx(np.full(len(at), k1), rel=1e-12)
     opposite = {
         ChangeKind.onset: {ChangeKind.real_again},
         ChangeKind.hopf: {ChangeKind.hopf_reverse, ChangeKind.restabilization},
     }
-    for first, last in zip(found.crossings[: len(at) // 2], found.crossings[::-1], strict=False):
+    for first, last in zip(found.thresholds[: len(at) // 2], found.thresholds[::-1], strict=False):
         assert last.kind in opposite[first.kind]
-    assert found.transitions.unstable_at_end == 0
+    assert found.search_result.unstable_at_end == 0
     return found
 
 
@@ -90,5 +90,5 @@ def test_the_last_threshold_before_a_rod_is_crushed_keeps_its_digits():
     )
     assert found.status == ThresholdStatus.ok
     assert found.end < 100.0
-    assert found.crossings[-1].kind == ChangeKind.onset
-    assert found.crossings[-1].at == pytest.approx(98.9023098589847539, rel=1e-12)
+    assert found.thresholds[-1].kind == ChangeKind.onset
+    assert found.thresholds[-1].value == pytest.approx(98.9023098589847539, rel=1e-12)

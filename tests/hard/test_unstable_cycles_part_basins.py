@@ -32,7 +32,7 @@ PERIODS = 40
 def unstable():
     """An unstable cycle on the branch from the restabilization."""
     rod = rod_of(0.0, *STIFFNESS)
-    crossing = find_axis_crossings(Path(rod, "F"), 100.0, 199.0).crossings[-1]
+    crossing = find_axis_crossings(Path(rod, "F"), 100.0, 199.0).thresholds[-1]
     here = first_cycle(hopf_point(Path(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
     while here.cycle.measures.tip_y_max < LEAST_Y:
         here = next_point(here, ACCURACY)

@@ -51,7 +51,7 @@ def is_change(rod, name, at, kind):
 
 def changes_along(rod, name, low, high):
     """All that changes between two values of a parameter."""
-    return find_thresholds(ParameterPath(rod, name), low, high).crossings
+    return find_thresholds(ParameterPath(rod, name), low, high).thresholds
 
 
 def changes_over_force(rod, top):

@@ -48,10 +48,10 @@ def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension
 )
 def test_ranges(name, good, bad):
     for value in good:
-        PARAMETERS[name].require(value)
+        PARAMETERS[name].require_in_range(value)
     for value in (*bad, nan):
         with pytest.raises(ValueError, match=f"{name} = .* is not a .*number"):
-            PARAMETERS[name].require(value)
+            PARAMETERS[name].require_in_range(value)
 
 
 def test_the_sequence_of_parameters_stands_once():

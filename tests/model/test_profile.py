@@ -62,7 +62,7 @@ def test_a_taper_of_a_point_is_refused(taper):
 def test_a_cone_scales_as_its_radius():
     """r = 0.75 in the middle of a cone of radius ratio 1/2."""
     rod = Rod(F=3.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5)
-    here = rod.local(np.array([0.5]))
+    here = rod.local_coefficients(np.array([0.5]))
     np.testing.assert_allclose(1 / here.c2, 50 * 0.75**2)
     np.testing.assert_allclose(1 / here.c3, 0.75**4)
     np.testing.assert_allclose(here.gamma3, 0.01 * 0.75**2)

@@ -15,8 +15,8 @@ from rodsweep.model.balance import PLANE_COMPONENTS, ad
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), 0.7
-PLANE = ROD.changed(gamma1=GAMMA1).material
-SPACE = ROD.changed(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
+PLANE = ROD.with_values(gamma1=GAMMA1).material
+SPACE = ROD.with_values(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {"plane": PLANE, "space": SPACE}
 ALL = pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
 MESHES = pytest.mark.parametrize(
@@ -61,14 +61,14 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
     """The loops themselves run in Python, with the algebra as an argument."""
     grid = uniform_mesh(2, 3)
     rod, d = nodal_rod(material, grid, kept), len(material.drag)
-    g, n = ALGEBRAS[d], d * grid.nodes + len(kept) * (grid.nodes + 1)
+    g, n = ALGEBRAS[d], d * grid.node_count + len(kept) * (grid.node_count + 1)
     x = np.random.default_rng(d).standard_normal(n)
     found = []
     for run, slope in (
         (write_balance.compiled_for(g), write_jacobian.compiled_for(g)),
         (partial(write_balance, g), partial(write_jacobian, g)),
     ):
-        V, G = np.empty((2, d, grid.nodes + 1))
+        V, G = np.empty((2, d, grid.node_count + 1))
         J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
         run(x, V, G, rod, grid.matrices)
         slope(x, V, J, tip, rod, grid.matrices)
@@ -149,8 +149,8 @@ def test_a_rigid_motion_strains_no_rod():
     E = np.array([0.9, 0.2, -0.1, 1.5, 2.0, 0.7])
     bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
-    V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
-    G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.nodes + 1, axis=1)
+    V = np.stack([expm(-u * bracket) @ seen for u in grid.node_positions], axis=1)
+    G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.node_count + 1, axis=1)
     write_strain_rates.compiled_for(SE3)(strain, V, G, grid.matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold
     G[:, -1] += V[:, -1]  # and the reaction

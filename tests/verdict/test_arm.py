@@ -236,7 +236,7 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
         found = solve_thresholds(
             Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), SEARCH_REQUEST
         )
-        first = next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
+        first = next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)
         assert flutter.low <= first <= flutter.high
 
 
@@ -293,8 +293,8 @@ def test_numbers_need_no_solver_and_help_no_units():
 def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
     crossings = tuple(Threshold(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
-    transitions = ThresholdList(crossings=crossings, proved=True)
-    return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
+    transitions = ThresholdList(thresholds=crossings, proved=True)
+    return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, search_result=transitions, end=end))
 
 
 def verdict(rod, *forces):
@@ -345,7 +345,7 @@ def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certa
     inaccurate = tuple(replace(c, error=0.1 if c.at == 20.0 else 0.0) for c in known.thresholds.crossings)
     thresholds = replace(
         known.thresholds,
-        transitions=ThresholdList(crossings=inaccurate, proved=True),
+        transitions=ThresholdList(thresholds=inaccurate, proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))

@@ -155,7 +155,7 @@ def test_a_taper_beside_an_arm_moves_the_flutter_of_relative_loads():
     own = SlenderArm(**SILICONE)
     cone = Rod(F=0.0, k1=own.k1, k2=own.k2, gamma3=own.gamma3, taper=0.5)
     found = solve_thresholds(cone, ThresholdsRequest(40.0, 1e-10, True, 8))
-    hopf = next(each.at for each in found.crossings if each.kind == ChangeKind.hopf)
+    hopf = next(each.value for each in found.thresholds if each.kind == ChangeKind.hopf)
     assert data.F.sel(taper=0.5).values == pytest.approx([0.9999 * hopf, 1.0001 * hopf], rel=1e-9)
     assert (np.sign(data.growth_rate[..., 0].values) == [[-1, -1], [1, 1]]).all()
 

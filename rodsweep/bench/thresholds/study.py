@@ -164,12 +164,14 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
     """The first threshold of the kind `kind` by rodsweep, from the list of all thresholds of the rod.
     certify: whether rodsweep proves this list complete."""
     rod = case.rod(0.0)
-    F_max = F_MAX if rod.standard else ARM_F_MAX
+    F_max = F_MAX if rod.is_uniform_and_linear else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
-    at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
-    if not rod.standard:
+    at = next((change.value for change in result.thresholds if change.kind.name == kind), nan)
+    if not rod.is_uniform_and_linear:
         return FirstThreshold(at)
-    return FirstThreshold(at, result.transitions.solve_count, determinants=result.transitions.box_count)
+    return FirstThreshold(
+        at, result.search_result.solve_count, determinants=result.search_result.evaluation_count
+    )
 
 
 def measure_rods(

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAMES, UNITS
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAME, UNITS
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..material import LawName, SectionName
@@ -107,8 +107,8 @@ class ArmSection(StrictSection):
     def standard(self) -> bool:
         """Whether all arms are uniform and of linear material."""
         if self.segments is None:
-            return self.build.standard and tapers_of(self) == {1.0}
-        return all(build.standard for build in builds_of(self))
+            return self.build.is_uniform_and_linear and tapers_of(self) == {1.0}
+        return all(build.is_uniform_and_linear for build in builds_of(self))
 
     @property
     def load_axis(self) -> str | None:
@@ -153,7 +153,7 @@ class ArmSection(StrictSection):
             low = float(axis.array()[0])
             if name in LOAD_OF_RATIO and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
-            if name in UNITS and not (QUANTITIES[name].signed or low > 0):
+            if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
             self.arm_of(self.first_values, loaded=True)
@@ -195,9 +195,7 @@ class ArmSection(StrictSection):
             different = {getattr(self.arm_of(each), name) for each in self.sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
-            axes = {
-                "F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAMES[self.load]))
-            } | axes
+            axes = {"F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAME[self.load]))} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:

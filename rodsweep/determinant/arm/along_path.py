@@ -35,7 +35,7 @@ class ArmDoubleEigenvalueSettings:
     compared_level_factors: tuple[int, ...] = (1, 4, 16)
     """D at w is computed on the elements for each of these multiples of |w|. The differences estimate the
     rounding error of D at a double eigenvalue."""
-    spread_factor: float = 3.0
+    error_over_spread: float = 3.0
     """The rounding error of D is estimated as this number times max - min of D on different elements."""
     max_shortenings: int = 20
     """Maximum number of divisions of a difference step by `step_divisor`, to 1e-12 of the first step."""
@@ -49,13 +49,13 @@ ARM_DOUBLE_EIGENVALUE_SETTINGS = ArmDoubleEigenvalueSettings()
 class ArmAlongPath:
     """D of the arms of one path, as a function of the path variable p.
 
-    family: function that returns the family of arms that contains p, or None to compute D from the arm at p
-    itself.
+    family_at: function that returns the family of arms that contains p, or None to compute D from the arm at
+    p itself.
     """
 
     def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
         self.path = path
-        self.family = family
+        self.family_at = family
 
     def determinant(self, p: float) -> ArmDeterminant:
         """The determinant D of the arm at p."""
@@ -64,7 +64,7 @@ class ArmAlongPath:
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """Returns (w, dw/dp, absolute error of w) of the eigenvalue w near `guess`, for the arm at p: from
         the family that contains p if the result is accurate, else from the arm itself."""
-        family = self.family(p)
+        family = self.family_at(p)
         # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
         if family is not None and abs(guess) < family.largest_w / 2:
             w, slope, error = eigenvalue_of_family_arm(family, guess, p)
@@ -133,8 +133,8 @@ class ArmAlongPath:
         return FAILED_ZERO
 
     def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
-        """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `spread_factor` times (max -
-        min) of D on different divisions of the arm into elements. S: scale of the result.
+        """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `error_over_spread` times
+        (max - min) of D on different divisions of the arm into elements. S: scale of the result.
 
         Minors that are large in the middle of an arm have rounding errors that `noise` does not contain.
         """
@@ -142,16 +142,16 @@ class ArmAlongPath:
         values = [
             self._determinant_value(x, p),
             *(
-                arm.value_at_level(x, factor)
+                arm.value_on_finer_elements(x, factor)
                 for factor in ARM_DOUBLE_EIGENVALUE_SETTINGS.compared_level_factors
             ),
         ]
         D = [value.D.real * math.exp(value.S - S) for value in values]
-        return ARM_DOUBLE_EIGENVALUE_SETTINGS.spread_factor * (max(D) - min(D))
+        return ARM_DOUBLE_EIGENVALUE_SETTINGS.error_over_spread * (max(D) - min(D))
 
     def _determinant_value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
-        family = self.family(p)
+        family = self.family_at(p)
         if family is not None and abs(x) < family.largest_w:
             return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))

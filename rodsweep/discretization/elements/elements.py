@@ -41,14 +41,14 @@ class Elements:
     order: int
 
     @property
-    def elements(self) -> int:
+    def element_count(self) -> int:
         """Number of elements."""
         return len(self.edges) - 1
 
     @property
-    def nodes(self) -> int:
+    def node_count(self) -> int:
         """Number of nodes, one end of the rod excluded. The equations determine which end is excluded."""
-        return self.elements * self.order
+        return self.element_count * self.order
 
     @cached_property
     def lengths(self) -> Array:
@@ -56,7 +56,7 @@ class Elements:
         return np.diff(self.edges)
 
     @cached_property
-    def positions(self) -> Array:
+    def node_positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
         inner = (gauss_lobatto_rule(self.order)[0][1:] + 1) / 2
         starts: Array = np.array(self.edges[:-1])
@@ -69,7 +69,7 @@ class Elements:
     @cached_property
     def element_nodes(self) -> NDArray[np.int64]:
         """Indices of the nodes of every element, (elements, order + 1). Neighbours share a node."""
-        return np.arange(self.elements)[:, None] * self.order + np.arange(self.order + 1)
+        return np.arange(self.element_count)[:, None] * self.order + np.arange(self.order + 1)
 
     @cached_property
     def points_inside_elements(self) -> Array:
@@ -87,7 +87,7 @@ class Elements:
     def evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
         nodes = gauss_lobatto_rule(self.order)[0]
-        matrix = np.zeros((len(points), self.nodes + 1))
+        matrix = np.zeros((len(points), self.node_count + 1))
         for first, inside, local in self.points_by_element(points):
             matrix[inside, first : first + self.order + 1] = lagrange_interpolation_matrix(nodes, local)
         return matrix
@@ -112,7 +112,7 @@ class Elements:
         indices: of the points in the element. coordinates: of these points, from -1 to 1 along the element. A
         point between two elements belongs to the right element.
         """
-        element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.elements - 1)
+        element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):
             inside = np.nonzero(element == e)[0]
             yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
@@ -120,7 +120,7 @@ class Elements:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def equal_edges(elements: int) -> tuple[float, ...]:
-    """Edges of `elements` elements of equal length on [0, 1]."""
+    """Edges of `element_count` elements of equal length on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))
 
 

@@ -92,7 +92,7 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
 
     Shape (target.nodes + 1, source.nodes + 1).
     """
-    return source.evaluation_matrix(target.positions)
+    return source.evaluation_matrix(target.node_positions)
 
 
 def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
@@ -103,7 +103,7 @@ def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
     """
     values, angles, integrals, ends = shape_integration_matrices(grid.order)
     p = grid.order
-    state = np.empty((*strains.shape[:-1], grid.nodes + 1), strains.dtype)
+    state = np.empty((*strains.shape[:-1], grid.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
     for e, length in enumerate(grid.lengths):
         element = slice(e * p, (e + 1) * p + 1)

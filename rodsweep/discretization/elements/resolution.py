@@ -49,12 +49,13 @@ RESOLUTION_SETTINGS = ResolutionSettings()
 class Resolution:
     """Mesh of a uniform rod: number of elements of equal length, and their order."""
 
-    elements: int
+    element_count: int
     order: int
 
     @property
     def unknowns(self) -> int:
-        return 3 * self.elements * self.order
+        """Number of unknowns y, theta and s on this mesh."""
+        return 3 * self.element_count * self.order
 
 
 def expected_wave_number(modes: int, most_amplified: float) -> float:
@@ -114,7 +115,7 @@ def finer_resolution(resolution: Resolution) -> Resolution:
     """
     order = ceil(resolution.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
-        return Resolution(resolution.elements, order)
-    elements = ceil(resolution.elements * RESOLUTION_SETTINGS.refinement_ratio)
-    nodes = RESOLUTION_SETTINGS.refinement_ratio * resolution.elements * resolution.order
+        return Resolution(resolution.element_count, order)
+    elements = ceil(resolution.element_count * RESOLUTION_SETTINGS.refinement_ratio)
+    nodes = RESOLUTION_SETTINGS.refinement_ratio * resolution.element_count * resolution.order
     return Resolution(elements, ceil(nodes / elements))

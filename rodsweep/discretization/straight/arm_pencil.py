@@ -55,7 +55,7 @@ class ArmPencil:
     def __init__(self, mesh: ArmMesh):
         self.mesh = mesh
         self.order = mesh.order
-        self.nodes = mesh.nodes
+        self.node_count = mesh.node_count
         self.unknowns = mesh.unknowns
         edges = np.array(mesh.edges)
         h = mesh.lengths
@@ -68,14 +68,16 @@ class ArmPencil:
         self._sample_points = np.concatenate([gauss_points, mesh.points_inside_elements], axis=1)
         slopes = slope.T * wg
         self._y: NDArray[np.int64] = (
-            np.arange(mesh.elements)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
+            np.arange(mesh.element_count)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
         self.rows, self.columns, where = self._sparsity_pattern()
         self._mesh_matrices = _MeshMatrices(
             value_matrix=value,
             slope_matrix=slope,
             slope_value_matrix=slopes @ value,
-            constant_entries=np.concatenate([np.tile(x.ravel(), mesh.elements) for x in (-slopes, slopes.T)]),
+            constant_entries=np.concatenate(
+                [np.tile(x.ravel(), mesh.element_count) for x in (-slopes, slopes.T)]
+            ),
             weights_over_length=wg * (2 / h[:, None]),
             weights_times_length=wg * h[:, None] / 2,
             node_masses=w * h[:, None] / 2,
@@ -85,15 +87,15 @@ class ArmPencil:
         )
 
     @property
-    def positions(self) -> Array:
+    def node_positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
-        return self.mesh.positions
+        return self.mesh.node_positions
 
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of the arm `rod`."""
         return PencilMatrices(
             *_pencil_of_coefficients(
-                float(rod.F), np.array(rod.local(self._sample_points)), self._mesh_matrices
+                float(rod.F), np.array(rod.local_coefficients(self._sample_points)), self._mesh_matrices
             )
         )
 
@@ -107,11 +109,11 @@ class ArmPencil:
 
         Entries in the row or column of the clamp have the index nnz.
         """
-        n = self.nodes
+        n = self.node_count
         size = self.unknowns
         y = self._y
         theta = np.where(y < 0, -1, y + n)
-        s = 2 * n + np.arange(n).reshape(self.mesh.elements, self.order)
+        s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
         keys = [_flat_entry_positions(rows, columns, size) for rows, columns in pairs]
         keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]

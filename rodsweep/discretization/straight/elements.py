@@ -54,9 +54,9 @@ class StraightElements:
         """Indices of the unknowns of every element. Raises ValueError for several elements of an even
         order."""
         mesh = self.form.mesh
-        if mesh.elements > 1 and mesh.order % 2 == 0:
+        if mesh.element_count > 1 and mesh.order % 2 == 0:
             raise ValueError(f"several elements need an odd order, not {mesh.order}")
-        return element_numbering(mesh.elements, mesh.order, self.components)
+        return element_numbering(mesh.element_count, mesh.order, self.components)
 
     @cached_property
     def A(self) -> Array:
@@ -64,7 +64,7 @@ class StraightElements:
         each = np.eye(PLANE_COMPONENT_COUNT)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
-        E = material.rest[:, None]
+        E = material.rest_strain[:, None]
         Sigma = material.tip_stress[:, None]
         WD, W = self._element_matrices
         half = len(self.components)
@@ -93,9 +93,9 @@ class StraightElements:
         """Returns (W D, W) of one element. W: quadrature weights, scaled to the length of the element,
         (nodes,). W D: diag(W) times the differentiation matrix D of the element, (nodes, nodes)."""
         WD, w = _weighted_derivative_matrix(self.form.mesh.order)
-        return WD, w / (2 * self.form.mesh.elements)
+        return WD, w / (2 * self.form.mesh.element_count)
 
-    def apply_A(self, x: Values) -> Values:
+    def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
         return self.assemble(self.gather(x) @ self.A.T)
 

@@ -60,7 +60,7 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
     mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.mesh_accuracy)
-    order = max(mesh.order, -(-(modes + 1) // mesh.elements))
+    order = max(mesh.order, -(-(modes + 1) // mesh.element_count))
     found = _leading_eigenvalues(rod, mesh, order, modes)
     while True:
         order += LONGITUDINAL_MODE_SETTINGS.order_increase

@@ -52,12 +52,12 @@ class MixedForm:
     @cached_property
     def layout(self) -> StateLayout:
         """Indices of the fields in X; all components of V are unknowns."""
-        return plane_layout(self.mesh.nodes, tuple(range(PLANE_COMPONENT_COUNT)))
+        return plane_layout(self.mesh.node_count, tuple(range(PLANE_COMPONENT_COUNT)))
 
     @property
     def stress_count(self) -> int:
         """Number of unknown stresses."""
-        return plane_layout(self.mesh.nodes).unknowns
+        return plane_layout(self.mesh.node_count).unknowns
 
     @property
     def unknowns(self) -> int:
@@ -80,7 +80,7 @@ class MixedForm:
         """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, then so does its
         mirror image R X.
         """
-        signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.nodes + 1, axis=1)
+        signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.node_count + 1, axis=1)
         return self.layout.state(signs, signs)
 
     @cached_property
@@ -92,7 +92,7 @@ class MixedForm:
     @cached_property
     def A(self) -> Array:
         """The matrix A of the linear terms, (unknowns, unknowns)."""
-        N = self.mesh.nodes
+        N = self.mesh.node_count
         stresses = slice(self.stress_count)
         velocities = slice(self.stress_count, None)
         WD = -self.mesh.matrices.weak_derivative.T
@@ -204,7 +204,7 @@ class MixedForm:
         These terms are W ad_E V in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations
         of V; T: tangent of the law.
         """
-        N = self.mesh.nodes
+        N = self.mesh.node_count
         W = self.mesh.quadrature[:-1]
         each = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
         E = self.nodal_rod.rest_strain[:, None, :N]
@@ -234,7 +234,7 @@ def integral_to_tip(grid: Mesh, values: Array) -> Array:
     (nodes + 1,).
     """
     ends = shape_integration_matrices(grid.order).angles_at_nodes
-    total = np.zeros(grid.nodes + 1)
+    total = np.zeros(grid.node_count + 1)
     for e, length in enumerate(grid.lengths):
         element = slice(e * grid.order, (e + 1) * grid.order + 1)
         total[element] = total[element.start] + length * (values[element] @ ends)

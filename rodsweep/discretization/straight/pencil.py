@@ -79,7 +79,7 @@ class Pencil(Elements):
 
     @property
     def unknowns(self) -> int:
-        return 3 * self.nodes
+        return 3 * self.node_count
 
     def term_coefficients(self, rod: Rod) -> Array:
         """Factors of the six constant matrices for the rod `rod`, (6,)."""
@@ -107,8 +107,10 @@ class Pencil(Elements):
     def mass_diagonal(self, rod: Rod) -> Array:
         """Diagonal of the matrix B of the rod `rod`, (unknowns,)."""
         B = np.zeros(self.unknowns)
-        B[: self.nodes] = 1.0
-        B[self.nodes : 2 * self.nodes] = rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
+        B[: self.node_count] = 1.0
+        B[self.node_count : 2 * self.node_count] = (
+            rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
+        )
         return B
 
     def displacement_factors(self, rod: Rod) -> Array:
@@ -161,7 +163,7 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """
     nodes, weights = gauss_legendre_rule(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
-    values = vectors[2 * mesh.nodes :] / np.sqrt(mass)[:, None]
+    values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
     for first, inside, local in mesh.points_by_element(points):
         result[inside] = lagrange_interpolation_matrix(nodes, local) @ values[first : first + mesh.order]

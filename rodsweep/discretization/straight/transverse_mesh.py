@@ -22,7 +22,7 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
     """The mesh that resolves fields of the wave number `wave_number`, in 1/L, on a rod to the relative
     accuracy `accuracy`.
     """
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
     return ArmMesh(elements.edges, elements.order)
@@ -35,7 +35,9 @@ def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
     """The pencil of the transverse eigenproblem on a mesh, cached for other rods on an equal mesh."""
-    return assemble_pencil(mesh.elements, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+    return (
+        assemble_pencil(mesh.element_count, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
+    )
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

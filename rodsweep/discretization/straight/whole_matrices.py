@@ -32,7 +32,7 @@ class WholeRodMatrices:
     @cached_property
     def state_indices(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
-        size = self.form.mesh.nodes + 1
+        size = self.form.mesh.node_count + 1
         marks = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
         return np.flatnonzero(self.form.layout.state(marks, marks))
 
@@ -46,7 +46,7 @@ class WholeRodMatrices:
         """Diagonal of M for the unknowns of `components`, (n,)."""
         return self.form.M[self.state_indices]
 
-    def apply_A(self, x: Values) -> Values:
+    def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
         return self._scatter(self.A @ x[self.state_indices])
 
@@ -91,4 +91,4 @@ def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightE
     """A and M of the form `form` about its straight rod. components: indices of the components of stresses
     and velocities to which A and M are restricted.
     """
-    return (StraightElements if form.rod.standard else WholeRodMatrices)(form, components)
+    return (StraightElements if form.rod.is_uniform_and_linear else WholeRodMatrices)(form, components)

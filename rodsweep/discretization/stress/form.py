@@ -59,9 +59,9 @@ class StressForm(RodOnMesh):
         E = interpolation_matrix(self.mesh, grid)
         if self.has_continuous_stresses:
             return self.layout.interpolate(x, E)
-        layout = plane_layout(grid.nodes, self.unknown_velocities)
+        layout = plane_layout(grid.node_count, self.unknown_velocities)
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.
-        V = np.zeros((PLANE_COMPONENT_COUNT, *x.shape[:-1], grid.nodes + 1))
+        V = np.zeros((PLANE_COMPONENT_COUNT, *x.shape[:-1], grid.node_count + 1))
         V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on_mesh(grid, x), V)
 

@@ -127,7 +127,7 @@ class SlenderArm:
     @property
     def standard(self) -> bool:
         """Whether the arm is uniform and of linear material."""
-        return self.build.standard and self.taper == 1
+        return self.build.is_uniform_and_linear and self.taper == 1
 
     @property
     def crushing_force(self) -> float:
@@ -209,12 +209,12 @@ class SlenderArm:
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
         """Estimates of the drag at the base, in the order of DRAGS."""
-        return self.shape.drags(self.shape.base, self.si.viscosity)
+        return self.shape.drags_at(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
         """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
         index = self.drags.index(drag)
-        return tuple(self.shape.drags(each, self.si.viscosity)[index] for each in self.shape.stations)
+        return tuple(self.shape.drags_at(each, self.si.viscosity)[index] for each in self.shape.stations)
 
     @property
     def chosen_drag(self) -> Drag:

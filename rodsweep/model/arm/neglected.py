@@ -78,14 +78,14 @@ class Effect:
     """Whether the effect changes only limit cycles, not the thresholds of the straight arm."""
 
     @property
-    def excess(self) -> Array:
+    def value_over_limit(self) -> Array:
         """Ratio of `value` to `limit`, (...,). The model does not apply where the ratio is larger than 1."""
         return self.value / self.limit
 
     @property
     def validity(self) -> NDArray[np.int8]:
         """`Validity` of the model in view of this effect, integers, (...,); `applies` for an arm at rest."""
-        return (self.excess > DOUBTFUL_RATIO).astype(np.int8) + (self.excess > 1.0)
+        return (self.value_over_limit > DOUBTFUL_RATIO).astype(np.int8) + (self.value_over_limit > 1.0)
 
 
 def neglected_effects(
@@ -189,7 +189,7 @@ def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)
-    value = arm.shape.relative_weight(heaviness) if arm.shape.varies else uniform
+    value = arm.shape.weight_over_buckling_weight(heaviness) if arm.shape.varies else uniform
     return _independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 

@@ -21,9 +21,9 @@ class Quantity(NamedTuple):
     unit: str
     meaning: str
     example: str = ""
-    needed: bool = False
+    is_required: bool = False
     """Whether the user must give the quantity for every arm."""
-    signed: bool = False
+    may_be_nonpositive: bool = False
     """Whether zero and negative values of the quantity are allowed."""
 
 
@@ -37,12 +37,12 @@ QUANTITIES = {
     "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
     "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
     "young": Quantity("Pa", "Young's modulus of the arm at small strain", "100 kPa"),
-    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s", needed=True),
-    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa", signed=True),
-    "force": Quantity("N", "follower force at the tip", "0.16 N", signed=True),
+    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s", is_required=True),
+    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa", may_be_nonpositive=True),
+    "force": Quantity("N", "follower force at the tip", "0.16 N", may_be_nonpositive=True),
     "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
     "density_difference": Quantity(
-        "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", signed=True
+        "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", may_be_nonpositive=True
     ),
     "poisson": Quantity("1", "Poisson's ratio of the arm"),
     "drag": Quantity("1", "drag estimate, by name"),
@@ -67,7 +67,7 @@ ARM_SCALES = {
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
-SCALE_NAMES = {load: f"{load}_scale" for load in LOADS}
+SCALE_NAME = {load: f"{load}_scale" for load in LOADS}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
 ALL_QUANTITIES = QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
@@ -82,7 +82,7 @@ def arm_quantity_in_si(name: str, given: GivenQuantity | None) -> float:
     if given is None or (name in LOADS and load_over_flutter(given) is not None):
         return float("nan")
     value = quantity_in_si(name, given, *UNITS[name])
-    if not (QUANTITIES[name].signed or value > 0):
+    if not (QUANTITIES[name].may_be_nonpositive or value > 0):
         raise InputError(f"{quoted_quantity(name, given)} is not above 0")
     return value
 

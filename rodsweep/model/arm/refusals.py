@@ -79,7 +79,7 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
                 raise InputError(f"{name} is missing; write it as in '{QUANTITIES[name].example}'")
         _refuse_sections(arm)
     for name, quantity in QUANTITIES.items():
-        if quantity.needed and getattr(arm, name) is None:
+        if quantity.is_required and getattr(arm, name) is None:
             raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
     if arm.pressure is not None and arm.force is not None:
         raise InputError(

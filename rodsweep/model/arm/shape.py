@@ -76,7 +76,7 @@ class Shape:
         """The largest drag radius along the arm, in m."""
         return max(each.section.drag_radius for each in self.stations)
 
-    def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
+    def drags_at(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
         """Drag estimates at a station, in the order of DRAGS. viscosity: in Pa s."""
         section = station.section
         return drag_estimates(viscosity, self.length, section.drag_radius, section.half_height)
@@ -115,7 +115,7 @@ class Shape:
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
-        base = self.drags(self.base, 1.0)[drag]
+        base = self.drags_at(self.base, 1.0)[drag]
         rows = list[tuple[float, ...]]()
         for radius in (radii * self.base.section.drag_radius).tolist():
             own = drag_estimates(1.0, self.length, radius, radius)[drag]
@@ -141,7 +141,7 @@ class Shape:
         poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
         """
         section = station.section
-        friction = self.drags(station, 1.0)[drag]
+        friction = self.drags_at(station, 1.0)[drag]
         stretch = station.young * section.area
         return (
             stretch,
@@ -152,7 +152,7 @@ class Shape:
             friction.rotational,
         )
 
-    def relative_weight(self, weight: float) -> float:
+    def weight_over_buckling_weight(self, weight: float) -> float:
         """Ratio of the weight of the upright arm to the weight at which the arm buckles.
 
         weight: weight per volume, in N/m^3. With the weight W(u) of the part beyond u, an arm of the buckling

@@ -173,9 +173,9 @@ class _ValueTextConverter:
         if isinstance(value, Dispatcher):
             self.called_kernels.append(kernel_of(value.py_func, value.targetoptions))
             return _qualified_name(value.py_func)
-        if isinstance(value, ModuleType) and not self._is_ours(value.__name__):
+        if isinstance(value, ModuleType) and not self._is_in_own_package(value.__name__):
             return value.__name__
-        if isinstance(value, FunctionType) and self._is_ours(value.__module__):
+        if isinstance(value, FunctionType) and self._is_in_own_package(value.__module__):
             self.called_kernels.append(Kernel(value, ""))
         if isinstance(value, FunctionType | BuiltinFunctionType):
             return _qualified_name(value)
@@ -187,11 +187,11 @@ class _ValueTextConverter:
         fields = getattr(kind, "_fields", None)
         if fields is not None:
             return f"{_qualified_name(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"
-        if self._is_ours(kind.__module__):
+        if self._is_in_own_package(kind.__module__):
             raise TypeError(f"{_qualified_name(self.function)}: {kind} is not a NamedTuple")
         return _qualified_name(kind)
 
-    def _is_ours(self, module: str) -> bool:
+    def _is_in_own_package(self, module: str) -> bool:
         return module.partition(".")[0] == self.function.__module__.partition(".")[0]
 
 

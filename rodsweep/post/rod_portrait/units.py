@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from ...model.arm.quantities import SCALE_NAMES
+from ...model.arm.quantities import SCALE_NAME
 from ...results.file.view import View
 from ..branch_curves import ParameterRange
 from ..figures import style
@@ -105,9 +105,7 @@ def units_of(view: View, load: str, largest: float) -> PortraitUnits:
     """
     if not view.quantities:
         return ROD_UNITS
-    force, length, tau2 = (
-        float(view.quantities[n].ravel()[0]) for n in (SCALE_NAMES[load], "length", "tau2")
-    )
+    force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load], "length", "tau2"))
     units = [
         Unit(name=name, factor=scale * factor)
         for scale, (factor, name) in (

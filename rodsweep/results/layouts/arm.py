@@ -22,7 +22,7 @@ from ...config.axes import Axes
 from ...config.tasks import makes_diagram
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.neglected import Validity
-from ...model.arm.quantities import ALL_QUANTITIES, LOAD_OF_RATIO, LOADS, SCALE_NAMES, UNITS
+from ...model.arm.quantities import ALL_QUANTITIES, LOAD_OF_RATIO, LOADS, SCALE_NAME, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
 from .variables import ANGULAR_UNIT, DIMENSIONS, FilledVariable, Layout, Variable, real, word
@@ -65,7 +65,7 @@ SI_UNITS = {
     "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
 }
 """SI units of the dimensionless units of time, length, energy and power."""
-FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAMES[load],)) for load in LOADS}
+FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAME[load],)) for load in LOADS}
 """SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""

@@ -64,6 +64,7 @@ def pointer(context: Any, address: Any) -> Any:
 
 @compiled
 def doubles_at(address: int, size: int) -> Any:
+    """Array of doubles at the memory address `address`, (size,)."""
     return numba.carray(pointer(address), (size,), np.float64)
 
 
@@ -76,6 +77,7 @@ def double_array_at(address: int, shape: Any) -> Any:
 
 @compiled
 def integers_at(address: int, size: int) -> Any:
+    """Array of 64-bit integers at the memory address `address`, (size,)."""
     return numba.carray(pointer(address), (size,), np.int64)
 
 

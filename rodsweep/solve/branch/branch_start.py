@@ -88,7 +88,7 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        turned = -1.0 if Path(self.rod, self.name).is_compliance else 1.0
+        turned = -1.0 if Path(self.rod, self.name).is_compliance_path else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
         squared = -turned * self.growth_slope.real * self.coordinate / self.coefficients.landau.real
@@ -103,13 +103,13 @@ class HopfBranchStart:
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         # Half, because a is a square root.
-        return (landau + slope_error + self.crossing.error / abs(self.crossing.at)) / 2
+        return (landau + slope_error + self.crossing.error / abs(self.crossing.value)) / 2
 
     @property
     def period_error(self) -> float:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
-        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
+        parameter_error = self.crossing.error / abs(self.crossing.value) * abs(self.coordinate)
         return (
             abs(self.growth_slope) * parameter_error / self.crossing.frequency
             + BRANCH_START_SETTINGS.frequency_rounding
@@ -118,7 +118,7 @@ class HopfBranchStart:
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,
         of the cycle whose largest tip y is `amplitude`, in L."""
-        c = self.normal_form.c
+        c = self.normal_form.landau
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.growth_slope.real
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
@@ -128,14 +128,14 @@ def hopf_point(path: Path, crossing: Threshold) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
-    at = path.rod_at(path.coordinate(crossing.at))
-    _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.at))
+    at = path.rod_at(path.coordinate(crossing.value))
+    _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
     normal = accurate_normal_form(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
         name=path.name,
-        coordinate=path.coordinate(crossing.at),
+        coordinate=path.coordinate(crossing.value),
         growth_slope=complex(slope),
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
@@ -146,7 +146,7 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     """The Hopf point as a special point, for the start or the end of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
-        at=hopf.crossing.at,
+        at=hopf.crossing.value,
         period=hopf.period,
         tip_y_max=0.0,
         error=hopf.crossing.error,

@@ -128,18 +128,18 @@ def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace
     if not low < high:
         why = "the force crushes the rod everywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
-    path = Path(rod.changed(**{request.along: low}), request.along)
+    path = Path(rod.with_values(**{request.along: low}), request.along)
     found = find_axis_crossings(path, low, high, request.certify)
     hopfs = []
     failures = []
-    for crossing in found.crossings:
+    for crossing in found.thresholds:
         try:
             hopfs.append(hopf_point(path, crossing))
         except FAILURES as error:
-            failures.append(f"the Hopf point at {request.along} = {crossing.at:.12g}: {cause_of(error)}")
+            failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
     ends = (path.coordinate(low), path.coordinate(high))
     reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
-    if path.is_compliance:
+    if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
     limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
@@ -148,7 +148,7 @@ def _solve_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace
     return BranchesOfRod(
         status=status,
         message=message,
-        crossings=found.crossings,
+        crossings=found.thresholds,
         unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
         proved=found.proved_to_the_end,
         curves=tuple(curves),

@@ -88,10 +88,10 @@ class LeaderExchangeSearch:
         """The anchor at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
         cannot be computed."""
         if p not in self.anchors:
-            self.anchors[p] = self._solve(p)
+            self.anchors[p] = self._solve_anchor(p)
         return self.anchors[p]
 
-    def _solve(self, p: float) -> Anchor:
+    def _solve_anchor(self, p: float) -> Anchor:
         request = SpectrumRequest(ANCHOR_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
@@ -108,9 +108,9 @@ class LeaderExchangeSearch:
                 error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess)
             ):
                 w[i] = polished
-        return Anchor(p, w, slope, *self.problem.relaxation(p))
+        return Anchor(p, w, slope, *self.problem.relaxation_time_and_slope(p))
 
-    def changes(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
+    def exchanges(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
         """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
         first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
         found: list[Threshold] = []
@@ -118,12 +118,12 @@ class LeaderExchangeSearch:
         self.anchor(edges[0])
         for a, b in intervals:
             try:
-                found += self._search(a, b, intervals)
+                found += self._search_interval(a, b, intervals)
             except Unsolvable as why:
                 intervals.end_within((a, b), str(why))
         return found, intervals.end
 
-    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Threshold]:
+    def _search_interval(self, a: float, b: float, intervals: SearchedIntervals) -> list[Threshold]:
         """The exchange between the anchors at a and b, in a list; an empty list without an exchange, or if
         the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends the
         proof if it is too short; raises Unsolvable."""
@@ -146,7 +146,7 @@ class LeaderExchangeSearch:
         else:
             change = self._exchange_between(left, right)
             if change is not None:
-                return self._alone_or_divided(change, left, right, intervals)
+                return self._exchange_if_alone(change, left, right, intervals)
             if b - a <= LEADING_EIGENVALUE_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
@@ -156,7 +156,7 @@ class LeaderExchangeSearch:
         intervals.add_parts((a, middle), (middle, b))
         return []
 
-    def _alone_or_divided(
+    def _exchange_if_alone(
         self, change: Threshold, left: Anchor, right: Anchor, intervals: SearchedIntervals
     ) -> list[Threshold]:
         """The exchange `change` between two anchors, in a list, if no further exchange lies between them;
@@ -169,7 +169,7 @@ class LeaderExchangeSearch:
         if length <= LEADING_EIGENVALUE_SETTINGS.smallest_hiding_interval * intervals.length:
             self.leaders_proved = False
             return [change]
-        p = self.path.coordinate(change.at)
+        p = self.path.coordinate(change.value)
         beside = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
         places = sorted({left.p, max(left.p, p - beside), min(right.p, p + beside), right.p})
         intervals.add_parts(*pairwise(places))
@@ -180,7 +180,7 @@ class LeaderExchangeSearch:
         None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
-        if right.oscillates != self.path.is_compliance:
+        if right.oscillates != self.path.is_compliance_path:
             double = ChangeKind.onset
             single = ChangeKind.pair_leads
         else:
@@ -194,7 +194,7 @@ class LeaderExchangeSearch:
             behind = max(left.w[meeting].real, right.w[meeting].real)
             if behind >= found.growth_rate:
                 continue
-            count = self.problem.count((found.growth_rate + behind) / 2, found.p)
+            count = self.problem.count_right_of((found.growth_rate + behind) / 2, found.p)
             # A different count means that other eigenvalues lead; an undecided count leaves the exchange
             # unproved.
             if count.number in (meeting, None):

@@ -216,7 +216,7 @@ class _MarchedMotion:
         coordinates = {
             name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
         }
-        self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
+        self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         z = relax_fast_components(self.beam, settled.z, self.mode.period)
         more = errors_of_pair(path, self._path(self._integrate_until_settled(z)), 0.0)

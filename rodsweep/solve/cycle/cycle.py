@@ -124,7 +124,7 @@ def with_measures(
     amplitudes = padded_or_cut(measures.harmonic_amplitude, request.harmonics, 0.0)
     return replace(
         cycle,
-        elements=mesh.elements,
+        elements=mesh.element_count,
         order=mesh.order,
         measures=replace(measures, harmonic_amplitude=amplitudes),
         errors=errors,

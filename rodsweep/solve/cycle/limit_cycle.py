@@ -141,7 +141,7 @@ def _with_motion_data(
     return replace(
         straight,
         periods=end.periods,
-        elements=transient.form.mesh.elements,
+        elements=transient.form.mesh.element_count,
         order=transient.form.mesh.order,
         transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
         motion_shapes=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,

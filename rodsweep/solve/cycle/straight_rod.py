@@ -106,7 +106,7 @@ def eigenvalues_to_follow(rod: Rod, found: StraightRod) -> Complex:
     can be followed. found: leading eigenvalue of `rod`."""
     if len(found.followed):
         return found.followed
-    if not rod.uniform:
+    if not rod.is_uniform:
         request = SpectrumRequest(
             STRAIGHT_ROD_SETTINGS.chain_eigenvalues, STRAIGHT_ROD_SETTINGS.accuracy, True
         )

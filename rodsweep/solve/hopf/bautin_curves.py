@@ -57,10 +57,10 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Points of a curve in order, and the reasons for its ends at the first and at the last point."""
+    """Points of a curve in order, and the reasons for its two ends."""
 
     points: tuple[BautinCurvePoint, ...]
-    ends: tuple[BautinEnd, BautinEnd]
+    end_reasons: tuple[BautinEnd, BautinEnd]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,8 @@ class _CurvePoint:
 class BautinSpace:
     """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
     values of the fixed parameters. requested_values: values of the third parameter of further points, (m,).
-    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or -1."""
+    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or
+    -1."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
@@ -93,7 +94,7 @@ class BautinSpace:
         fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
-        plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
+        plane = Plane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
         accuracy = min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
@@ -215,7 +216,7 @@ def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurv
 
 
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` in the direction `space.first_direction` of the third parameter, including points
+    """(points from `start` in the direction `space.direction` of the third parameter, including points
     at its requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + space.direction * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end

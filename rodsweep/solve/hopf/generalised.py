@@ -51,11 +51,11 @@ class GeneralisedHopfPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
     values, errors: values and absolute errors of both parameters of the plane. frequency in 1/tau2,
-    growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored
-    point of the curve before this point.
+    growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). preceding_index: index of the
+    last stored point of the curve before this point.
     """
 
-    after: int
+    preceding_index: int
     values: tuple[float, float]
     errors: tuple[float, float]
     frequency: float
@@ -209,7 +209,7 @@ class HopfCurve:
             for axis, value, off in zip(axes, values, way[:2], strict=True)
         ]
         return GeneralisedHopfPoint(
-            after=after,
+            preceding_index=after,
             values=(values[0], values[1]),
             errors=(errors[0], errors[1]),
             frequency=math.exp(float(there.v[2])),

@@ -134,7 +134,7 @@ class CallbackWorkspace:
     """Arrays and context record used by the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
-        n = plane_layout(mesh.nodes).unknowns
+        n = plane_layout(mesh.node_count).unknowns
         self.base = np.zeros(n)
         self._mesh = mesh  # the callbacks read the mesh's arrays by address, so the mesh must stay alive
         self._arrays = mesh.matrices._asdict() | {
@@ -148,7 +148,7 @@ class CallbackWorkspace:
         }
         self._vectors = [PETSc.Vec().createSeq(n, comm=PETSc.COMM_SELF) for _ in range(2)]
         self.context = np.zeros((), CONTEXT_DTYPE)
-        self._set_context_fields({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
+        self._set_context_fields({"nodes": mesh.node_count + 1, "unknowns": n, "matrix_due": AT_BASE})
         self._set_context_fields({name: array.ctypes.data for name, array in self._arrays.items()})
 
     def _set_context_fields(self, values: Mapping[str, float]) -> None:
@@ -195,11 +195,11 @@ class CallbackWorkspace:
         call_petsc("TSSetApplicationContext", ts.handle, context)
         call_petsc("TSSetPreStep", ts.handle, begin_step.address)
         if snes.getType() == "shell":
-            self._solve_stages_of(ts, snes, matrix)
+            self._register_stage_solver(ts, snes, matrix)
         else:
             call_petsc("SNESSetConvergenceTest", snes.handle, test_newton_convergence.address, context, 0)
 
-    def _solve_stages_of(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
+    def _register_stage_solver(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
         objects = ts, matrix, ksp, *self._vectors

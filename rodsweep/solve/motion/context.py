@@ -105,6 +105,7 @@ def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:
 
 @compiled
 def rod_of(c: Any) -> NodalRod:
+    """The integrated rod, as views of the arrays whose addresses are in the context record `c`."""
     d = c.components
     m = c.nodes
     rest = double_array_at(c.rest_strain, (d, m))
@@ -121,6 +122,7 @@ def rod_of(c: Any) -> NodalRod:
 
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
+    """The matrices of the mesh, as views of the arrays whose addresses are in the context record `c`."""
     all_nodes = (c.nodes, c.nodes)
     D = double_array_at(c.D, all_nodes)
     D_transposed = double_array_at(c.D_transposed, all_nodes)
@@ -131,14 +133,17 @@ def matrices_of(c: Any) -> NodeMatrices:
 
 @compiled
 def sqrt_compliance_of(c: Any) -> Any:
+    """Square roots of the compliances, (components, nodes); c: context record."""
     return double_array_at(c.roots, (c.components, c.nodes))
 
 
 @compiled
 def times_of(c: Any) -> Any:
+    """Times of the stages of this step and of the last step, (2 MAX_STAGES,); c: context record."""
     return doubles_at(c.times, 2 * MAX_STAGES)
 
 
 @compiled
 def states_of(c: Any) -> Any:
+    """The stages of this step and of the last step, (2 MAX_STAGES, unknowns); c: context record."""
     return double_array_at(c.states, (2 * MAX_STAGES, c.unknowns))

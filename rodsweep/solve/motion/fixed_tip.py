@@ -56,7 +56,7 @@ def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
     bending = _BentRod(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.positions)
+    Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.node_positions)
     first = bending.tip_position(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
@@ -84,11 +84,11 @@ class _BentRod:
         self.mesh = beam.mesh
         self._straight_beam = beam
         self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
-        size = beam.mesh.nodes + 1
+        size = beam.mesh.node_count + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
-        self.angles = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
+        self.angle_matrix = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
         """Matrix from Pi to theta, both at all nodes; at a jump of the material the mean of both values of Pi
         is used."""
 
@@ -116,7 +116,7 @@ class _BentRod:
             misplaced = target - self.tip_position(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
-            if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
+            if not np.abs(self.angle_matrix @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
@@ -127,7 +127,7 @@ class _BentRod:
     def _derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
         """Returns (d(x, y)/dPi, d^2(f . (x, y))/dPi^2), (2, nodes + 1) and (nodes + 1, nodes + 1), by
         quadrature. (x, y): the tip. Pi: curvatures at all nodes, (nodes + 1,). force: f, (2,)."""
-        A = self.angles
+        A = self.angle_matrix
         w = self.mesh.quadrature
         c = np.cos(A @ Pi)
         s = np.sin(A @ Pi)

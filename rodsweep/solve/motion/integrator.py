@@ -33,7 +33,7 @@ class IntegratorSettings:
     stage_rounding: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
-    first_step_share: float = 1e-3
+    first_step_ratio: float = 1e-3
     """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000
     """Default maximum number of time steps of a run."""
@@ -42,9 +42,9 @@ class IntegratorSettings:
     max_failed_stages: int = 1_000_000
     """PETSc ends the run after more than this number of stages at which Newton's method fails; each failure
     shortens the step."""
-    relaxation_share: float = 1e-3
+    relaxation_duration_ratio: float = 1e-3
     """Duration of the run in `relax_fast_components`, as a fraction of the period."""
-    relaxation_steps: float = 1e5
+    relaxation_steps_per_period: float = 1e5
     """Period divided by the first time step in `relax_fast_components`; the fast components decay within ten
     steps."""
     relaxation_tolerance: float = 1e-3
@@ -104,7 +104,7 @@ class Integrator:
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
         self.workspace = CallbackWorkspace(mesh)
-        unknowns = plane_layout(mesh.nodes).unknowns
+        unknowns = plane_layout(mesh.node_count).unknowns
         self.vector = PETSc.Vec().createSeq(unknowns, comm=PETSc.COMM_SELF)
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()
@@ -168,7 +168,7 @@ class Integrator:
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
-        ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_share * duration)
+        ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_ratio * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.is_reached is None:
@@ -235,7 +235,7 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step
     length; backward Euler damps these components within ten steps. If the run fails, z itself is returned.
     """
-    duration = INTEGRATOR_SETTINGS.relaxation_share * period
-    step = period / INTEGRATOR_SETTINGS.relaxation_steps
+    duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
+    step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
     run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
     return run.states[-1] if run.ending == RunEnding.reached else z

@@ -157,4 +157,4 @@ def multiplier_change(multipliers: Complex, others: Complex) -> float:
 def relative_change(orbit: Orbit, step: Array) -> float:
     """Largest relative change of n2, m3 and the period in the Newton step `step`, (N,): the largest change of
     each quantity, divided by the largest modulus of this quantity; inf if the step is not finite."""
-    return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))
+    return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.node_count))

@@ -92,14 +92,14 @@ def _space_coefficients(orbit: Orbit) -> Array:
         c = np.abs(_stresses_by_element(orbit, ends) @ _legendre_analysis_on_element(grid.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
-    return largest_coefficients(ends, grid.elements, _legendre_analysis_on_element(grid.order))
+    return largest_coefficients(ends, grid.element_count, _legendre_analysis_on_element(grid.order))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _legendre_analysis_on_element(order: int) -> Array:
     """Matrix, (p + 1, p + 1): a row of values at the nodes of an element of order p times this matrix is the
     row of Legendre coefficients."""
-    return np.ascontiguousarray(legendre_analysis(2 * uniform_mesh(1, order).positions - 1).T)
+    return np.ascontiguousarray(legendre_analysis(2 * uniform_mesh(1, order).node_positions - 1).T)
 
 
 @compiled_for_vectors
@@ -137,7 +137,7 @@ def smooth_tails(orbit: Orbit) -> Array:
         largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
         in_space = float((ends / largest).max())
     else:
-        in_space = largest_tail_in_space(orbit.points, grid.elements, _last_analysis_columns(grid.order))
+        in_space = largest_tail_in_space(orbit.points, grid.element_count, _last_analysis_columns(grid.order))
     return np.array([in_space, _tail_in_time(orbit)])
 
 
@@ -189,7 +189,9 @@ def largest_tail_in_space(points: Array, elements: int, analysis: Array) -> floa
 
 def _tail_in_time(orbit: Orbit) -> float:
     """Largest relative tail in time of n1, n2 and m3 (see `largest_tail_in_time`)."""
-    return largest_tail_in_time(orbit.points, _last_coefficient_weights(orbit.stages), orbit.form.mesh.nodes)
+    return largest_tail_in_time(
+        orbit.points, _last_coefficient_weights(orbit.stages), orbit.form.mesh.node_count
+    )
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

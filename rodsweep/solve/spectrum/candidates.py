@@ -115,7 +115,7 @@ def candidates_on_mesh(
         destroy_pooled_solvers()
         failure = cause_of(error)
     kept_roots = problem.refined_roots(
-        raw, CANDIDATE_SETTINGS.max_waves_per_node * mesh.elements * mesh.order
+        raw, CANDIDATE_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
     )
     kept = kept[:, kept_roots.mesh_indices] if kept is not None else None
     return Candidates(mesh, kept_roots, kept, failure)

@@ -50,7 +50,7 @@ class TransverseProblem(ABC):
     shift: float
     has_bound: bool
     is_count_slow: ClassVar[bool]
-    spare_eigenvalues: int = 0
+    additional_eigenvalues: int = 0
     """Number of eigenvalues requested from the first mesh in addition to the modes, for a proof without a
     count."""
 
@@ -141,7 +141,9 @@ class ArmProblem(TransverseProblem):
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
-        self.spare_eigenvalues = COMPLETENESS_SETTINGS.spare_eigenvalues if to_prove and self.has_bound else 0
+        self.additional_eigenvalues = (
+            COMPLETENESS_SETTINGS.additional_eigenvalues if to_prove and self.has_bound else 0
+        )
         growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 
@@ -190,4 +192,4 @@ class ArmProblem(TransverseProblem):
 
 def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:
     """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
-    return UniformProblem(rod) if rod.standard else ArmProblem(rod, to_prove)
+    return UniformProblem(rod) if rod.is_uniform_and_linear else ArmProblem(rod, to_prove)

@@ -26,7 +26,7 @@ class SpectrumRequest:
     """Relative accuracy of every eigenvalue, and of every eigenmode if requested."""
     certify: bool
     """Whether it must be proved that no eigenvalue is missing."""
-    vector_nodes: int = 0
+    vector_node_count: int = 0
     """Number of Lobatto nodes at which eigenmodes (Y, Theta) are stored; 0 for no eigenmodes."""
 
 
@@ -113,8 +113,8 @@ def modes_at_lobatto_nodes(
     if found is None:
         return None
     solver = problem.solver(mesh)
-    y, theta = solver.fields(found[:, : request.modes], problem.rod)
-    matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_nodes))
+    y, theta = solver.displacements(found[:, : request.modes], problem.rod)
+    matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_node_count))
     scale = factors_to_unit_tip(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
@@ -124,15 +124,19 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
 
     w, error: of any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
     """
-    rounding = SPECTRUM_ERROR_SETTINGS.rounding if rod.standard else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
+    rounding = (
+        SPECTRUM_ERROR_SETTINGS.rounding
+        if rod.is_uniform_and_linear
+        else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
+    )
     return error + rounding * ROUND_OFF * np.abs(w)
 
 
 def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome of a failed solve: all eigenvalues, errors and eigenmodes are NaN."""
     empty = np.full(request.modes, np.nan)
-    shape = (2, request.modes, request.vector_nodes)
-    vectors = np.full(shape, np.nan + 0j) if request.vector_nodes else None
+    shape = (2, request.modes, request.vector_node_count)
+    vectors = np.full(shape, np.nan + 0j) if request.vector_node_count else None
     return Spectrum(
         status=status, eigenvalues=empty + 0j, error_estimate=empty, vectors=vectors, message=message
     )

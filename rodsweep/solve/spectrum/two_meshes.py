@@ -68,7 +68,7 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
 def _solve_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     problem = transverse_problem(rod)
     modes = request.modes
-    aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
+    aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy
     mesh: AnyMesh = problem.mesh_for(modes, aim)
     before = _leading_eigenvalues(problem, mesh, modes)
     best: Spectrum | None = None
@@ -172,7 +172,7 @@ def _spectrum_of_mesh(
     modes = request.modes
     enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
-    if request.vector_nodes and enough:
+    if request.vector_node_count and enough:
         vectors = problem.solver(mesh).vectors(len(w))[:, found.indices]
     unstable = int((w.real > 0).sum())
     decide = slice(max(modes, unstable + 1))  # later eigenvalues decay faster
@@ -182,7 +182,7 @@ def _spectrum_of_mesh(
         eigenvalues=w[:modes],
         error_estimate=error[:modes],
         unstable_count=unstable if known else -1,
-        elements=mesh.elements,
+        elements=mesh.element_count,
         order=mesh.order,
         vectors=modes_at_lobatto_nodes(problem, request, mesh, vectors),
     )

@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
@@ -57,7 +57,7 @@ def grid_of_arms(
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
         if section.load_axis in LOAD_OF_RATIO:
-            units[section.load] = table["F"] * units[SCALE_NAMES[section.load]]
+            units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else DEFAULT_BUILD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
@@ -121,7 +121,7 @@ def _unit_load_force(
         return NO_FLUTTER_FORCE
     if section.load_axis in LOAD_OF_RATIO:
         return flutter(arm, taper)
-    return FlutterForce(1.0 / getattr(arm, SCALE_NAMES[section.load]))
+    return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
 
 
 def _with_flutter(coverage: Array, flutter: Array) -> Array:

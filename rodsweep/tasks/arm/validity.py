@@ -181,7 +181,7 @@ class ArmValidity:
             arm, rate, self._base_compression(F, index), drag=drag, amplitude=motion.amplitude
         )
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
-        excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
+        excess = np.array([effect.value_over_limit for effect in counted])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
         points = excess.reshape(len(counted), *np.shape(index), -1)  # the last axis: all motions of a point
         largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)

@@ -196,7 +196,7 @@ class DiagramCurves:
         accuracy = self.task.config.accuracy
         return [
             curve_criticality(plane, curve, accuracy)
-            if curve.hopf
+            if curve.consists_of_hopf_points
             else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
             for curve in found.curves
         ]

@@ -106,7 +106,7 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
         fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
         here = w[number]
-        rods = rod.coefficients, rod.direction("F")
+        rods = rod.coefficients, rod.coefficient_derivative("F")
         tried = (onset_between(rods, (F[i], F[j]), here[i], here[j]) for i, j in onsets.get(number, ()))
         found = [next(filter(None, tried), None)]
         for i, j in changes.get(number, ()):

@@ -117,7 +117,7 @@ def hopf_variables(
     names: parameters of the file. found: result of the search on each line.
     """
     known = [(line, each) for line, each in zip(lines, found, strict=True) if each is not None]
-    rows = [_hopf_point_values(line, crossing) for line, each in known for crossing in each.crossings]
+    rows = [_hopf_point_values(line, crossing) for line, each in known for crossing in each.thresholds]
     proved = sum(each.proved_to_the_end for _, each in known)
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
@@ -128,11 +128,11 @@ def hopf_variables(
 
 def _hopf_point_values(line: HopfLine, crossing: "Threshold") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
-    rod = line.fixed | {line.name: crossing.at}
+    rod = line.fixed | {line.name: crossing.value}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
         "hopf_along": HOPF_ALONG.index(line.name),
         "hopf_kind": int(crossing.kind),
-        "hopf_error": crossing.error / abs(crossing.at),
+        "hopf_error": crossing.error / abs(crossing.value),
         "hopf_frequency": crossing.frequency,
         "hopf_frequency_error": crossing.frequency_error,
         "hopf_unstable_after": crossing.unstable_after,

@@ -68,7 +68,7 @@ def branch_of_auto(program, rod, setting, place):
 def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = find_axis_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
+    crossing = find_axis_crossings(Path(straight, "F"), 0.0, rod.F).thresholds[0]
     here, special = first_cycle(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
     while True:
         there = next_point(here, ACCURACY)

@@ -47,7 +47,7 @@ def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     path = Path(straight, "F")
-    hopf = hopf_point(path, find_axis_crossings(path, 0.0, 5.0).crossings[0])
+    hopf = hopf_point(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
@@ -111,7 +111,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_point(here, ROUGH).orbit
-    p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
+    p, nodes = orbit.semidiscrete, orbit.form.mesh.node_count
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
 
     def rate(_, x):

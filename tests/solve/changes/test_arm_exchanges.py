@@ -35,8 +35,8 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
     """The forces are from a bisection of dense eigenvalues of another code on two meshes."""
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
-    (taken,) = [c for c in found.crossings if c.kind == ChangeKind.real_leads]
-    assert taken.at == pytest.approx(F, abs=1e-9)
+    (taken,) = [c for c in found.thresholds if c.kind == ChangeKind.real_leads]
+    assert taken.value == pytest.approx(F, abs=1e-9)
     assert taken.error < 1e-9
 
 
@@ -56,7 +56,7 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
 def test_three_exchanges_between_two_anchors_are_all_found(rod, F_max):
     found = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
-    kinds = [c.kind for c in found.crossings[:3]]
+    kinds = [c.kind for c in found.thresholds[:3]]
     assert kinds == [ChangeKind.onset, ChangeKind.real_again, ChangeKind.pair_leads]
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
@@ -65,7 +65,7 @@ def test_a_double_eigenvalue_behind_the_leading_pair_is_no_onset():
     rod = cone(20971.78966444228, 401.0547088144865, 4.178687351590938e-05, 0.1542518309504673)
     found = solve_thresholds(rod, ThresholdsRequest(39.13599469496463, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
-    assert found.crossings[0].kind == ChangeKind.pair_leads
+    assert found.thresholds[0].kind == ChangeKind.pair_leads
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 
@@ -113,7 +113,7 @@ def forces_between(found):
 def test_lists_of_cones_with_crowded_eigenvalues_are_proved_and_right(rod):
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
-    assert found.transitions.proved
+    assert found.search_result.proved
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 

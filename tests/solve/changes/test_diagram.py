@@ -37,7 +37,7 @@ def rows(plane_axes, rod, count):
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
         seeds += [
-            seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings
+            seed_of((c.value, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
         ]
     return found, seeds
 
@@ -51,11 +51,11 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     row = solve_row(
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
-    hopf = next(c for c in row.thresholds.crossings if c.kind == ChangeKind.hopf)
+    hopf = next(c for c in row.thresholds.thresholds if c.kind == ChangeKind.hopf)
     curve = trace_boundary(
         0.0,
         plane,
-        (plane.axes[0].coordinate(hopf.at), plane.axes[1].coordinate(300.0)),
+        (plane.axes[0].coordinate(hopf.value), plane.axes[1].coordinate(300.0)),
         hopf.frequency,
     )
     (fold,) = [f for f in curve.folds if f.axis == 1]
@@ -90,7 +90,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     curves = curves_through(Plane(rod, axes), seeds)
     assert curves.untraced == 0
     assert curves.agreement < 1e-11
-    assert sum(c.hopf for c in curves.curves) == 1
+    assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
     for curve in curves.curves:
         inside = (np.diff(curve.scaled[:, :2], axis=0) ** 2).sum(axis=1)
         assert np.sqrt(inside).max() < 0.05
@@ -131,17 +131,17 @@ ENDS = [
 def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     _, seeds = rows(axes, rod, 3)
     curves = curves_through(Plane(rod, axes), seeds).curves
-    assert {curve.ends for curve in curves} == ends
+    assert {curve.end_reasons for curve in curves} == ends
     for curve in curves:
         for (x, y, _), (F, other), end in zip(
-            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.ends, strict=True
+            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
         ):
             beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
             assert beside_an_edge if end == BoundaryEnd.edge else pytest.approx(other, rel=1e-7) == F
     few = replace(boundary_curves.BOUNDARY_STEPS, max_solutions=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
     curve = curves_through(Plane(rod, axes), seeds[:1]).curves[0]
-    assert BoundaryEnd.list_full in curve.ends
+    assert BoundaryEnd.list_full in curve.end_reasons
     assert len(curve.values) < 10
 
 
@@ -227,7 +227,7 @@ def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     for value in k1:
         row = solve_row(replace(rod, k1=value), RowRequest("F", np.linspace(0.0, top, 13), 1e-9, True, 50))
         seeds += [
-            seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings
+            seed_of((c.value, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
         ]
     curves = curves_through(Plane(rod, axes), seeds).curves
     found = [fold for curve in curves for fold in curve.folds]

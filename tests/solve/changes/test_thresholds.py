@@ -133,15 +133,15 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
     ],
 )
 def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, start, stop):
-    found = find_thresholds(Path(fixed, name), start, stop).crossings
+    found = find_thresholds(Path(fixed, name), start, stop).thresholds
     assert found
     for crossing in found:
-        values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.at}
+        values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.value}
         forces = [c.at for c in thresholds(**values, F_max=1.2 * fixed.F).crossings]
         assert min(abs(F - fixed.F) for F in forces) < 1e-10 * fixed.F
         before, after = (
             count_right_of(0.0, Path(fixed, name).rod_at(Path(fixed, name).coordinate(v))).number
-            for v in (crossing.at * 0.99, crossing.at * 1.01)
+            for v in (crossing.value * 0.99, crossing.value * 1.01)
         )
         assert after == crossing.unstable_after
         if crossing.kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
@@ -173,7 +173,7 @@ def test_more_changes_than_the_list_holds_are_counted():
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(200.0, 1e-10, True, 2)
     )
     assert found.status == ThresholdStatus.list_full
-    assert len(found.crossings) == 3
+    assert len(found.thresholds) == 3
 
 
 def test_what_overflows_fails_with_a_reason():
@@ -186,22 +186,22 @@ def test_what_overflows_fails_with_a_reason():
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
     """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
     found = find_thresholds(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
-    kinds = [c.kind for c in found.crossings]
+    kinds = [c.kind for c in found.thresholds]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
     assert kinds[:3] == [ChangeKind.onset, ChangeKind.restabilization, ChangeKind.real_leads]
     assert found.proved
-    onset, _, overtaken = found.crossings[:3]
+    onset, _, overtaken = found.thresholds[:3]
     assert onset.growth_rate > 60
     for change, before, after in ((onset, False, True), (overtaken, True, False)):
-        for F, pair in ((change.at - 1e-3, before), (change.at + 1e-3, after)):
+        for F, pair in ((change.value - 1e-3, before), (change.value + 1e-3, after)):
             w = solve_spectrum(
                 Rod(F=F, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(4, 1e-8, True)
             ).eigenvalues
             assert (w[0].imag != 0) == pair
     # A real eigenvalue and a pair have the same real part where the one overtakes the other.
     w = solve_spectrum(
-        Rod(F=overtaken.at, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(3, 1e-10, True)
+        Rod(F=overtaken.value, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(3, 1e-10, True)
     ).eigenvalues
     assert w.real == pytest.approx(overtaken.growth_rate, rel=1e-9)
     assert w.imag.max() == pytest.approx(overtaken.frequency, rel=1e-9)
@@ -223,7 +223,7 @@ def test_a_pair_about_to_cross_the_axis_leads():
     """The onset and an overtaking lie close together before it, between two spectra that agree in kind."""
     rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
     found = find_thresholds(Path(rod, "F"), -27.170544378578725, 100.0)
-    kinds = [c.kind for c in found.crossings]
+    kinds = [c.kind for c in found.thresholds]
     assert ChangeKind.onset in kinds
     assert ChangeKind.real_leads in kinds
     motion, _ = classes_and_unstable_counts(found, np.array([-4.95]))
@@ -239,7 +239,7 @@ def test_no_change_outside_the_path_is_reported():
     assert [c.kind for c in before.crossings] == [ChangeKind.onset]
     assert before.transitions.unstable_at_end == 0
     beyond = find_thresholds(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
-    assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
+    assert (beyond.unstable_at_start, beyond.thresholds) == (2, ())
 
 
 @pytest.mark.parametrize("k1", [8e8, 1.6e8, 3.1e9])
@@ -247,7 +247,7 @@ def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
     hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == ChangeKind.hopf)
     found = find_thresholds(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
-    assert [c.unstable_after for c in found.crossings if c.kind == ChangeKind.hopf] == [2]
+    assert [c.unstable_after for c in found.thresholds if c.kind == ChangeKind.hopf] == [2]
 
 
 @pytest.mark.parametrize("F_max", [1e-3, 0.3, 0.7])

@@ -57,7 +57,7 @@ def reference():
 def hopf():
     """F** of the soft rod."""
     found = solve_thresholds(rod_of(0.0, *SOFT), ThresholdsRequest(40.0, 1e-12, False, 4))
-    return next(c.at for c in found.crossings if c.kind.name == "hopf")
+    return next(c.value for c in found.thresholds if c.kind.name == "hopf")
 
 
 # An independent displacement-form code: docs/method.md, reference values.
@@ -401,7 +401,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
     stresses = half.form.stresses(half.states[:, -1])
-    analysis = legendre_analysis(2 * uniform_mesh(1, order).positions - 1)
+    analysis = legendre_analysis(2 * uniform_mesh(1, order).node_positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]

@@ -80,7 +80,7 @@ def cycle_near(at, hopf, known, gamma1, part):
     """(largest tip y squared, frequency less that of the Hopf point), both over F - F_H, of a cycle."""
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
     normal = accurate_normal_form(at.changed(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
-    form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.nodes))
+    form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.node_count))
     measures = refined_cycle(orbit_by_normal_form(normal, form), 1e-11, NewtonWorkspace()).measures
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 
@@ -151,8 +151,10 @@ def test_errors_are_below_their_estimates(accuracy):
             exact = normal_form(
                 mixed_form(at.changed(gamma1=rod.gamma1), known.elements, finer), 1j * hopf.frequency
             )
-            assert abs(known.landau / exact.c - 1) <= known.landau_error <= accuracy
-            assert abs(known.growth_slope / exact.slope - 1) <= known.growth_slope_error <= accuracy
+            assert abs(known.landau / exact.landau - 1) <= known.landau_error <= accuracy
+            assert (
+                abs(known.growth_slope / exact.eigenvalue_slope - 1) <= known.growth_slope_error <= accuracy
+            )
             assert (
                 abs(known.amplitude_coefficient / exact.amplitude_coefficient - 1)
                 <= known.amplitude_coefficient_error
@@ -170,8 +172,8 @@ def test_errors_are_below_their_estimates_where_rounding_is_largest(k1, k2):
     found = solved(rod, accuracy=1e-12, F_max=300.0, most=40)
     for hopf, known in zip(found.crossings, found.coefficients, strict=True):
         at = Rod(F=hopf.at, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-        finer = mixed_form(at.changed(gamma1=rod.gamma1), known.elements, known.order + 8)
-        off = abs(normal_form(finer, 1j * hopf.frequency).c / known.landau - 1)
+        finer = mixed_form(at.with_values(gamma1=rod.gamma1), known.elements, known.order + 8)
+        off = abs(normal_form(finer, 1j * hopf.frequency).landau / known.landau - 1)
         assert off <= known.landau_error <= 5e-11
     assert hopf.at > 0.8 * k1
 
@@ -199,7 +201,7 @@ def test_error_of_the_force_is_in_that_of_the_coefficient(k1):
         beside = mixed_form(
             (replace(at, F=at.F + step)).changed(gamma1=rod.gamma1), known.elements, known.order
         )
-        moved = normal_form(beside, 1j * hopf.frequency + known.growth_slope * step).c
+        moved = normal_form(beside, 1j * hopf.frequency + known.growth_slope * step).landau
         by_force = abs(moved / known.landau - 1) * hopf.error / step
         assert known.landau_error >= by_force
         if k1 < 147.925:
@@ -216,9 +218,9 @@ def test_hopf_points_are_those_of_all_transitions():
         end = min(200.0, rod.k1 * (1 - 1e-6))
         path = Path(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
         every, pairs = find_thresholds(path, 0.0, end), find_axis_crossings(path, 0.0, end)
-        crossings = [c for c in every.crossings if not c.kind.changes_leader]
-        assert [(c.at, c.kind, c.unstable_after) for c in pairs.crossings] == [
-            (c.at, c.kind, c.unstable_after) for c in crossings
+        crossings = [c for c in every.thresholds if not c.kind.changes_leader]
+        assert [(c.value, c.kind, c.unstable_after) for c in pairs.thresholds] == [
+            (c.value, c.kind, c.unstable_after) for c in crossings
         ]
         assert pairs.proved
         assert pairs.unstable_at_end == every.unstable_at_end

@@ -168,7 +168,7 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
     assert again.criticality[point.after + 1] == 0
     assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
-    assert again.points[0].after in (point.after, point.after + 1)
+    assert again.points[0].preceding_index in (point.after, point.after + 1)
 
 
 def test_a_diagram_tells_shows_and_draws_it(command):
@@ -316,7 +316,10 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
     curve = bautin_curve(space, start.point)
-    assert curve.ends == (BautinEnd.plane_edge, BautinEnd.plane_edge) or curve.ends[1] == BautinEnd.range_end
+    assert (
+        curve.end_reasons == (BautinEnd.plane_edge, BautinEnd.plane_edge)
+        or curve.end_reasons[1] == BautinEnd.range_end
+    )
     x, _, z = np.array([point.values for point in curve.points]).T
     assert (np.diff(x) > 0).all()
     assert x[-1] > 0.9
@@ -343,7 +346,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
-    assert curve.ends == (BautinEnd.closed, BautinEnd.closed)
+    assert curve.end_reasons == (BautinEnd.closed, BautinEnd.closed)
     x, _, z = np.array([point.values for point in curve.points]).T - 0.5
     turned = np.unwrap(np.arctan2(z, x))
     assert abs(turned[-1] - turned[0]) == pytest.approx(2 * np.pi)

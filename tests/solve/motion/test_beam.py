@@ -63,7 +63,7 @@ def injected_and_dissipated(beam, z):
 
 @MESHES
 def test_jacobian_is_the_derivative_of_the_rate(elements, order):
-    beam = Beam(ROD.changed(gamma1=0.7), uniform_mesh(elements, order))
+    beam = Beam(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
     z = rough(beam)
     J = beam.jacobian(z)
     for k, d in enumerate(1e-3 * np.eye(len(z))):  # the rate is cubic: this difference is exact
@@ -77,9 +77,9 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
 @pytest.mark.kernel
 @MESHES
 def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
-    beam = Beam(ROD.changed(gamma1=0.7), uniform_mesh(elements, order))
+    beam = Beam(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
     z = rough(beam)
-    rate, n = beam.state_derivative(z), beam.mesh.nodes
+    rate, n = beam.state_derivative(z), beam.mesh.node_count
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
     change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)
@@ -113,7 +113,7 @@ def test_uniformly_bent_rod_is_an_arc(elements, order):
     E = np.zeros((3, grid.element_nodes.size))
     E[0], E[2] = 0.9, 2.0
     x, y, theta = shape_from_strains(grid, E, np.zeros(3))
-    angle = 2.0 * grid.positions
+    angle = 2.0 * grid.node_positions
     assert np.abs(theta - angle).max() < 1e-14
     assert np.abs(x - 0.45 * np.sin(angle)).max() < 1e-14
     assert np.abs(y - 0.45 * (1 - np.cos(angle))).max() < 1e-14

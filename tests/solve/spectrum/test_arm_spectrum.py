@@ -102,8 +102,8 @@ def test_uniform_rubber_is_solved_by_its_linear_equivalent(section):
 
 def test_vectors_are_those_of_a_finer_mesh():
     rod = Rod(F=14.0, k1=1e4, k2=200.0, gamma3=1e-3, taper=0.4)
-    rough = solve_spectrum(rod, SpectrumRequest(3, 1e-6, certify=True, vector_nodes=17)).vectors
-    fine = solve_spectrum(rod, SpectrumRequest(3, 1e-11, certify=True, vector_nodes=17)).vectors
+    rough = solve_spectrum(rod, SpectrumRequest(3, 1e-6, certify=True, vector_node_count=17)).vectors
+    fine = solve_spectrum(rod, SpectrumRequest(3, 1e-11, certify=True, vector_node_count=17)).vectors
     assert np.abs(rough - fine).max() < 1e-5 * np.abs(fine).max()
     np.testing.assert_allclose(fine[0, :, -1], 1, atol=1e-12)
 

@@ -79,9 +79,9 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     build = rods[0].build
     lengths, u = _chebyshev_points_of_build(build)
     F = np.array([rod.F for rod in rods])
-    local = np.array(Rod.local_of_all(rods, u))
+    local = np.array(Rod.local_coefficients_of_rods(rods, u))
     averaged = (
-        np.empty((len(rods), 0, 2)) if build.continuous else _averaged_regions_by_arm(F, lengths, local)
+        np.empty((len(rods), 0, 2)) if build.is_continuous else _averaged_regions_by_arm(F, lengths, local)
     )
     return HullSamples(F, lengths, local, averaged)
 
@@ -131,12 +131,14 @@ class ChebyshevMatrices(NamedTuple):
 
 @cache
 def _chebyshev_matrices() -> ChebyshevMatrices:
-    x = -np.cos(np.pi * np.arange(HULL_SETTINGS.points) / (HULL_SETTINGS.points - 1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 1))
+    x = -np.cos(
+        np.pi * np.arange(HULL_SETTINGS.points_per_interval) / (HULL_SETTINGS.points_per_interval - 1)
+    )
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points_per_interval - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
-    derivative = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 2) @ slopes
-    integral = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points) @ integrals
+    derivative = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points_per_interval - 2) @ slopes
+    integral = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points_per_interval) @ integrals
     return ChebyshevMatrices(x, np.ascontiguousarray(derivative), np.ascontiguousarray(integral))
 
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
-from ....model.arm.quantities import SCALE_NAMES, UNITS
+from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ..style import CRITICAL_FORCE_LABEL, LABELS
 
@@ -27,7 +27,7 @@ LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
 def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
     load = "force" if all("force" in view.quantities for view in views) else "pressure"
-    given = [view.quantities.get(SCALE_NAMES[load]) for view in views]
+    given = [view.quantities.get(SCALE_NAME[load]) for view in views]
     units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
     if len(units) != 1 or any(values is None for values in given):
         return

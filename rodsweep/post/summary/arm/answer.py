@@ -7,7 +7,7 @@ import numpy as np
 
 from ....config.arm.axes import NOT_SLENDER
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import SCALE_NAMES, UNITS
+from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY
 from ....results.layouts.thresholds import CROSSING_KINDS
@@ -219,7 +219,7 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
     v = view.variables
-    scale = np.broadcast_to(v[SCALE_NAMES[load_kind(view)]], rods.shape)[rods]
+    scale = np.broadcast_to(v[SCALE_NAME[load_kind(view)]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     return _flutter_lines(view, forces * scale, last * scale, frequency), []

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ....model.arm.drag import DRAG_NAMES
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAMES, UNITS
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
@@ -196,7 +196,7 @@ def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
     force, (n,).
     """
     load = load_kind(view)
-    return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAMES[load]], points), UNITS[load][0])
+    return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAME[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:

@@ -80,4 +80,4 @@ def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
     # 0.
     weights = mesh.quadrature * relative_bending_compliance_at_nodes(build, mesh)
-    return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
+    return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.node_positions[:-1])})

@@ -73,9 +73,9 @@ class ArmPath(PathProblem):
         self._counts: dict[float, int] = {}
         """Proved numbers of unstable modes, by p."""
         self._families: list[ArmFamily] = []
-        self._along = ArmAlongPath(path, self._family)
+        self._determinant_along_path = ArmAlongPath(path, self._family_at)
 
-    def _family(self, p: float) -> ArmFamily | None:
+    def _family_at(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
         made = next((one for one in self._families if one.p_low <= p <= one.p_high), None)
         if (
@@ -156,7 +156,7 @@ class ArmPath(PathProblem):
             error_estimate=earlier.error_estimate[: request.modes],
         )
 
-    def known_count_amid(self, low: float, high: float) -> int | None:
+    def known_count_near_middle(self, low: float, high: float) -> int | None:
         places = [
             p
             for p in self._counts
@@ -167,12 +167,12 @@ class ArmPath(PathProblem):
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         known = self._followed.eigenvalue_slope(guess, p) if self._followed is not None else None
-        return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
+        return self._determinant_along_path.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
-        return self._along.double_eigenvalue(x, p, reach)
+        return self._determinant_along_path.double_eigenvalue(x, p, reach)
 
-    def count(self, line: float, p: float) -> EigenvalueCount:
+    def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         found = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_modes)
         if found is not None:
             w = found.eigenvalues
@@ -183,7 +183,7 @@ class ArmPath(PathProblem):
                 return EigenvalueCount(int((w.real > line).sum()), 0)
             if clear and line == 0 and found.unstable_count < ARM_PATH_SETTINGS.followed_modes:
                 return EigenvalueCount(found.unstable_count, 0)
-        known = self._followed.roots(p) if self._followed is not None else None
+        known = self._followed.followed_roots(p) if self._followed is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, known)
 
     def counted_unstable_modes(self, p: float, known: Complex, error: Array) -> int | None:
@@ -209,11 +209,11 @@ class ArmPath(PathProblem):
         rod = self.path.rod_at(p)
         return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
 
-    def relaxation(self, p: float) -> tuple[float, float]:
+    def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0
 
 
 def path_problem(path: Path) -> PathProblem:
     """The eigenvalue problem along `path`: `UniformPath` for uniform rods of linear material, else
     `ArmPath`."""
-    return UniformPath(path) if path.rod.standard else ArmPath(path)
+    return UniformPath(path) if path.rod.is_uniform_and_linear else ArmPath(path)

@@ -44,7 +44,7 @@ class BoundaryCurve:
     eigenvalue_sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
     values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the eigenvalue,
-    in 1/tau2, (points,). ends: reasons for the ends at the first and at the last point.
+    in 1/tau2, (points,). end_reasons: reasons for the ends at the first and at the last point.
     """
 
     eigenvalue_sign: float
@@ -52,12 +52,12 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
-    ends: tuple[BoundaryEnd, BoundaryEnd]
+    end_reasons: tuple[BoundaryEnd, BoundaryEnd]
     scaled: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
-    def hopf(self) -> bool:
+    def consists_of_hopf_points(self) -> bool:
         return self.eigenvalue_sign == 0
 
 
@@ -135,7 +135,7 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
         )
-        # Along the chord the component changes by the difference of `ends`: its error moves the fold.
+        # Along the chord the component changes by the difference of `end_reasons`: its error moves the fold.
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None

@@ -114,7 +114,7 @@ class BoundaryCurveProblem:
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may describe no rod.
-        alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed(x, y) else -1.0
+        alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed_at(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def located_zero(

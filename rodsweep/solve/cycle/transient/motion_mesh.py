@@ -60,16 +60,16 @@ MOTION_MESH_SETTINGS = MotionMeshSettings()
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
     by_force = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
-    if not rod.standard:
+    if not rod.is_uniform_and_linear:
         modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         bent = arm_elements(rod, by_force, accuracy)
-        finest = max(modal, bent, key=lambda each: each.nodes)
+        finest = max(modal, bent, key=lambda each: each.node_count)
         return mesh_with_edges(finest.edges, finest.order)
     wave = max(
         expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), by_force
     )
     resolution = resolution_for(wave, accuracy)
-    return uniform_mesh(resolution.elements, resolution.order)
+    return uniform_mesh(resolution.element_count, resolution.order)
 
 
 def accuracy_of_motion_mesh(is_stored: bool) -> float:
@@ -90,7 +90,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
             edges = halve_elements(edges)
             order = ceil(order / 2)
         grid = mesh_with_edges(edges, order)
-        if grid.nodes > MOTION_MESH_SETTINGS.max_refined_nodes:
+        if grid.node_count > MOTION_MESH_SETTINGS.max_refined_nodes:
             return
         yield grid
 
@@ -98,7 +98,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
 def coarse_mesh(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
     wave_number = MOTION_MESH_SETTINGS.waves_per_root_force * abs(rod.F) ** 0.5
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return uniform_mesh(
             1, max(MOTION_MESH_SETTINGS.min_order, int(MOTION_MESH_SETTINGS.order_per_wave * wave_number))
         )

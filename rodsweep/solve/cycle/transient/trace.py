@@ -46,7 +46,9 @@ class TipTrace:
         finite = np.isfinite(run.states).all(axis=1)
         states = run.states[finite]
         self.times.append(clock + run.times[finite])
-        self.tips.append(np.concatenate(self.beam.tip_motion(states, self.beam.state_derivative(states))))
+        self.tips.append(
+            np.concatenate(self.beam.tip_position_and_velocity(states, self.beam.state_derivative(states)))
+        )
 
     def at_equal_times(self, count: int) -> Array:
         """Time in tau2, and x, y (in L) and theta of the tip, (4, count), at equidistant times from the start

@@ -180,7 +180,7 @@ class Transient:
         record of the motion, if any, begins at z."""
         after = relax_fast_components(self.beam, z, self.mode.period)
         if self.record:
-            self.elapsed = INTEGRATOR_SETTINGS.relaxation_share * self.mode.period
+            self.elapsed = INTEGRATOR_SETTINGS.relaxation_duration_ratio * self.mode.period
             self.record.begin_with_relaxation(z, after, self.elapsed)
         return after
 

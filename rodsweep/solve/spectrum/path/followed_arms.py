@@ -79,7 +79,7 @@ class FollowedArms:
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
 
-    def roots(self, p: float) -> KnownRoots | None:
+    def followed_roots(self, p: float) -> KnownRoots | None:
         """Eigenvalues followed to path variable p, not proved complete; None if following fails."""
         self._follow_to(p)
         for one in self.intervals:
