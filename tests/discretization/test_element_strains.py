@@ -29,7 +29,7 @@ def arm(order, names=LINEAR_ARM, **values):
 
 
 def smooth_state(form):
-    u = form.mesh.positions
+    u = form.mesh.node_positions
     return form.layout.state(np.array([field(u) for field in FIELDS.values()]), np.zeros((3, len(u))))
 
 
@@ -87,7 +87,7 @@ def test_an_arm_leaves_the_model_where_its_softer_side_is_crushed():
     """The mean stretch of both sides is still positive."""
     form = arm(6)
     beam = Beam(form.rod, form.mesh)
-    S = np.zeros((3, form.mesh.nodes + 1))
+    S = np.zeros((3, form.mesh.node_count + 1))
     for pull, crushed in ((-39.0, False), (-41.0, True)):  # k1 is 60 behind the jump, and F is 20
         S[0, 6] = pull
         z = beam.state_of_stresses(S)

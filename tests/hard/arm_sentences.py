@@ -215,7 +215,7 @@ def _thresholds(view, page, scales):
         changes = changes_on_lines(view, "F")
         for start, kind in SAID.items():
             of_kind = [(c, i) for _, c, at in changes if c.kind.name == kind for i in at]
-            loads = [c.at * to_load[i] for c, i in of_kind]
+            loads = [c.value * to_load[i] for c, i in of_kind]
             hertz = [c.frequency * to_hertz[i] for c, i in of_kind]
             pattern = rf"^{start} {value}(?: on)?(?:, where it begins to beat at {value})?$"
             found += [(line, _in_units(match.groups(), loads, hertz)) for line, match in read(page, pattern)]
@@ -226,12 +226,12 @@ def _thresholds(view, page, scales):
     every = [changes_over_force(rod, top) for rod, top in zip(rods, _tops(view), strict=True)]
     for line, match in read(page, rf"^(\w+) at {value}: .*?(?:; frequency {value})?$"):
         unit = UNITS[match[3]]
-        near = min(every[0], key=lambda c: abs(c.at * to_load[0] / unit - float(match[2])))
-        why = _in_units(match.groups()[1:], [near.at * to_load[0]], [near.frequency * to_hertz[0]])
+        near = min(every[0], key=lambda c: abs(c.value * to_load[0] / unit - float(match[2])))
+        why = _in_units(match.groups()[1:], [near.value * to_load[0]], [near.frequency * to_hertz[0]])
         found.append((line, why if near.kind.name == match[1] else f"it is {near.kind.name}"))
     for line, match in read(page, rf"^(\w+): on (?:all )?NUMBER (?:of NUMBER )?rows?, at {value}$"):
         of_kind = [
-            [c.at * to_load[i] for c in each if c.kind.name == match[1]] for i, each in enumerate(every)
+            [c.value * to_load[i] for c in each if c.kind.name == match[1]] for i, each in enumerate(every)
         ]
         having = sum(map(bool, of_kind))
         why = [] if (int(match[2]), int(match[3] or having)) == (having, len(rods)) else [f"on {having}"]
@@ -269,7 +269,7 @@ def _first(view, scales, kind):
         to_hertz = 1 / (2 * pi * scales["tau2"][i])
         nothing = (np.nan, np.nan)
         found.append(
-            (first.at * scales[force_unit(view)][i], first.frequency * to_hertz) if first else nothing
+            (first.value * scales[force_unit(view)][i], first.frequency * to_hertz) if first else nothing
         )
     return np.array(found).T
 
@@ -503,7 +503,7 @@ def _motion(view, fine, i):
         rod = rod_of(0.0, *(float(columns[name][i]) for name in ("k1", "k2", "gamma3")))
         hopf = next((c for c in changes_over_force(rod, top) if c.kind.name == "hopf"), None)
         return (
-            (hopf.frequency, hopf.at, LARGE_AMPLITUDE, False)
+            (hopf.frequency, hopf.value, LARGE_AMPLITUDE, False)
             if hopf
             else (np.nan, np.nan, LARGE_AMPLITUDE, False)
         )
@@ -586,7 +586,7 @@ class ArmTruth:
             crossings = changes_over_force(Rod(F=0.0, k1=k1, k2=k2, gamma3=ratio), 1000.0)
             for kind in ("hopf", "onset", "restabilization"):
                 first = next((c for c in crossings if c.kind.name == kind), None)
-                found[kind].append(first.at if first else np.nan)
+                found[kind].append(first.value if first else np.nan)
                 if kind == "hopf":
                     tau2 = gamma2 * length**4 / k3
                     found["hertz"].append(abs(first.frequency) / (2 * pi * tau2) if first else np.nan)
@@ -684,7 +684,7 @@ class ArmTruth:
         effects = self._effects()
         for line, match in read(page, r"(?:: |^)([A-Za-z ]+) is NUMBER times what the model allows"):
             name = match[1].strip().lower()
-            excess = max((float(e.excess) for e in effects if e.name == name), default=np.nan)
+            excess = max((float(e.value_over_limit) for e in effects if e.name == name), default=np.nan)
             off = abs(float(match[2]) - excess) > TWO_DIGITS * excess
             found.append((line, f"{name} is {excess}" if off else ""))
         for line, match in read(page, rf"at least NUMBER times as viscous \(NUMBER ({UNIT})\)"):

@@ -104,7 +104,7 @@ def least_condition(place, there):
     beside = rod_at(place, 1e-8)
     first, second = leading(beside, 4)[:2]
     c_over_b = float(condition(beside, first) * abs(first - second))
-    mesh = assemble_pencil(there.vectors.resolution.elements, there.vectors.resolution.order)
+    mesh = assemble_pencil(there.vectors.resolution.element_count, there.vectors.resolution.order)
     shapes = mode_vectors(rod_of(*rod_at(place)), mesh, there.spectrum.eigenvalues, np.array([0.0, 1.0]))
     return np.sqrt(c_over_b * shapes.condition / shapes.rounding) / 2
 

@@ -76,8 +76,8 @@ BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 STRONGLY_UNSTABLE = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
-    ("INTEGRATOR_SETTINGS", "relaxation_share"),
-    ("INTEGRATOR_SETTINGS", "relaxation_steps"),
+    ("INTEGRATOR_SETTINGS", "relaxation_duration_ratio"),
+    ("INTEGRATOR_SETTINGS", "relaxation_steps_per_period"),
     ("INTEGRATOR_SETTINGS", "relaxation_tolerance"),
 }
 """Fields that define the state from which a motion starts: another value is another motion."""

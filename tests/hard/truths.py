@@ -75,4 +75,4 @@ def changes_on_lines(view, name):
 
 def changes_of(view, name):
     """(rod, kind, value, frequency) of all these."""
-    return [(rod, c.kind.name, c.at, c.frequency) for rod, c, _ in changes_on_lines(view, name)]
+    return [(rod, c.kind.name, c.value, c.frequency) for rod, c, _ in changes_on_lines(view, name)]

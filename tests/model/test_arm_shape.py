@@ -67,7 +67,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     u = np.linspace(0, 1, 1001)[1:-1]
     values = {name: cone.parameter(name) for name in ("k1", "k2", "gamma3", "taper")}
     for number, form, error in ((0, cox_drag, 3e-4), (1, gray_hancock_drag, 3e-4), (3, lighthill_drag, 6e-4)):
-        local = cone.build_with_drag(cone.drags[number]).local(0.0, values, u)
+        local = cone.build_with_drag(cone.drags[number]).local_coefficients(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
         across = np.array([form(1.0, each)[1] for each in slenderness])
         assert local.gamma2 == pytest.approx(across / form(1.0, 0.1 / radius)[1], rel=error)
@@ -107,7 +107,9 @@ def test_many_segments_have_the_coefficients_of_a_cone():
         for arm in (cone, steps):
             values = {name: arm.parameter(name) for name in ("k1", "k2", "taper")}
             drag = arm.drags[number]
-            own = arm.build_with_drag(drag).local(0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles)
+            own = arm.build_with_drag(drag).local_coefficients(
+                0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles
+            )
             stiffness, L = arm.bending_stiffness, arm.si.length
             found.append(
                 (
@@ -167,7 +169,7 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
 def test_an_upright_arm_buckles_under_the_weight_that_is_stated(changes):
     """Integrated from the tip with theta' = m/(E I), m' = -W theta: theta vanishes at the base."""
     arm = uniform(**changes, pressure=None)
-    shape, weight = arm.shape, 1 / arm.shape.relative_weight(1.0)
+    shape, weight = arm.shape, 1 / arm.shape.weight_over_buckling_weight(1.0)
 
     def section(x):
         if arm.tip_radius is None:

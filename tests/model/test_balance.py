@@ -140,7 +140,7 @@ def test_energy_law(material, size):
 
 def stress_of(beam, z):
     """Sigma of z at all nodes, (3, nodes + 1), the tip's load included; complex for a complex z."""
-    Sigma = np.zeros((3, beam.mesh.nodes + 1), z.dtype)
+    Sigma = np.zeros((3, beam.mesh.node_count + 1), z.dtype)
     Sigma[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     Sigma[0] -= beam.rod.F
     return Sigma

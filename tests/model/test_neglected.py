@@ -100,7 +100,7 @@ def test_a_fluid_as_viscous_as_stated_brings_an_effect_to_its_limit(name):
     factor = float(before.viscosity_factor)
     thicker = SlenderArm(**WATER | {"viscosity": factor * 1e-3})
     after = named(neglected_effects(thicker, largest_angular_frequency(thicker, 170.0), 35.0))[name]
-    assert before.excess > 1
+    assert before.value_over_limit > 1
     assert factor > 1
     assert after.value == pytest.approx(after.limit, rel=1e-9)
 

@@ -26,7 +26,7 @@ MESHES = pytest.mark.parametrize(
 
 def tapered(material, grid):
     """The material with compliances and drags that vary along the rod, each in its own way."""
-    u, phase = grid.positions, np.arange(len(material.drag))[:, None]
+    u, phase = grid.node_positions, np.arange(len(material.drag))[:, None]
     profile = 1 + 0.4 * np.sin(2 * u + phase)
     compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
     rest = material.straight[:, None] + compliance * material.tip_stress[:, None]
@@ -36,7 +36,7 @@ def tapered(material, grid):
 def state(rod, grid):
     """Stresses that no mesh resolves, and with them any velocities that are unknown, (unknowns,)."""
     d = len(rod.tip_stress)
-    size = d * grid.nodes + len(rod.unknown_velocities) * (grid.nodes + 1)
+    size = d * grid.node_count + len(rod.unknown_velocities) * (grid.node_count + 1)
     return 10 * np.random.default_rng(d).standard_normal(size)
 
 
@@ -52,7 +52,7 @@ def equations(x, rod, grid):
     _, G = balanced(x, rod, grid)
     out = np.empty(len(x))
     write_velocity_residuals.compiled_for(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
-    return np.append(G.ravel(), out[len(G) * grid.nodes :])
+    return np.append(G.ravel(), out[len(G) * grid.node_count :])
 
 
 @ALL
@@ -80,7 +80,7 @@ def test_compiled_functions_do_what_their_loops_do(material, kept):
 @MESHES
 def test_plane_states_of_space_are_those_of_the_plane(grid):
     plane, space = (nodal_rod(material, grid) for material in (PLANE, SPACE))
-    x, n = state(plane, grid), grid.nodes
+    x, n = state(plane, grid), grid.node_count
     at = np.concatenate([np.arange(a * n, (a + 1) * n) for a in PLANE_COMPONENTS])
     there = np.zeros(6 * n)
     there[at] = x
@@ -107,7 +107,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
     rod = nodal_rod(material if uniform else tapered(material, grid), grid)
     x = state(rod, grid)
     V, G = balanced(x, rod, grid)
-    Sigma = np.tile(rod.tip_stress[:, None], grid.nodes + 1)
+    Sigma = np.tile(rod.tip_stress[:, None], grid.node_count + 1)
     Sigma[:, :-1] += x.reshape(len(V), -1)
     lost = (rod.drag * V**2 @ grid.quadrature).sum()
     assert (Sigma * G).sum() == pytest.approx(-lost, rel=1e-12)
@@ -119,7 +119,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
 @pytest.mark.parametrize("kept", [(), (2,), (0, 2)], ids=["eliminated", "one kept", "two kept"])
 def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, kept):
     rod = nodal_rod(material if uniform else tapered(material, grid), grid, kept)
-    x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
+    x, d, n = state(rod, grid), len(rod.tip_stress), grid.node_count
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
     write_jacobian.compiled_for(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)

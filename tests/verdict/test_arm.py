@@ -328,9 +328,12 @@ def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
 
 def test_thresholds_without_proof_are_told_with_the_doubt():
     known = found(1.0, (20.0, ChangeKind.hopf, 2))
-    unproved = replace(known.thresholds.transitions, proved=False)
+    unproved = replace(known.thresholds.search_result, proved=False)
     thresholds = replace(
-        known.thresholds, transitions=unproved, status=ThresholdStatus.not_certified, message="a count fails"
+        known.thresholds,
+        search_result=unproved,
+        status=ThresholdStatus.not_certified,
+        message="a count fails",
     )
     told = verdict(arm(viscosity=1e3), known, replace(known, thresholds=thresholds))
     assert told[:2] == [
@@ -342,10 +345,10 @@ def test_thresholds_without_proof_are_told_with_the_doubt():
 @pytest.mark.parametrize(("kind", "certain"), [(ChangeKind.real_leads, True), (ChangeKind.hopf, False)])
 def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certain):
     known = found(1.0, (20.0, kind, 2), (40.0, ChangeKind.hopf, 2))
-    inaccurate = tuple(replace(c, error=0.1 if c.at == 20.0 else 0.0) for c in known.thresholds.crossings)
+    inaccurate = tuple(replace(c, error=0.1 if c.value == 20.0 else 0.0) for c in known.thresholds.thresholds)
     thresholds = replace(
         known.thresholds,
-        transitions=ThresholdList(thresholds=inaccurate, proved=True),
+        search_result=ThresholdList(thresholds=inaccurate, proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))

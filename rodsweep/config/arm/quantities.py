@@ -96,7 +96,8 @@ def _loads_in_flutter_loads(value: Any) -> tuple[list[float | None], bool]:
 
 
 def as_drags(value: Any) -> Axis:
-    """Axis of indices into DRAGS, from a drag's name, a list of names, or "range"; ValueError otherwise."""
+    """Axis of indices into DRAG_NAMES, from a drag's name, a list of names, or "range"; ValueError
+    otherwise."""
     if isinstance(value, Axis):
         return value
     names = value if isinstance(value, list | tuple) else [value]
@@ -111,7 +112,7 @@ def as_drags(value: Any) -> Axis:
 
 
 def drag_names(values: list[float]) -> list[str]:
-    """Names of drag estimates from `values`, their indices in DRAGS."""
+    """Names of drag estimates from `values`, their indices in DRAG_NAMES."""
     return [DRAG_NAMES[int(index)] for index in values]
 
 

@@ -120,7 +120,7 @@ class Elements:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def equal_edges(elements: int) -> tuple[float, ...]:
-    """Edges of `element_count` elements of equal length on [0, 1]."""
+    """Edges of `elements` elements of equal length on [0, 1]."""
     return tuple(k / elements for k in range(elements + 1))
 
 

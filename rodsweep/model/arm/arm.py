@@ -33,8 +33,8 @@ class SlenderArm:
     the bore is closed at the tip and filled with the surrounding fluid at ambient pressure. (law, section): a
     key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or no load; positive loads push towards
     the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference: density of the
-    arm's material minus density of the fluid. drag: name in DRAGS of the drag estimate that the rod uses.
-    Raises InputError, naming the quantity.
+    arm's material minus density of the fluid. drag: name in DRAG_NAMES of the drag estimate that the rod
+    uses. Raises InputError, naming the quantity.
     """
 
     length: GivenQuantity | None = None
@@ -208,7 +208,7 @@ class SlenderArm:
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """Estimates of the drag at the base, in the order of DRAGS."""
+        """Estimates of the drag at the base, in the order of DRAG_NAMES."""
         return self.shape.drags_at(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:

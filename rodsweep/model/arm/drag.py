@@ -20,7 +20,7 @@ DRAG_NAMES = ("likeliest", "least", "most_rotational", "most_translational", "mo
 largest rotational with the smallest translational drag, `most_translational` the reverse."""
 
 DRAG_RANGE_NAME = "range"
-"""Value of the config key `drag` for a sweep over all estimates in DRAGS."""
+"""Value of the config key `drag` for a sweep over all estimates in DRAG_NAMES."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +102,7 @@ def max_rotational_drag(viscosity: float, half_height: float) -> float:
 
 
 def drag_estimates(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Drag estimates of one arm, in the order of DRAGS.
+    """Drag estimates of one arm, in the order of DRAG_NAMES.
 
     The likeliest estimate has the geometric mean of the smallest and largest gamma3. viscosity: in Pa s.
     length, radius, half_height: in m.

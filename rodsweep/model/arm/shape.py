@@ -77,7 +77,7 @@ class Shape:
         return max(each.section.drag_radius for each in self.stations)
 
     def drags_at(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
-        """Drag estimates at a station, in the order of DRAGS. viscosity: in Pa s."""
+        """Drag estimates at a station, in the order of DRAG_NAMES. viscosity: in Pa s."""
         section = station.section
         return drag_estimates(viscosity, self.length, section.drag_radius, section.half_height)
 
@@ -85,7 +85,7 @@ class Shape:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
         The profile of a cone contains only the factors that the parameter `taper` does not imply. poisson:
-        Poisson's ratio. drag: index of the drag estimate in DRAGS. Raises ValueError for a factor that
+        Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES. Raises ValueError for a factor that
         overflows or underflows.
         """
         if not self.varies:
@@ -109,7 +109,7 @@ class Shape:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
         `taper` implies them.
 
-        drag: index of the drag estimate in DRAGS.
+        drag: index of the drag estimate in DRAG_NAMES.
         """
         pieces = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
@@ -126,7 +126,7 @@ class Shape:
     def _factors_at_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
         """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base.
 
-        poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
+        poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
         """
         own, base = (
             np.array(self._stiffnesses_and_drags(each, poisson, drag)) for each in (station, self.base)
@@ -138,7 +138,7 @@ class Shape:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
         viscosity.
 
-        poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
+        poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
         """
         section = station.section
         friction = self.drags_at(station, 1.0)[drag]

@@ -78,7 +78,7 @@ def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
-    in DRAGS.
+    in DRAG_NAMES.
     """
     if name == "drag":
         return quantity_words(name), [DRAG_NAMES[int(value)].replace("_", " ") for value in values]

@@ -38,8 +38,7 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThresholdList:
-    """Result of a search along a path: all thresholds, in increasing order of the parameter, and whether the
-    list is proved complete."""
+    """All thresholds along a path, by increasing parameter, and whether the list is proved complete."""
 
     thresholds: tuple[Threshold, ...] = ()
     searched_interval: tuple[float, float] = (math.nan, math.nan)
@@ -157,8 +156,8 @@ def find_axis_crossings(
 def _with_counts(
     counts: ModeCounter, unstable: int, crossings: tuple[Threshold, ...], at_end: int
 ) -> ThresholdList:
-    """`ThresholdList` of the thresholds `thresholds`, whose unstable modes are counted. counts: the
-    gaps and doubts of the search. unstable, at_end: numbers of unstable modes at the two ends."""
+    """`ThresholdList` of the thresholds `crossings`. counts: gaps and doubts of the search. unstable,
+    at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return ThresholdList(
         thresholds=crossings,

@@ -75,8 +75,7 @@ class _CurvePoint:
 class BautinSpace:
     """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
     values of the fixed parameters. requested_values: values of the third parameter of further points, (m,).
-    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or
-    -1."""
+    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or -1."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]

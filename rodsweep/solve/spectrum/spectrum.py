@@ -73,7 +73,8 @@ class Spectrum:
     seconds: NumberPerRod = 0.0
     """Wall-clock time of the solve in seconds; for several rods, the mean time per rod."""
     vectors: Complex | None = None
-    """Eigenmodes (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; None if not requested."""
+    """Eigenmodes (Y, Theta), complex, (2, modes, vector_node_count), scaled to Y(1) = 1; None if not
+    requested."""
     message: NumberPerRod = ""
     """Cause of a failure, or the reason why a proof failed; empty otherwise."""
 
@@ -105,7 +106,8 @@ class FollowedPoints:
 def modes_at_lobatto_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: Complex | None
 ) -> Complex | None:
-    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_nodes); None if `found` is None.
+    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_node_count); None if `found` is
+    None.
 
     found: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1 and is
     NaN.

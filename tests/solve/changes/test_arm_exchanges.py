@@ -72,9 +72,9 @@ def test_a_double_eigenvalue_behind_the_leading_pair_is_no_onset():
 def assert_leaders_are_those_of_spectra(rod, found, forces):
     """At each force the list tells the kind of the leading eigenvalue and the number of unstable modes."""
     for F in forces:
-        before = [c for c in found.crossings if c.at <= F]
+        before = [c for c in found.thresholds if c.value <= F]
         pair = [c.kind.pair_leads_after for c in before if c.kind.changes_leader][-1:]
-        spectrum = solve_spectrum(rod.changed(F=F), SpectrumRequest(2, 1e-8, True))
+        spectrum = solve_spectrum(rod.with_values(F=F), SpectrumRequest(2, 1e-8, True))
         assert spectrum.certified
         assert (spectrum.eigenvalues[0].imag != 0) == (pair == [True])
         assert spectrum.unstable_count == (before[-1].unstable_after if before else 0)
@@ -83,7 +83,7 @@ def assert_leaders_are_those_of_spectra(rod, found, forces):
 def forces_between(found):
     """Forces close to the ends of each interval between thresholds, and within it: of the first intervals,
     or of all intervals for `make survey`."""
-    ends = [0.0, *(c.at for c in found.crossings), found.end]
+    ends = [0.0, *(c.value for c in found.thresholds), found.end]
     ends = ends if RODS else ends[:5]
     return [
         a + share * (b - a)

@@ -27,7 +27,7 @@ ACROSS = (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization)
 
 
 def across_the_axis(found):
-    return [(crossing.kind, crossing.at) for crossing in found.crossings if crossing.kind in ACROSS]
+    return [(crossing.kind, crossing.value) for crossing in found.thresholds if crossing.kind in ACROSS]
 
 
 @pytest.mark.parametrize(
@@ -78,12 +78,12 @@ def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
 def test_no_crossing_is_missed_between_the_forces_of_a_dense_scan(seed):
     rng = np.random.default_rng(seed)
     rod = random_arm(rng, pulled=0.0)
-    found = solve_thresholds(rod.changed(F=0.0), ThresholdsRequest(3 * rod.F, 1e-9, True, 32))
+    found = solve_thresholds(rod.with_values(F=0.0), ThresholdsRequest(3 * rod.F, 1e-9, True, 32))
     assert found.status == ThresholdStatus.ok, (rod, rod.build, found.message)
     crossings = [c for c in found.thresholds if c.kind in ACROSS]
     for F in np.linspace(0.03, 0.999, 12) * found.end:
         expected = [c.unstable_after for c in crossings if c.value < F]
-        unstable = int((eigenvalues(rod.changed(F=float(F))).real > 0).sum())
+        unstable = int((eigenvalues(rod.with_values(F=float(F))).real > 0).sum())
         assert unstable == (expected[-1] if expected else 0), (rod, rod.build, F)
 
 

@@ -66,7 +66,7 @@ def on_mesh(name, **changed):
 def moving(form, size, seed=0):
     """(state, V, G) of a random state."""
     x = size * np.random.default_rng(seed).standard_normal(form.unknowns)
-    V, G = np.empty((2, 3, form.mesh.nodes + 1))
+    V, G = np.empty((2, 3, form.mesh.node_count + 1))
     write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
     return x, V, G
 

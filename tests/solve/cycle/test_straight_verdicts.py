@@ -75,7 +75,7 @@ def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
     steps = 12
     count = 0
     for F in np.linspace(rod.F, end, steps + 1)[1:].tolist():
-        here = rod.changed(F=F)
+        here = rod.with_values(F=F)
         found = straight_rod(here, near)
         w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
         assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)

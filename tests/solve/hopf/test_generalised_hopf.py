@@ -84,7 +84,7 @@ def test_the_side_changes_once_and_at_the_point(found):
     assert told.unlocated_count == 0
     assert set(told.criticality) == {-1.0, 1.0}
     (after,) = np.flatnonzero(np.diff(told.criticality))
-    assert point.after == after
+    assert point.preceding_index == after
     at = np.array([axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True)])
     a, b = curve.scaled[after : after + 2, :2]
     assert np.linalg.norm(at - a) + np.linalg.norm(b - at) < 1.001 * np.linalg.norm(b - a)
@@ -120,7 +120,7 @@ def test_axial_drag_moves_it_along_the_hopf_curve(found):
     plane, curve, told = found
     (point,), (other,) = (
         told.points,
-        curve_criticality(replace(plane, rod=plane.rod.changed(gamma1=0.5)), curve, 1e-10).points,
+        curve_criticality(replace(plane, rod=plane.rod.with_values(gamma1=0.5)), curve, 1e-10).points,
     )
     assert abs(other.values[0] - point.values[0]) > 1e-3
     c = coefficients((*other.values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
@@ -164,11 +164,11 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     plane, curve, told = found
     (point,) = told.points
     x, y = (axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True))
-    there = np.insert(curve.scaled, point.after + 1, [x, y, np.log(point.frequency)], axis=0)
+    there = np.insert(curve.scaled, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
     again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
-    assert again.criticality[point.after + 1] == 0
+    assert again.criticality[point.preceding_index + 1] == 0
     assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
-    assert again.points[0].preceding_index in (point.after, point.after + 1)
+    assert again.points[0].preceding_index in (point.preceding_index, point.preceding_index + 1)
 
 
 def test_a_diagram_tells_shows_and_draws_it(command):

@@ -53,10 +53,10 @@ def numbers(result):
     vectors, growth = result.vectors, result.growth
     return {
         "eigenvalues": result.spectrum.eigenvalues,
-        "right": vectors.right,
+        "right": vectors.right_modes,
         "h2": vectors.deformation[0],
         "Pi": vectors.deformation[1],
-        "left": vectors.left,
+        "left": vectors.left_modes,
         "pairing": vectors.pairing,
         "condition": vectors.condition,
         "abscissa": np.array(growth.numerical_abscissa),
@@ -96,7 +96,7 @@ def test_modes_and_growth_agree_with_another_discretisation(rod):
     assert result.vectors.condition == pytest.approx(condition, rel=1e-7)
     L, growth = in_energy_norm(rod), result.growth
     assert growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-6)
-    if not rod.uniform:
+    if not rod.is_uniform:
         pencil = pencil_on(mesh_for(rod, 12.0, 1e-20))
         vectors = mode_vectors(rod, pencil, result.spectrum.eigenvalues, nodes(rod))
         assert relative(vectors.right_modes, right) < 1e-7
@@ -188,7 +188,7 @@ def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
     """T' = c3 - (g nu/c2) T^2, T(0) = 0, from break to break; of T = tan(phi) where T has poles."""
 
     def slope(u, T):
-        at = rod.local(np.clip(u, start + 1e-12, end - 1e-12))
+        at = rod.local_coefficients(np.clip(u, start + 1e-12, end - 1e-12))
         foundation = at.g * at.nu / at.c2
         if poles:
             return at.c3 * np.cos(T) ** 2 - foundation * np.sin(T) ** 2

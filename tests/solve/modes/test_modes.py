@@ -177,12 +177,12 @@ class ReferenceGrowth:
 
 def gamma_products(result, gamma3):
     """(psi_m, xi_n) over the norms of both."""
-    y, theta = result.vectors.right
-    left_y, left_theta = result.vectors.left
+    y, theta = result.vectors.right_modes
+    left_y, left_theta = result.vectors.left_modes
     products = (left_y.conj() * WEIGHTS) @ y.T + gamma3 * (left_theta.conj() * WEIGHTS) @ theta.T
     norms = [
         np.sqrt((WEIGHTS * (abs(a) ** 2 + gamma3 * abs(b) ** 2)).sum(1))
-        for a, b in ((y, theta), result.vectors.left)
+        for a, b in ((y, theta), result.vectors.left_modes)
     ]
     return products, norms[1][:, None] * norms[0]
 
@@ -427,7 +427,7 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
     near, nearer = (
         solve_modes(Rod(F=15.0, k1=1e4, k2=200.0, gamma3=gamma3), TIGHT) for gamma3 in (1e-6, 1e-8)
     )
-    vectors = ("vectors.condition", "vectors.left", "vectors.right", "vectors.deformation")
+    vectors = ("vectors.condition", "vectors.left_modes", "vectors.right_modes", "vectors.deformation")
     for name in ("spectrum.eigenvalues", *vectors, "growth.transient_growth"):
         value = attrgetter(name)
         far, close = (np.max(abs(value(x) - value(limit))) for x in (near, nearer))

@@ -37,7 +37,7 @@ def evolve(beam, z, duration, scheme=None):
 
 def bent(beam, size=1.0):
     """A state far from rest, smooth in u."""
-    u = beam.mesh.positions
+    u = beam.mesh.node_positions
     E = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
     return beam.state_of_strains(E + size * (1 - u) * wave)
@@ -51,11 +51,11 @@ def rough(beam):
 def injected_and_dissipated(beam, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
     material, matrices = beam.rod.material, beam.mesh.matrices
-    stress = np.zeros((3, beam.mesh.nodes + 1))
+    stress = np.zeros((3, beam.mesh.node_count + 1))
     stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)
-    dissipated = material.dissipation(V) @ matrices.weights
+    dissipated = material.dissipated_power_per_length(V) @ matrices.weights
     straining = ad(material.strain(stress), V)[0, -1]  # ad_E V of the tip
     reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
     return beam.rod.F * reaction, dissipated
@@ -132,7 +132,7 @@ def test_velocity_of_the_tip_is_that_of_its_reconstruction():
     "rod", [ROD, Rod(F=27.43, k1=1e4, k2=1e2, gamma3=1e-2), Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4)]
 )
 def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
-    beam = Beam(rod.changed(gamma1=0.8), uniform_mesh(1, 20))
+    beam = Beam(rod.with_values(gamma1=0.8), uniform_mesh(1, 20))
     values = np.linalg.eigvals(beam.jacobian(np.zeros(60)))
     transverse = solve_spectrum(rod, SpectrumRequest(4, 1e-12, True)).eigenvalues
     for w in np.concatenate([transverse, longitudinal_eigenvalues(rod.k1, 0.8, 3)]):

@@ -36,7 +36,7 @@ RODS = {
 
 def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
-    form = StressForm(rod.changed(gamma1=0.7), uniform_mesh(1, 8))
+    form = StressForm(rod.with_values(gamma1=0.7), uniform_mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
     return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 

@@ -146,7 +146,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     soft = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
     step = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
     rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=step))
-    wanted, whole = [], search.candidates_on
+    wanted, whole = [], search.candidates_on_mesh
 
     def attempt(rod_problem, mesh, number, vectors, tight):
         wanted.append(number)

@@ -33,7 +33,7 @@ def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[A
 
 def quantity_text(view: View, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
-    SI units; for a drag, index in DRAGS.
+    SI units; for a drag, index in DRAG_NAMES.
     """
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAG_NAMES[int(value)].replace('_', NO_BREAK)}"

@@ -177,7 +177,7 @@ class SpecialCurveProblem:
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
-        `Build.relative_load` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
+        `Build.crushing_ratio` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod

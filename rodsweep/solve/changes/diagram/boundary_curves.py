@@ -135,7 +135,7 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
         )
-        # Along the chord the component changes by the difference of `end_reasons`: its error moves the fold.
+        # Along the chord the component changes by the difference of `ends`: its error moves the fold.
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None
