@@ -17,7 +17,7 @@ from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.as_rod import material_of, parameters_of
+from ..model.arm.as_rod import material_section_of, parameters_of
 from ..model.material.build import DEFAULT_BUILD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_axes
@@ -79,7 +79,7 @@ class SoftRod:
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
             given = parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
-            material = material_of(arm) | beside
+            material = material_section_of(arm) | beside
         for name in REQUIRED_PARAMETERS:
             if name not in given:
                 raise InputError(

@@ -67,7 +67,7 @@ class ArmPencil:
         # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
         self._sample_points = np.concatenate([gauss_points, mesh.points_inside_elements], axis=1)
         slopes = slope.T * wg
-        self._y: NDArray[np.int64] = (
+        self._y_indices: NDArray[np.int64] = (
             np.arange(mesh.element_count)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
         self.rows, self.columns, where = self._sparsity_pattern()
@@ -111,7 +111,7 @@ class ArmPencil:
         """
         n = self.node_count
         size = self.unknowns
-        y = self._y
+        y = self._y_indices
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]

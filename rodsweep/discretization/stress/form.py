@@ -75,9 +75,9 @@ class StressForm(RodOnMesh):
     @cached_property
     def mass_diagonal(self) -> Array:
         """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
-        return self.mass_of(self.nodal_rod)
+        return self.mass_diagonal_of(self.nodal_rod)
 
-    def mass_of(self, rod: NodalRod | NodalChange) -> Array:
+    def mass_diagonal_of(self, rod: NodalRod | NodalChange) -> Array:
         """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
         of a rod.
         """

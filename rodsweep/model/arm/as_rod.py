@@ -18,7 +18,7 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
     return {name: arm.parameter(name) for name in names}
 
 
-def material_of(arm: SlenderArm) -> dict[str, Any]:
+def material_section_of(arm: SlenderArm) -> dict[str, Any]:
     """Keys and values of the config section `material` for `arm`; keys with default values are left out.
 
     Possible keys are law, section and profile.

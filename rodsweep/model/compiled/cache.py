@@ -77,7 +77,7 @@ class KernelCache(_Cache):
         """Writes the compiled function `data` for the signature `sig` to disk.
 
         Nothing is written if the code contains memory addresses, or if a global value that the code reads has
-        changed since the first use of the function.
+        changed since the first use of the function. If no directory is writable, a warning is issued.
         """
         name = self._cache_file_name(sig, data.codegen, {})
         changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)

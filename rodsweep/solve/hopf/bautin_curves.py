@@ -120,14 +120,14 @@ class BautinSpace:
             # Step lengths are shares of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
-            there, on_edge = self._within_ranges(here, length * tangent)
+            there, on_edge = self._point_in_ranges(here, length * tangent)
         except ValueError as why:
             raise Unsolvable(f"the step leaves the allowed range of the parameters: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
-    def _within_ranges(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
+    def _point_in_ranges(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
         """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
@@ -150,7 +150,7 @@ class BautinSpace:
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
-        """The point `outer` itself: `_within_ranges` has already shortened the step to the end of a range."""
+        """The point `outer` itself: `_point_in_ranges` has shortened the step to the end of a range."""
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:

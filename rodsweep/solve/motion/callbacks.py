@@ -162,9 +162,11 @@ class CallbackWorkspace:
         error: Newton's method stops when the estimated error of a stage is at most this. floor: if the Newton
         steps stagnate below this size, the stagnation is attributed to rounding errors.
         """
-        self._rod = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
-        self._set_context_fields({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set_context_fields({"components": len(self._rod["tip_stress"]), "law": beam.nodal_rod.law})
+        self._rod_arrays = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
+        self._set_context_fields({name: array.ctypes.data for name, array in self._rod_arrays.items()})
+        self._set_context_fields(
+            {"components": len(self._rod_arrays["tip_stress"]), "law": beam.nodal_rod.law}
+        )
         self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknowns**0.5

@@ -139,7 +139,7 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None
-    return _as_fold(boundary, found[length], axis, along)
+    return _fold_at(boundary, found[length], axis, along)
 
 
 def _tangent_error(boundary: Boundary) -> float:
@@ -153,7 +153,7 @@ def _tangent_error(boundary: Boundary) -> float:
     )
 
 
-def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
+def _fold_at(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
     """The fold of coordinate `axis` at a point of a boundary. along: error of the point along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
