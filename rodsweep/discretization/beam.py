@@ -51,7 +51,8 @@ class Beam(RodOnMesh):
     def crushing_z1(self) -> Array:
         """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
 
-        At a jump, h1 reaches 0 first on one side if the law is linear, and on both sides at once otherwise.
+        At a jump, h1 reaches 0 first on one side if the law is linear, and the value belongs to this side;
+        for another law h1 reaches 0 on both sides at once.
         """
         crushed = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:

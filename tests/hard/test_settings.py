@@ -46,7 +46,7 @@ from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.along_path import find_axis_crossings
-from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
@@ -313,7 +313,7 @@ def curves_of_changes(accuracy: float) -> Answer:
             seed_of((c.value, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
         )
         seeds += [seed for seed in found if seed is not None]
-    curves = curves_through(plane, seeds)
+    curves = boundary_curves_through(plane, seeds)
     if curves.untraced:
         return None
     answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}

@@ -106,7 +106,7 @@ def _write_derivatives_at_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> 
     shares = np.moveaxis(sides[..., 3:5], -1, 0)
     T = np.array([law.stiffness(nu), law.bending_factor(nu)])
     slopes = np.array([law.stiffness_slope(nu), law.bending_factor_slope(nu)])
-    first, second, third = mean_derivatives_at_jumps(law, sides)
+    first, second, third = derivatives_by_mean_unknowns(law, sides)
     moved = -c1 / T[0]
     tangent = 1 / (shares / T).sum(axis=-1)
     for component, (own, change) in enumerate(
@@ -129,7 +129,7 @@ LawDerivatives = tuple[Array, Array, Array]
 (..., 2, 2, 2, 2). The first of the listed indices is the function; all further indices are variables."""
 
 
-def mean_derivatives_at_jumps(law: Law, sides: Array) -> LawDerivatives:
+def derivatives_by_mean_unknowns(law: Law, sides: Array) -> LawDerivatives:
     """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
     (k, 2, 7).
 

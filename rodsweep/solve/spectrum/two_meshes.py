@@ -62,10 +62,10 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
         destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
-    return outcome_or_failure(lambda: _solve_or_raise(rod, request), failed)
+    return outcome_or_failure(lambda: _spectrum_or_raise(rod, request), failed)
 
 
-def _solve_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
+def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     problem = transverse_problem(rod)
     modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy

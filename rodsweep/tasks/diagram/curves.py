@@ -162,7 +162,7 @@ class DiagramCurves:
         """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
         every row, (rows,).
         """
-        from ...solve.changes.diagram.boundaries import curves_through, seed_of
+        from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
         at, kind, frequency, rate = map(view.by_point, names)
@@ -173,7 +173,7 @@ class DiagramCurves:
             for i in np.flatnonzero(np.isfinite(rows))
             for j in np.flatnonzero(kind[i])
         ]
-        found = curves_through(plane, [seed for seed in seeds if seed is not None])
+        found = boundary_curves_through(plane, [seed for seed in seeds if seed is not None])
         # If a list is full, its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
         return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))

@@ -102,7 +102,7 @@ class _ChangeBoundaries:
         )
 
 
-def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
+def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
     """Boundary curves through all thresholds `seeds`; a threshold on a curve already followed starts no
     further curve."""
     problem = _ChangeBoundaries(plane, seeds)
