@@ -119,9 +119,9 @@ def of_modes(number, nodes):
     spectrum = of_spectrum(number, nodes)
     vectors = SimpleNamespace(
         resolution=Resolution(1, 20),
-        right=spectrum.vectors,
+        right_modes=spectrum.vectors,
         deformation=spectrum.vectors + 100,
-        left=spectrum.vectors + 200,
+        left_modes=spectrum.vectors + 200,
         pairing=np.full(number, 2 + 1j),
         condition=np.full(number, 3.0),
         mode_error=np.full(number, 1e-9),
