@@ -80,7 +80,7 @@ def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
 
 
 def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
-    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S at all nodes of `source`,
+    """S at all nodes of the mesh `target`, (3, ..., target nodes + 1), from S at all nodes of `source`,
     (3, ..., nodes + 1).
 
     The map is linear. At a jump of `source`, S is a mean and not a value of the polynomial on either side;

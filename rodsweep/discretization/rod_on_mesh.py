@@ -157,7 +157,7 @@ class RodOnMesh(ABC):
         return stored
 
     def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:
-        """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., grid.nodes + 1)."""
+        """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., nodes of grid + 1)."""
         return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:

@@ -83,7 +83,7 @@ class StateLayout:
 
     def interpolate(self, x: Array, E: Array) -> Array:
         """States x interpolated to another mesh. E: interpolation matrix from all nodes of the present mesh
-        to all nodes of the other mesh, (target.nodes + 1, nodes + 1).
+        to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1).
         """
         split = self.components * self.node_count
         slices = [slice(first, first + self.node_count) for first in range(0, split, self.node_count)]

@@ -49,7 +49,7 @@ class ArmPencil:
 
     Every break of the arm must be an edge of the mesh. rows, columns: row and column of each entry of the
     pattern, (nnz,), sorted by row, then column, with the full diagonal. The unknowns are y, theta and s,
-    `mesh.nodes` of each.
+    `mesh.node_count` of each.
     """
 
     def __init__(self, mesh: ArmMesh):
