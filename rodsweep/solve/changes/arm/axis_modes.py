@@ -80,7 +80,8 @@ class AxisModesOfPath:
         return self.certify and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.many_modes
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
-        """The modes at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
+        """The modes at path variable p, or just outside an end p of the path where the count fails; raises
+        Unsolvable if the eigenvalues or the count cannot be computed.
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """

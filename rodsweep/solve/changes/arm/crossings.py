@@ -100,8 +100,8 @@ class CrossingSearch:
         return first <= high and last >= low
 
     def _must_be_halved(self, a: float, b: float, most: float, length: float) -> bool:
-        """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
-        likely to be full before b, where a count is expensive. length: length of the path."""
+        """Whether (a, b) must be halved before its search: it is not short, the modes at b are not known, and
+        the list of `most` crossings is likely to be full before b. length: length of the path."""
         if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
         expected = self.problem.expected_unstable_count(b)
