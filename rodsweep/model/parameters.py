@@ -72,12 +72,13 @@ class Parameter:
         return bool(self.rigid_adjective or set(self.scaled_names) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
-        """The coordinate, in which the equations are affine: 1/value for a stiffness, otherwise the value."""
+        """The coordinate, in which the equations are affine: 1/value if `has_inverse_coordinate`, as for a
+        stiffness, otherwise the value."""
         return 1 / value if self.has_inverse_coordinate else value
 
     def value(self, coordinate: float) -> float:
-        """Value of the parameter with the given coordinate: 1/coordinate for a stiffness (inf for 0),
-        otherwise the coordinate.
+        """Value of the parameter with the given coordinate: 1/coordinate (inf for 0) if
+        `has_inverse_coordinate`, otherwise the coordinate.
         """
         if self.has_inverse_coordinate:
             return 1 / coordinate if coordinate else inf

@@ -185,8 +185,8 @@ def _with_interval(counted: ThresholdList, found: AxisCrossings, asked: tuple[fl
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, which
-    `certify` proves. most: number of crossings after which the search of a nonuniform arm ends."""
+    """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, proved
+    if `certify`. most: number of crossings after which the search of a nonuniform arm ends."""
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
