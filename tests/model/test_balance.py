@@ -127,11 +127,11 @@ def test_energy_law(material, size):
     ends = [stresses(np.array([end]), size) for end in (0.0, 1.0)]
     clamp, tip = ((fields[0] * rates(material, *fields)[0]).sum() for fields in ends)
     assert ends[1][0][:, 0] == pytest.approx(material.tip_stress)
-    change, lost = (Sigma * rate).sum(axis=0) @ weights, material.dissipation(V) @ weights
+    change, lost = (Sigma * rate).sum(axis=0) @ weights, material.dissipated_power_per_length(V) @ weights
     assert change == pytest.approx(tip - clamp - lost, rel=1e-11, abs=1e-11 * lost)
     small = 1e-7  # C dSigma = dE: the energy's derivative along the motion
     motion = rate / material.compliance[:, None]
-    ahead, back = (material.energy(Sigma + sign * small * motion) @ weights for sign in (1, -1))
+    ahead, back = (material.energy_per_length(Sigma + sign * small * motion) @ weights for sign in (1, -1))
     assert (ahead - back) / (2 * small) == pytest.approx(change, rel=1e-6)
 
 

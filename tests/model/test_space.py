@@ -29,8 +29,8 @@ def tapered(material, grid):
     u, phase = grid.node_positions, np.arange(len(material.drag))[:, None]
     profile = 1 + 0.4 * np.sin(2 * u + phase)
     compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
-    rest = material.straight[:, None] + compliance * material.tip_stress[:, None]
-    return material._replace(compliance=compliance, drag=drag, rest=rest)
+    rest = material.unloaded_strain[:, None] + compliance * material.tip_stress[:, None]
+    return material._replace(compliance=compliance, drag=drag, rest_strain=rest)
 
 
 def state(rod, grid):
