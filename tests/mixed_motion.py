@@ -34,15 +34,20 @@ def reaction(form, X):
     """
     _, V = form.stresses_and_velocities(X)
     WD = -form.mesh.matrices.weak_derivative.T
-    return form.mesh.quadrature[-1] * ad(along(form.rod.material.rest, V), V)[..., -1] - V @ WD[:, -1]
+    return form.mesh.quadrature[-1] * ad(along(form.rod.material.rest_strain, V), V)[..., -1] - V @ WD[:, -1]
 
 
 def energy(form, X):
     """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
     S, _ = form.stresses_and_velocities(X)
-    return form.rod.material.energy(S + along(form.rod.material.tip_stress, S)) @ form.mesh.quadrature
+    return (
+        form.rod.material.energy_per_length(S + along(form.rod.material.tip_stress, S)) @ form.mesh.quadrature
+    )
 
 
 def dissipation(form, X):
     """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
-    return form.rod.material.dissipation(form.stresses_and_velocities(X)[1]) @ form.mesh.quadrature
+    return (
+        form.rod.material.dissipated_power_per_length(form.stresses_and_velocities(X)[1])
+        @ form.mesh.quadrature
+    )

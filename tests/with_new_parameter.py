@@ -111,8 +111,8 @@ def derivatives() -> None:
     rod = Rod(F=30.0, gamma3=1e-2, roughness=3.0, **ROD)
     assert rod.coordinate("roughness") == 3.0
     there = rod.with_coordinate("roughness", 4.0)
-    agree(there.material.drag, rod.material.drag + rod.material_change("roughness").drag)
-    assert rod.direction("gamma3").gamma3 == 3.0
+    agree(there.material.drag, rod.material.drag + rod.material_derivative("roughness").drag)
+    assert rod.coefficient_derivative("gamma3").gamma3 == 3.0
     assert repr(rs.Rod(F=30, gamma3=1e-2, roughness=3, **ROD)).endswith("roughness=3)")
 
 

@@ -29,7 +29,7 @@ from ..lapack import Eigenvalues, inverse_spectrum, qz_spectrum, whole_matrices
 
 def pencil_matrices(rod: Rod, size: int) -> tuple[Array, Array]:
     """(A, diagonal of B) of rodsweep's pencil of order `size`, shapes (unknowns, unknowns), (unknowns,)."""
-    return whole_matrices(rod, pencil_mesh(size) if rod.standard else mesh_of_arm(rod, size))
+    return whole_matrices(rod, pencil_mesh(size) if rod.is_uniform_and_linear else mesh_of_arm(rod, size))
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
@@ -127,7 +127,7 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
     The first-order system contains compliances instead of stiffnesses. An arm is divided at its jumps, and
     every segment has `size` intervals.
     """
-    edges = (0.0, 1.0) if rod.standard else rod.build.breaks
+    edges = (0.0, 1.0) if rod.is_uniform_and_linear else rod.build.breaks
     pieces = [_first_order(rod, a, b, size) for a, b in zip(edges[:-1], edges[1:], strict=True)]
     A, B = (scipy.linalg.block_diag(*blocks) for blocks in zip(*pieces, strict=True))
     n, last = size + 1, 4 * (size + 1) * (len(pieces) - 1)
@@ -149,7 +149,7 @@ def _first_order(rod: Rod, a: float, b: float, size: int) -> tuple[Array, Array]
     The points run from the end b to the end a.
     """
     inside = np.clip((1 + np.cos(np.pi * np.arange(size + 1) / size)) / 2, END_OF_PIECE, 1 - END_OF_PIECE)
-    here = rod.local(a + (b - a) * inside)
+    here = rod.local_coefficients(a + (b - a) * inside)
     D = _chebyshev(size) / (b - a)
     zero = np.zeros_like(D)
     nu, c2, c3, g = map(np.diag, (here.nu, here.c2, here.c3, here.g))

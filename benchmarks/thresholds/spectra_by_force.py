@@ -40,7 +40,7 @@ SCIPY_ROUNDING = 8.9e-16
 def threshold_mesh(case: ThresholdCase) -> Resolution | ArmMesh:
     """Mesh with a relative error of MESH_ACCURACY at the Hopf point of a case, or at its onset."""
     rod = case.rod(case.onset if isnan(case.hopf) else case.hopf)
-    if not rod.standard:
+    if not rod.is_uniform_and_linear:
         return arm_mesh(rod, MESH_MODES, MESH_ACCURACY)
     wave = most_amplified_wave(rod)[1]
     return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)

@@ -9,8 +9,8 @@ from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.quantities import LOADS, SECTION_SIDES
-from ..model.units import Given
+from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
+from ..model.units import GivenQuantity
 from .answers.answer import Answer
 from .keyword_arguments import config_tree, job_of_tree, with_load_in_si
 from .options import (
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 ARM_EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
 EXCLUSIVE_QUANTITIES = (
     tuple((load,) for load in LOADS),
-    SECTION_SIDES,
-    (("segments",), (*SECTION_SIDES[0], *SECTION_SIDES[1])),
+    SECTION_SIZE_NAMES,
+    (("segments",), (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
 """Pairs of mutually exclusive sets of quantities. If `Arm.replace` is called with a quantity of one set, all
@@ -72,7 +72,7 @@ class Arm(SlenderArm):
         return arm_report(self)
 
     @refusing_wrong_arguments('arm.replace(length="12 cm")')
-    def replace(self, **changed: Given | None) -> "Arm":
+    def replace(self, **changed: GivenQuantity | None) -> "Arm":
         """A copy of the arm with changed quantities.
 
         A new force removes the pressure; width and height remove the radius; segments remove radius, width,

@@ -16,15 +16,19 @@ from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.drag import DRAGS
-from ..model.arm.quantities import LOADS, RELATIVE_LOADS
-from ..model.material.build import STANDARD
+from ..model.arm.drag import DRAG_NAMES
+from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
+from ..model.material.build import DEFAULT_BUILD
 from ..solve.exclusive import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Class of an arm."""
-DEFAULT_VALUES = {"drag": DRAGS[0], "law": STANDARD.law, "section": STANDARD.section}
+DEFAULT_VALUES = {
+    "drag": DRAG_NAMES[0],
+    "law": DEFAULT_BUILD.law,
+    "section": DEFAULT_BUILD.section,
+}
 """Default values of drag, law and section. A key of an arm with its default value is not written into the
 config tree."""
 ConfigTree = dict[str, Any]
@@ -65,7 +69,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
-        names = [n for n in ArmSection.model_fields if n not in RELATIVE_LOADS and (loaded or n not in LOADS)]
+        names = [n for n in ArmSection.model_fields if n not in LOAD_OF_RATIO and (loaded or n not in LOADS)]
         known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
@@ -109,7 +113,7 @@ def require_valid_tree(tree: ConfigTree) -> None:
     which the ranks of the run share.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
-    if arm is None or arm.load_key not in RELATIVE_LOADS:
+    if arm is None or arm.load_key not in LOAD_OF_RATIO:
         job_of_tree(tree)
 
 

@@ -17,8 +17,8 @@ from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.as_rod import material_of, parameters_of
-from ..model.material.build import STANDARD
+from ..model.arm.as_rod import material_section_of, parameters_of
+from ..model.material.build import DEFAULT_BUILD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
 from .answers.answer import Answer
@@ -79,7 +79,7 @@ class SoftRod:
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
             given = parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
-            material = material_of(arm) | beside
+            material = material_section_of(arm) | beside
         for name in REQUIRED_PARAMETERS:
             if name not in given:
                 raise InputError(
@@ -90,7 +90,7 @@ class SoftRod:
             name: _parameter_value(name, value) for name, value in values.items() if value is not None
         }
         self._material = _material_section(material)
-        build = STANDARD if self._material is None else self._material.build
+        build = DEFAULT_BUILD if self._material is None else self._material.build
         if arm is not None and build.section == "swelling":
             replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
         refuse_invalid_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)

@@ -47,7 +47,7 @@ def arm_options(
 
     def add_options(command: CommandFunction) -> CommandFunction:
         for name in reversed([name for name in UNITS if name not in left_out]):
-            command = _quantity_option(name, is_needed and QUANTITIES[name].needed)(command)
+            command = _quantity_option(name, is_needed and QUANTITIES[name].is_required)(command)
         for option, settings in reversed(MATERIAL_OPTIONS.items()):
             command = click.option(option, **settings)(command)
         return command

@@ -10,7 +10,7 @@ from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import quantities_as_typed
 from ..config.arm.section import ArmSection
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS
-from ..model.arm.neglected import wall_effect
+from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span_text
@@ -98,7 +98,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     ]
     length, radius, bore, poisson = np.meshgrid(*values)
     tubes = bore < radius
-    effect = wall_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
+    effect = wall_flattening_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
     worst = int(np.argmax(effect.value))
     warning = wall_check(replace(effect, value=effect.value[worst])).text
     some = int((effect.validity > 0).sum())

@@ -60,7 +60,9 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
     None if a stop signal came before the computation ended.
     """
     rods = team.call_on_first_rank(lambda: rods_for_flutter_forces(config))
-    if not all(rod.standard for rod in rods):  # a rank without a rod must start PETSc with the others
+    if not all(
+        rod.is_uniform_and_linear for rod in rods
+    ):  # a rank without a rod must start PETSc with the others
         team.require_on_all_ranks(require_solvers)
         team.require_on_all_ranks(start_solvers)
     shared = _SharedWork(team, stop)

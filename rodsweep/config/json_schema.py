@@ -17,7 +17,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ..model.arm.quantities import LOADS, QUANTITIES, RELATIVE_LOADS, SECTION_SIDES
+from ..model.arm.quantities import LOAD_OF_RATIO, LOADS, QUANTITIES, SECTION_SIZE_NAMES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .arm.axes import LOAD_KEYS, NON_LOAD_KEYS
 from .document.refusals import value_type_of_key
@@ -28,9 +28,9 @@ Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """Template of a regular expression for a number followed by the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].signed},
+    **{name: {"exclusiveMinimum": 0} for name in NON_LOAD_KEYS if not QUANTITIES[name].may_be_nonpositive},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
-    **{name: {"minimum": 0} for name in RELATIVE_LOADS},
+    **{name: {"minimum": 0} for name in LOAD_OF_RATIO},
 }
 """Bounds of each quantity of an arm, as JSON schema keywords, by name of the quantity."""
 DIALECT = "http://json-schema.org/draft-07/schema#"
@@ -174,8 +174,10 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
                 node["pattern"] = pattern
     of_one = ["length", "young"]
     circle = all_keys_given([*of_one, "radius"], no_key_given(["width", "height", "segments"]))
-    rectangle = all_keys_given([*of_one, "width", "height"], no_key_given([*SECTION_SIDES[0], "segments"]))
-    pieces = all_keys_given(["segments"], no_key_given([*SECTION_SIDES[0], *SECTION_SIDES[1]]))
+    rectangle = all_keys_given(
+        [*of_one, "width", "height"], no_key_given([*SECTION_SIZE_NAMES[0], "segments"])
+    )
+    pieces = all_keys_given(["segments"], no_key_given([*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]]))
     section["allOf"] = [
         {"oneOf": [circle, rectangle, pieces]},
         {"not": all_keys_given(["inner_radius", "tip_radius"])},

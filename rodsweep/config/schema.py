@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from ..model.material.build import STANDARD, Build
+from ..model.material.build import DEFAULT_BUILD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
 from .axes import Axes, LinearParameters
@@ -77,7 +77,7 @@ class Config(StrictSection):
         """
         if self.stated_build is not None:
             return self.stated_build
-        return STANDARD if self.parameters.arm is None else self.parameters.arm.build
+        return DEFAULT_BUILD if self.parameters.arm is None else self.parameters.arm.build
 
     @property
     def standard(self) -> bool:
@@ -87,7 +87,7 @@ class Config(StrictSection):
         if "taper" in (self.parameters.columns or ()):
             return False
         tapers = self.parameters.given_axes.get("taper")
-        return self.build.standard and (tapers is None or bool((tapers.array() == 1).all()))
+        return self.build.is_uniform_and_linear and (tapers is None or bool((tapers.array() == 1).all()))
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
@@ -119,7 +119,7 @@ class Config(StrictSection):
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
         numbers = dict(self.parameters.constant_parameters)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
-        if self.material is not None and not self.build.standard:
+        if self.material is not None and not self.build.is_uniform_and_linear:
             meant["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
             return meant

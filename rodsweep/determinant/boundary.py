@@ -132,7 +132,7 @@ class Boundary:
         jacobian[0] = here.D_x.real, here.D_y.real, slope
         for i in range(3):
             stencil, h = (
-                self.plane.stencil(v[0], v[1], i)
+                self.plane.difference_stencil(v[0], v[1], i)
                 if i < 2
                 else (CENTRAL_STENCIL, PLANE_SETTINGS.difference_step)
             )

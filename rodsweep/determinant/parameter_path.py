@@ -16,18 +16,24 @@ from .value import ExponentDerivatives, determinant_from_parts
 
 
 class CoefficientDerivatives(NamedTuple):
-    """Derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, the coefficients of D(w).
-
-    T1 is the first derivative of T, N1 and N2 are the first and second derivatives of N, and so on.
+    """First and second derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, the
+    coefficients of D(w). T is linear in p.
     """
 
     T1: float
+    """dT/dp."""
     N1: float
+    """dN/dp."""
     N2: float
+    """d^2N/dp^2."""
     G1: float
+    """dG/dp."""
     G2: float
+    """d^2G/dp^2."""
     X1: float
+    """dX/dp."""
     X2: float
+    """d^2X/dp^2."""
 
 
 class PathDeterminantValue(NamedTuple):
@@ -53,16 +59,16 @@ class Path:
         return PARAMETERS[self.name]
 
     @property
-    def is_compliance(self) -> bool:
+    def is_compliance_path(self) -> bool:
         """Whether the path variable p is the compliance 1/k of a varying stiffness k, instead of the
         parameter itself.
         """
-        return self.parameter.by_compliance
+        return self.parameter.has_inverse_coordinate
 
     @property
     def direction(self) -> Coefficients:
         """d(F, nu, c2, gamma3)/dp, the same for all rods of the path."""
-        return self.rod.direction(self.name)
+        return self.rod.coefficient_derivative(self.name)
 
     @property
     def origin(self) -> Coefficients:
@@ -76,7 +82,7 @@ class Path:
     def value(self, p: float, error: float) -> tuple[float, float]:
         """Returns (value of the varying parameter at p, error of this value). error: error of p."""
         # k = 1/p, so dk = dp/p^2.
-        return self.parameter.value(p), error / p**2 if self.is_compliance else error
+        return self.parameter.value(p), error / p**2 if self.is_compliance_path else error
 
     def rod_at(self, p: float) -> Rod:
         """The rod at p. Raises ValueError if the rod is invalid, for example crushed."""

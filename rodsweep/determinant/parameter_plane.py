@@ -71,7 +71,7 @@ class PlaneAxis:
         parameter.
         """
         along = self.parameter_slope(value)
-        return -along / value**2 if PARAMETERS[self.name].by_compliance else along
+        return -along / value**2 if PARAMETERS[self.name].has_inverse_coordinate else along
 
 
 class ValueOnPlane(NamedTuple):
@@ -98,13 +98,13 @@ class Plane:
     @cached_property
     def has_standard_rods(self) -> bool:
         """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
-        return self.rod.standard and all(axis.name != "taper" for axis in self.axes)
+        return self.rod.is_uniform_and_linear and all(axis.name != "taper" for axis in self.axes)
 
     def rod_at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates (x, y). Raises ValueError if the rod is invalid, for example
         crushed."""
         first, second = self.axes
-        return self.rod.changed(**{first.name: first.value(x), second.name: second.value(y)})
+        return self.rod.with_values(**{first.name: first.value(x), second.name: second.value(y)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
@@ -126,13 +126,15 @@ class Plane:
             else arm_determinant(rod).value(w)
         )
 
-    def stencil(self, x: float, y: float, which: int) -> tuple[tuple[tuple[float, float], ...], float]:
+    def difference_stencil(
+        self, x: float, y: float, which: int
+    ) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
         (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
         """
         h = self.difference_step_at(x, y, which, PLANE_SETTINGS.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
-        return (CENTRAL_STENCIL if self.is_valid(*back) else ONE_SIDED_STENCIL), h
+        return (CENTRAL_STENCIL if self.is_valid_at(*back) else ONE_SIDED_STENCIL), h
 
     def _determinant_of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
@@ -141,7 +143,7 @@ class Plane:
         D, D_w, S, noise = self.determinant_value(w, x, y)
         slopes = []
         for which in range(2):
-            stencil, h = self.stencil(x, y, which)
+            stencil, h = self.difference_stencil(x, y, which)
             slope = 0j
             for offset, weight in stencil:
                 neighbour = self.determinant_value(
@@ -160,7 +162,7 @@ class Plane:
         """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
         coordinate of `axis`).
         """
-        value = determinant_along_path(w, rod.coefficients, rod.direction(axis.name))
+        value = determinant_along_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
         return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
 
     def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:
@@ -178,7 +180,7 @@ class Plane:
         slope = rate * axis.parameter_slope(getattr(rod, axis.name))
         return min(largest, PLANE_SETTINGS.step_to_crushing * (force - rod.F) / slope)
 
-    def is_valid(self, x: float, y: float) -> bool:
+    def is_valid_at(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates (x, y) is valid."""
         try:
             self.rod_at(x, y)
@@ -186,7 +188,7 @@ class Plane:
             return False
         return True
 
-    def is_uncrushed(self, x: float, y: float) -> bool:
+    def is_uncrushed_at(self, x: float, y: float) -> bool:
         """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
         return values["F"] < values["k1"] * self.rod.build.relative_crushing_force(values["taper"])

@@ -11,6 +11,6 @@ def wave_number(rod: Rod, w: complex) -> float:
     """
     return (
         newton_correction_and_scales(w, rod.coefficients)[2]
-        if rod.standard
+        if rod.is_uniform_and_linear
         else arm_determinant(rod).wave_number(w)
     )

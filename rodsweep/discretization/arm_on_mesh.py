@@ -29,7 +29,7 @@ def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
 
     Elements of the mesh must end at the breaks of the arm's profile.
     """
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return rod.material
     compliance, drag, rest = _mean_coefficients_at_nodes(
         rod.sections(grid.points_inside_elements.ravel()), grid
@@ -41,15 +41,15 @@ def material_derivative_at_nodes(rod: Rod, name: str, grid: Mesh) -> Material:
     """The derivative of `material_at_nodes` with respect to the coordinate of the parameter `name`: 1/k for a
     stiffness k, else the parameter itself.
     """
-    if rod.standard and name != "taper":
-        return rod.material_change(name)
+    if rod.is_uniform_and_linear and name != "taper":
+        return rod.material_derivative(name)
     compliance, drag, rest = _mean_coefficients_at_nodes(
-        rod.section_changes(name, grid.points_inside_elements.ravel()), grid
+        rod.section_derivatives(name, grid.points_inside_elements.ravel()), grid
     )
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
-def profile_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
+def relative_bending_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
     `build`.
 
@@ -88,16 +88,16 @@ def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
     inside, at = _indices_beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_JUMP_CHANGE
-    changes = rod.section_changes(name, grid.points_inside_elements.ravel()[inside].ravel())
+    changes = rod.section_derivatives(name, grid.points_inside_elements.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
 def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
-    """Returns (points, nodes) of the k jumps. points: indices in `points_inside` of the points before and
-    behind each jump, (k, 2). nodes: node of each jump, (k,).
+    """Returns (points, nodes) of the k jumps. points: indices in the flat `points_inside_elements` of the
+    points before and behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
-    jumps = build.jumps
+    jumps = build.jump_positions
     ends = np.array([e for e in range(1, grid.element_count) if grid.edges[e] in jumps], np.int64)
     size = grid.order + 1
     return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
@@ -106,7 +106,8 @@ def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, Integ
 def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
     """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each.
 
-    sections: the coefficients at the `points_inside` of the mesh, or derivatives of the coefficients.
+    sections: the coefficients at the `points_inside_elements` of the mesh, or derivatives of the
+    coefficients.
     """
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
@@ -117,7 +118,7 @@ def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, 
 
 
 def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
-    """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside`,
+    """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside_elements`,
     (m, points).
     """
     element, weights = _nodes_and_weights_of_points(grid)
@@ -127,8 +128,8 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _nodes_and_weights_of_points(grid: Mesh) -> tuple[IntegerArray, Array]:
-    """Returns (nodes, weights) of all `points_inside`, (elements (order + 1),) each: node of the mesh, and
-    quadrature weight within the element.
+    """Returns (nodes, weights) of all `points_inside_elements`, (elements (order + 1),) each: node of the
+    mesh, and quadrature weight within the element.
     """
     weights = grid.lengths[:, None] / 2 * gauss_lobatto_rule(grid.order)[1]
     return grid.element_nodes.ravel(), weights.ravel()

@@ -80,7 +80,7 @@ def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
 
 
 def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Values:
-    """S at all nodes of the mesh `target`, (3, ..., target.nodes + 1), from S at all nodes of `source`,
+    """S at all nodes of the mesh `target`, (3, ..., target nodes + 1), from S at all nodes of `source`,
     (3, ..., nodes + 1).
 
     The map is linear. At a jump of `source`, S is a mean and not a value of the polynomial on either side;
@@ -115,7 +115,7 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     # replaces this value.
     out = E.copy()
     p = source.order
-    element = np.searchsorted(source.edges, target.positions, side="right") - 1
+    element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
     at_jumps = [int(node) // p for node in here]
     for e, node in zip(at_jumps, here, strict=True):
         for side in (e - 1, e):

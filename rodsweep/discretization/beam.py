@@ -23,9 +23,9 @@ from .stress.rates import write_rate_jacobians, write_rates
 class TipVelocitySettings:
     """Settings for the velocity of the tip."""
 
-    tip_step: float = 1e-30
-    """Imaginary step, in tau2, of the complex-step derivative in `tip_motion`. The square of the step
-    underflows, so the derivative has no truncation error."""
+    imaginary_step: float = 1e-30
+    """Imaginary step, in tau2, of the complex-step derivative in `tip_position_and_velocity`. The square of
+    the step underflows, so the derivative has no truncation error."""
 
 
 TIP_VELOCITY_SETTINGS = TipVelocitySettings()
@@ -51,7 +51,8 @@ class Beam(RodOnMesh):
     def crushing_z1(self) -> Array:
         """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
 
-        At a jump, h1 reaches 0 first on one side if the law is linear, and on both sides at once otherwise.
+        At a jump, h1 reaches 0 first on one side if the law is linear, and the value belongs to this side;
+        for another law h1 reaches 0 on both sides at once.
         """
         crushed = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:
@@ -90,22 +91,22 @@ class Beam(RodOnMesh):
         write_rate_jacobians(states, matrices, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
-    def tip_motion(self, z: Array, direction: Array) -> tuple[Array, Array]:
+    def tip_position_and_velocity(self, z: Array, direction: Array) -> tuple[Array, Array]:
         """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, and its time derivative
         for dz/dt = direction.
 
         z, direction: (..., unknowns). The velocity is a complex-step derivative, which has no cancellation.
         """
-        change = self.element_strain_changes(z, TIP_VELOCITY_SETTINGS.tip_step * direction)
+        change = self.element_strain_changes(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
         moved = shape_from_strains(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
         # The imaginary part is the derivative times the step.
-        return moved.real, moved.imag / TIP_VELOCITY_SETTINGS.tip_step
+        return moved.real, moved.imag / TIP_VELOCITY_SETTINGS.imaginary_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """Time derivative of (x, y, theta) of the tip at z for dz/dt = direction, (3, ...); z, direction:
         (..., unknowns).
         """
-        return self.tip_motion(z, direction)[1]
+        return self.tip_position_and_velocity(z, direction)[1]
 
     def _broadcast_sqrt_compliance(self, field: Values) -> Array:
         """`sqrt_compliance`, reshaped to broadcast against a field (3, ..., nodes + 1)."""

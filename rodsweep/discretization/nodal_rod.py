@@ -77,7 +77,7 @@ def nodal_rod(
     jumps: jumps of the material on this mesh.
     """
     size = grid.node_count + 1
-    rest = _expanded_to_nodes(material.rest, size)
+    rest = _expanded_to_nodes(material.rest_strain, size)
     compliance = _expanded_to_nodes(material.compliance, size)
     resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, grid, unknown_velocities)
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
@@ -86,7 +86,7 @@ def nodal_rod(
 def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) -> NodalChange:
     """The `NodalChange` of a mesh. change: derivative of the material by a parameter. sides: derivatives at
     the jumps, (k, 2, 3), as in `NodalChange`."""
-    fields = change.rest, change.compliance, change.drag
+    fields = change.rest_strain, change.compliance, change.drag
     rest, compliance, drag = (_expanded_to_nodes(field, grid.node_count + 1) for field in fields)
     return NodalChange(change.tip_stress, rest, compliance, drag, sides)
 
@@ -109,8 +109,8 @@ def _cached_drag_arrays(
 def _drag_arrays(
     drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
-    """Returns (drag, mobility, second, unknown_velocities), fields of a `NodalRod`. drag: drags of the
-    components, (d, 1) or (d, nodes + 1).
+    """Returns (drag, mobility, mobility_laplacian, unknown_velocities), fields of a `NodalRod`. drag: drags
+    of the components, (d, 1) or (d, nodes + 1).
     """
     drag = _expanded_to_nodes(drag, grid.node_count + 1)
     mobility = np.zeros(drag.shape)

@@ -58,6 +58,7 @@ class RodOnMesh(ABC):
 
     @property
     def unknowns(self) -> int:
+        """Number of unknowns in a state."""
         return self.layout.unknowns
 
     @cached_property
@@ -152,11 +153,11 @@ class RodOnMesh(ABC):
         # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
         push = q1 - F * ratio  # (h1 - 1)/c1
-        stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending(h1) * c3 * q3**2 / 2
+        stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
         return stored
 
     def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:
-        """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., grid.nodes + 1)."""
+        """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., nodes of grid + 1)."""
         return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:

@@ -24,27 +24,28 @@ Both constants are for compiled code."""
 class StateLayout:
     """Order of the unknowns in states of the shape (..., unknowns).
 
-    components: number of stress components. nodes: number of nodes without the tip. unknown_velocities:
+    components: number of stress components. node_count: number of nodes without the tip. unknown_velocities:
     indices of the components of V that are unknowns. Velocities at the tip are unknowns, stresses at the tip
     are 0.
     """
 
     components: int
-    nodes: int
+    node_count: int
     unknown_velocities: tuple[int, ...] = ()
 
     @property
     def unknowns(self) -> int:
-        return self.components * self.nodes + len(self.unknown_velocities) * (self.nodes + 1)
+        """Number of unknowns in a state."""
+        return self.components * self.node_count + len(self.unknown_velocities) * (self.node_count + 1)
 
     def stress_field(self, x: Values, name: str) -> Values:
         """The stress `name` of states x at all nodes except the tip: a view, (..., nodes)."""
         first = self.stress_index(name)
-        return x[..., first : first + self.nodes]
+        return x[..., first : first + self.node_count]
 
     def stress_index(self, name: str, node: int = 0) -> int:
         """Index in a state of the stress `name` at a node; node 0 is the clamp."""
-        return STRESS_NAMES[self.components].index(name) * self.nodes + node
+        return STRESS_NAMES[self.components].index(name) * self.node_count + node
 
     def stress_at(self, x: Values, name: str, node: int = 0) -> Values:
         """The stress `name` of states x at one node, (...)."""
@@ -55,19 +56,23 @@ class StateLayout:
         """All unknowns of planar states x except the axial stress n1, a view; all these unknowns are 0 for a
         straight rod.
         """
-        return x[..., self.nodes :]
+        return x[..., self.node_count :]
 
     def stresses(self, x: Values) -> Values:
         """Stresses of states x at all nodes, (components, ..., nodes + 1); stresses at the tip are 0."""
-        S = np.zeros((self.components, *x.shape[:-1], self.nodes + 1), x.dtype)
-        known = x[..., : self.components * self.nodes].reshape(*x.shape[:-1], self.components, self.nodes)
+        S = np.zeros((self.components, *x.shape[:-1], self.node_count + 1), x.dtype)
+        known = x[..., : self.components * self.node_count].reshape(
+            *x.shape[:-1], self.components, self.node_count
+        )
         S[..., :-1] = np.moveaxis(known, -2, 0)
         return S
 
     def velocities(self, x: Values) -> Values:
         """The unknown components of V of states x at all nodes, (unknown_velocities, ..., nodes + 1)."""
-        known = x[..., self.components * self.nodes :]
-        return np.moveaxis(known.reshape(*x.shape[:-1], len(self.unknown_velocities), self.nodes + 1), -2, 0)
+        known = x[..., self.components * self.node_count :]
+        return np.moveaxis(
+            known.reshape(*x.shape[:-1], len(self.unknown_velocities), self.node_count + 1), -2, 0
+        )
 
     def state(self, S: Values, V: Values) -> Values:
         """States (..., unknowns) from stresses S and velocities V, (components, ..., nodes + 1) each.
@@ -78,10 +83,10 @@ class StateLayout:
 
     def interpolate(self, x: Array, E: Array) -> Array:
         """States x interpolated to another mesh. E: interpolation matrix from all nodes of the present mesh
-        to all nodes of the other mesh, (target.nodes + 1, nodes + 1).
+        to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1).
         """
-        split = self.components * self.nodes
-        slices = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
+        split = self.components * self.node_count
+        slices = [slice(first, first + self.node_count) for first in range(0, split, self.node_count)]
         parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
         return np.concatenate(
             [*parts, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..errors import InputError
 from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
-from ..model.units import in_si
+from ..model.units import quantity_in_si
 from ..post.summary.arm.arm import quantity_words
 from .state import PageState, float_or_text, rod_of
 
@@ -43,7 +43,7 @@ class ControlScale:
         try:
             if self.unit:
                 quantity = QUANTITIES[self.name]
-                return in_si(self.name, text, quantity.unit, quantity.example) * self.factor
+                return quantity_in_si(self.name, text, quantity.unit, quantity.example) * self.factor
             found = float_or_text(text)
         except InputError:
             return None

@@ -40,8 +40,8 @@ class Algebra(NamedTuple):
         return [(a, b) for a in self.components for b in self.components if a != b]
 
 
-def algebra(size: int, terms: list[StructureConstant]) -> Algebra:
-    """The Lie algebra of dimension `size` whose nonzero structure constants are `structure_constants`."""
+def algebra_from_constants(size: int, terms: list[StructureConstant]) -> Algebra:
+    """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
     leads = {(a, c) for a, _, c, _ in terms}
     bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
@@ -51,7 +51,7 @@ def algebra(size: int, terms: list[StructureConstant]) -> Algebra:
     return Algebra(range(size), tuple(terms), forward, backward)
 
 
-def _cross(out: int, left: int, right: int) -> list[StructureConstant]:
+def _cross_product_constants(out: int, left: int, right: int) -> list[StructureConstant]:
     """Structure constants of a cross product of two triples of components, as a part of ad_E V.
 
     The first factor is the triple of components of E that starts at index `left`, the second factor the
@@ -62,9 +62,12 @@ def _cross(out: int, left: int, right: int) -> list[StructureConstant]:
     return positive + [(out + a, left + c, right + b, -1.0) for a, b, c in cyclic]
 
 
-SE2 = algebra(3, [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0)])
+SE2 = algebra_from_constants(3, [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0)])
 """The algebra se(2) of plane motions: ad_E V = (h2 Omega - kappa v2, kappa v1 - h1 Omega; 0)."""
-SE3 = algebra(6, _cross(0, 3, 0) + _cross(0, 0, 3) + _cross(3, 3, 3))
+SE3 = algebra_from_constants(
+    6,
+    _cross_product_constants(0, 3, 0) + _cross_product_constants(0, 0, 3) + _cross_product_constants(3, 3, 3),
+)
 """The algebra se(3) of motions in space: ad_E V = (kappa x v + h x Omega; kappa x Omega)."""
 ALGEBRAS = {3: SE2, 6: SE3}
 """The algebras se(2) and se(3), by dimension."""

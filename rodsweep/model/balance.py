@@ -61,28 +61,31 @@ def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
 class Material(NamedTuple):
     """Coefficients of the nonlinear balance of one rod under its tip force F.
 
-    compliance: diagonal of C. drag: diagonal of Gamma. rest: deformation E of the straight rod under the
-    force. Each array has the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods.
+    compliance: diagonal of C. drag: diagonal of Gamma. rest_strain: deformation E of the straight rod under
+    the force. Each array has the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods.
     """
 
     compliance: Values
     drag: Values
     F: float
-    rest: Values
+    rest_strain: Values
 
     @property
-    def straight(self) -> Values:
+    def unloaded_strain(self) -> Values:
         """Ebar, the deformation of the rod without load: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
-        return first_component(1.0, len(self.drag))
+        return axial_vector(1.0, len(self.drag))
 
     @property
     def tip_stress(self) -> Values:
         """Sigma(1), the stress at the tip: (-F, 0, ...), (3,) or (6,)."""
-        return first_component(-self.F, len(self.drag))
+        return axial_vector(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
         """Deformation E = Ebar + C Sigma under the stress Sigma, (3, ...) or (6, ...)."""
-        return _broadcast_diagonal(self.straight, Sigma) + _broadcast_diagonal(self.compliance, Sigma) * Sigma
+        return (
+            _broadcast_diagonal(self.unloaded_strain, Sigma)
+            + _broadcast_diagonal(self.compliance, Sigma) * Sigma
+        )
 
     def velocity(self, Sigma: Values, dSigma: Values) -> Values:
         """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...). All drags must be nonzero.
@@ -91,13 +94,13 @@ class Material(NamedTuple):
         """
         return elastic_force(self.strain(Sigma), Sigma, dSigma) / _broadcast_diagonal(self.drag, Sigma)
 
-    def energy(self, Sigma: Values) -> Values:
+    def energy_per_length(self, Sigma: Values) -> Values:
         """Elastic energy per length, Sigma C Sigma/2, in k3/L^2, shape (...). Sigma: stress, (3, ...) or
         (6, ...).
         """
         return (_broadcast_diagonal(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
 
-    def dissipation(self, V: Values) -> Values:
+    def dissipated_power_per_length(self, V: Values) -> Values:
         """Dissipated power per length, V Gamma V, in k3/(L^2 tau2), shape (...). V: velocity, (3, ...) or
         (6, ...).
         """
@@ -113,7 +116,7 @@ def embed_in_se3(plane: Values) -> Values:
     return space
 
 
-def first_component(number: float, size: int) -> Values:
+def axial_vector(number: float, size: int) -> Values:
     """The vector (number, 0, ..., 0) of length `size`."""
     element = np.zeros(size)
     element[0] = number

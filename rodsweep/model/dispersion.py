@@ -63,7 +63,7 @@ class SampledArm(NamedTuple):
 def sampled_arm(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and the local coefficients at these points, cached."""
     points, weights = _interval_midpoints(rod.build)
-    return SampledArm(points, weights, rod.local(points))
+    return SampledArm(points, weights, rod.local_coefficients(points))
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)

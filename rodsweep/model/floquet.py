@@ -1,7 +1,7 @@
 """Stability of a limit cycle from its nontrivial Floquet multipliers and their errors."""
 
 
-def min_unstable_multipliers(count: int, multiplier: float, error: float) -> int:
+def min_unstable_count(count: int, multiplier: float, error: float) -> int:
     """Lower bound on the number of nontrivial Floquet multipliers outside the unit circle: 0 if the cycle is
     stable, -1 if the stability is undecided.
 

@@ -8,7 +8,7 @@ import numpy as np
 from ..arrays import Array
 
 
-def longitudinal_rates(k1: float, gamma1: float, modes: int) -> Array:
+def longitudinal_eigenvalues(k1: float, gamma1: float, modes: int) -> Array:
     """Longitudinal eigenvalues -(k1/gamma1) (pi (n - 1/2))^2 for n = 1..modes, in 1/tau2, (modes,).
 
     Raises ValueError for an inextensible rod (k1 = inf), which has no longitudinal motion.

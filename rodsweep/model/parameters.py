@@ -44,7 +44,7 @@ class Parameter:
     remark: str = ""
     """Text that is appended to the meaning of the parameter in result files."""
     allowed: Range
-    linear: bool = True
+    in_linear_problem: bool = True
     """Whether the transverse linear problem contains the parameter."""
     rigid_adjective: str = ""
     """Adjective for a rod whose parameter is inf, like "inextensible"; empty if inf is not allowed."""
@@ -67,19 +67,20 @@ class Parameter:
             )
 
     @property
-    def by_compliance(self) -> bool:
+    def has_inverse_coordinate(self) -> bool:
         """Whether the coordinate of the parameter is 1/value; then the value may be inf."""
         return bool(self.rigid_adjective or set(self.scaled_names) & set(STIFFNESSES))
 
     def coordinate(self, value: float) -> float:
-        """The coordinate, in which the equations are affine: 1/value for a stiffness, otherwise the value."""
-        return 1 / value if self.by_compliance else value
+        """The coordinate, in which the equations are affine: 1/value if `has_inverse_coordinate`, as for a
+        stiffness, otherwise the value."""
+        return 1 / value if self.has_inverse_coordinate else value
 
     def value(self, coordinate: float) -> float:
-        """Value of the parameter with the given coordinate: 1/coordinate for a stiffness (inf for 0),
-        otherwise the coordinate.
+        """Value of the parameter with the given coordinate: 1/coordinate (inf for 0) if
+        `has_inverse_coordinate`, otherwise the coordinate.
         """
-        if self.by_compliance:
+        if self.has_inverse_coordinate:
             return 1 / coordinate if coordinate else inf
         return coordinate
 
@@ -95,7 +96,7 @@ class Parameter:
         """Meaning and remark of the parameter, for the attribute `long_name` in result files."""
         return self.meaning + self.remark
 
-    def require(self, value: float) -> None:
+    def require_in_range(self, value: float) -> None:
         """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.description}")
@@ -107,7 +108,7 @@ LARGEST_TAPER = 100.0
 stiffness."""
 
 
-def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
+def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
     """The table row of a stiffness that may be inf.
 
     name, symbol, meaning: fields of `Parameter`. rigid: adjective for a rod with infinite stiffness.
@@ -138,8 +139,8 @@ PARAMETERS = {
             remark=" at the tip, along -e1",
             allowed=Range(isfinite, "a finite number below k1 (negative values pull)"),
         ),
-        stiffness("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
-        stiffness("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
+        stiffness_parameter("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
+        stiffness_parameter("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
         Parameter(
             name="gamma3",
             symbol=r"\tilde\gamma_3",
@@ -153,7 +154,7 @@ PARAMETERS = {
             unit="gamma2",
             meaning="axial drag",
             allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
-            linear=False,
+            in_linear_problem=False,
             default=1.0,
         ),
         Parameter(
@@ -176,11 +177,11 @@ PARAMETERS = {
 
 NONLINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if not parameter.optional)
 """Names of the parameters of the nonlinear rod, without the optional parameters."""
-LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].linear)
+LINEAR_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if PARAMETERS[name].in_linear_problem)
 """Names of the parameters of the transverse linear problem, without the optional parameters."""
 OPTIONAL_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.optional)
 """Names of the parameters that a result file contains only if the config contains them."""
-SCALED_COEFFICIENTS = tuple(
+SCALING_PAIRS = tuple(
     (name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scaled_names
 )
 """All pairs (parameter name, name of a stiffness or drag that the parameter multiplies)."""
@@ -193,7 +194,7 @@ CRUSHING_PARAMETERS = ("F", "k1")
 """Names of the force and of the stretch stiffness: a rod of linear material is crushed if F >= k1."""
 
 
-def names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
+def parameter_names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
     """All names in `names` except `varied`. names: parameter names, by default the parameters of the
     transverse linear problem.
     """

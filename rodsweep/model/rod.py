@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from .balance import Material, first_component
-from .material.build import STANDARD, Build, LocalCoefficients, Sections
+from .balance import Material, axial_vector
+from .material.build import DEFAULT_BUILD, Build, LocalCoefficients, Sections
 from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
-from .scaling import compression_factor, local_coefficients_at_base
+from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 
 
 class Crushed(ValueError):
@@ -37,10 +37,10 @@ class Coefficients(NamedTuple):
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
     """Coefficients for parameter values by name, floats or arrays (n,) for n rods. Ranges are not checked."""
-    own = local_coefficients_at_base(values)
+    own = stiffnesses_and_drags_at_base(values)
     F = own["F"]
     k1 = own["k1"]
-    return Coefficients(F, compression_factor(F, k1), 1 / own["k2"], own["gamma3"])
+    return Coefficients(F, stretch_of_straight_rod(F, k1), 1 / own["k2"], own["gamma3"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class Rod:
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral_value
     taper: float = PARAMETERS["taper"].neutral_value
-    build: Build = field(default=STANDARD, repr=False)
+    build: Build = field(default=DEFAULT_BUILD, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
     _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)
@@ -69,11 +69,11 @@ class Rod:
         for name, contains in RANGE_CHECKS:
             values[name] = value = getattr(self, name)
             if not contains(value):
-                PARAMETERS[name].require(value)
+                PARAMETERS[name].require_in_range(value)
         # The dataclass is frozen; computed fields are set here only.
         object.__setattr__(self, "values", values)
         coefficients = None
-        if self.build.standard and self.taper == 1:
+        if self.build.is_uniform_and_linear and self.taper == 1:
             # Kernels are compiled for floats; an int would cause another compilation.
             coefficients = Coefficients(*map(float, coefficients_of(values)))
         object.__setattr__(self, "_coefficients", coefficients)
@@ -89,18 +89,18 @@ class Rod:
             raise NotUniform(f"{self} is not a uniform rod of linear material")
         return self._coefficients
 
-    def local(self, u: Array) -> LocalCoefficients:
+    def local_coefficients(self, u: Array) -> LocalCoefficients:
         """Coefficients of the transverse operator at points u, (points,), away from breaks of the profile."""
-        return self.build.local(self.F, local_coefficients_at_base(self.values), u)
+        return self.build.local_coefficients(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
     @staticmethod
-    def local_of_all(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
-        """Results of `local` at points u of n rods with the same build, as arrays (n, *u.shape)."""
+    def local_coefficients_of_rods(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
+        """Results of `local_coefficients` at points u of n rods with the same build, (n, *u.shape)."""
         if len(rods) == 1:
-            return LocalCoefficients(*(x[None] for x in rods[0].local(u)))
+            return LocalCoefficients(*(x[None] for x in rods[0].local_coefficients(u)))
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
-        local = rods[0].build.local(values["F"], local_coefficients_at_base(values), u)
+        local = rods[0].build.local_coefficients(values["F"], stiffnesses_and_drags_at_base(values), u)
         whole = (len(rods), *u.shape)
         return LocalCoefficients(*(x if x.shape == whole else np.broadcast_to(x, whole) for x in local))
 
@@ -112,17 +112,17 @@ class Rod:
     @property
     def least_rotational_drag(self) -> float:
         """Smallest rotational drag along the arm, in gamma2 L^2."""
-        if self.standard:
+        if self.is_uniform_and_linear:
             return self.rotational_drag
-        return self.build.relative_least_drag(self.taper) * self.rotational_drag
+        return self.build.relative_least_rotational_drag(self.taper) * self.rotational_drag
 
     @property
-    def uniform(self) -> bool:
+    def is_uniform(self) -> bool:
         """Whether stiffnesses and drags are constant along the rod."""
         return self.taper == 1 and self.build.profile is None
 
     @property
-    def standard(self) -> bool:
+    def is_uniform_and_linear(self) -> bool:
         """Whether the rod is uniform and of linear material; D then has a closed form."""
         return self._coefficients is not None
 
@@ -133,18 +133,18 @@ class Rod:
         With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients
         (F/K, nu, c2 K, gamma3), and rate = K. Raises NotUniform for an arm that varies.
         """
-        if not self.uniform:
+        if not self.is_uniform:
             raise NotUniform(f"{self} is not uniform")
         law = self.build.constitutive_law
         shortening = float(law.shortening(self.F * self.c1))
         # With the unit K k3 the bending stiffness is 1; the unit of time is then gamma2 L^4/(K k3).
-        K = float(law.bending(1 - shortening))
+        K = float(law.bending_factor(1 - shortening))
         F = self.F / K
         k1 = F / shortening if shortening else self.stretch_stiffness / K
         return Rod(F=F, k1=k1, k2=1 / (self.c2 * K) if self.c2 else inf, gamma3=self.rotational_drag), K
 
     @property
-    def linear(self) -> "Rod":
+    def without_nonlinear_parameters(self) -> "Rod":
         """The rod with the same parameters of the transverse linear problem, and defaults of all other
         parameters.
         """
@@ -156,9 +156,9 @@ class Rod:
 
     def with_coordinate(self, name: str, coordinate: float) -> "Rod":
         """The rod with another coordinate of the parameter `name`; ValueError for an invalid coordinate."""
-        return self.changed(**{name: PARAMETERS[name].value(coordinate)})
+        return self.with_values(**{name: PARAMETERS[name].value(coordinate)})
 
-    def changed(self, **values: float) -> "Rod":
+    def with_values(self, **values: float) -> "Rod":
         """The same rod with the given parameter values, by name. Raises ValueError for an invalid value."""
         # `dataclasses.replace` takes a third longer.
         return Rod(**{**self.values, **values}, build=self.build)
@@ -166,7 +166,7 @@ class Rod:
     @property
     def stretch_stiffness(self) -> float:
         """Stretch stiffness at the base, in k3/L^2; inf for an inextensible rod."""
-        return float(local_coefficients_at_base(self.values)["k1"])
+        return float(stiffnesses_and_drags_at_base(self.values)["k1"])
 
     @property
     def c1(self) -> float:
@@ -176,29 +176,29 @@ class Rod:
     @property
     def c2(self) -> float:
         """Shear compliance 1/k2 at the base, in L^2/k3; 0 for an unshearable rod."""
-        return 1 / float(local_coefficients_at_base(self.values)["k2"])
+        return 1 / float(stiffnesses_and_drags_at_base(self.values)["k2"])
 
     @property
     def nu(self) -> float:
-        """Stretch of the straight uniform rod under its force, nu = 1 - F c1 (Sec. V)."""
+        """Stretch of the straight rod, nu = 1 - F c1 (Sec. V). Raises NotUniform as `coefficients`."""
         return self.coefficients.nu
 
     @property
     def g(self) -> float:
-        """Coupling of shear and rotation, g = nu + F c2 = mu/k2 (Sec. V)."""
+        """Coupling of shear and rotation, g = nu + F c2 = mu/k2 (Sec. V). Raises NotUniform as `nu`."""
         return self.nu + self.F * self.c2
 
     @property
     def rotational_drag(self) -> float:
         """Rotational drag at the base, in gamma2 L^2."""
-        return float(local_coefficients_at_base(self.values)["gamma3"])
+        return float(stiffnesses_and_drags_at_base(self.values)["gamma3"])
 
     @property
     def axial_drag(self) -> float:
         """Axial drag at the base, in gamma2."""
-        return float(local_coefficients_at_base(self.values)["gamma1"])
+        return float(stiffnesses_and_drags_at_base(self.values)["gamma1"])
 
-    def direction(self, name: str) -> Coefficients:
+    def coefficient_derivative(self, name: str) -> Coefficients:
         """Derivative of the affine `coefficients` with respect to the coordinate of the parameter `name`."""
         slopes = self._derivatives_by_coordinate(name)
         F = slopes.get("F", 0.0)
@@ -209,19 +209,19 @@ class Rod:
 
     @property
     def material(self) -> Material:
-        """Coefficients of the nonlinear balance of the uniform rod, for motion in the plane."""
+        """Coefficients of the balance for motion in the plane. Raises NotUniform as `coefficients`."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
-        return Material(compliance, drag, self.F, first_component(self.nu, 3))
+        return Material(compliance, drag, self.F, axial_vector(self.nu, 3))
 
     def sections(self, u: Array) -> Sections:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
-        return self.build.sections(self.F, local_coefficients_at_base(self.values), u)
+        return self.build.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
-    def section_changes(self, name: str, u: Array) -> Sections:
+    def section_derivatives(self, name: str, u: Array) -> Sections:
         """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
         slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
-        return self.build.section_changes(self.sections(u), self.F, self.taper, slopes, u)
+        return self.build.section_derivatives(self.sections(u), self.F, self.taper, slopes, u)
 
     def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
         """Material of the uniform rod in space. twist_stiffness: in k3. twist_drag: in gamma2 L^2."""
@@ -229,15 +229,15 @@ class Rod:
         axial, normal, rotational = self.material.drag
         compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
         drag = np.array([axial, normal, normal, twist_drag, rotational, rotational])
-        return Material(compliance, drag, self.F, first_component(self.nu, 6))
+        return Material(compliance, drag, self.F, axial_vector(self.nu, 6))
 
-    def material_change(self, name: str) -> Material:
+    def material_derivative(self, name: str) -> Material:
         """Derivative of `material` with respect to the coordinate of the parameter `name`."""
         slopes = self._derivatives_by_coordinate(name)
-        F, nu, c2, gamma3 = self.direction(name)
+        F, nu, c2, gamma3 = self.coefficient_derivative(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
-        return Material(compliance, drag, F, first_component(nu, 3))
+        return Material(compliance, drag, F, axial_vector(nu, 3))
 
     def _derivatives_by_coordinate(self, name: str) -> dict[str, float]:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.
@@ -245,6 +245,6 @@ class Rod:
         Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
         compliances and drags are products of coordinates: a derivative is the product of all other factors.
         """
-        others = local_coefficients_at_base({**self.values, name: 1.0})
+        others = stiffnesses_and_drags_at_base({**self.values, name: 1.0})
         changing = PARAMETERS[name].scaled_names or (name,)
         return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}

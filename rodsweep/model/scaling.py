@@ -9,24 +9,24 @@ from typing import Any
 
 import numpy as np
 
-from .parameters import SCALED_COEFFICIENTS
+from .parameters import SCALING_PAIRS
 
 
-def local_coefficients_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
+def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Force, stiffnesses and drags at the base, by name, from the parameter values by name.
 
     A result is the value of the parameter of the same name, times the values of all parameters that multiply
-    this parameter, see `Parameter.scaled_names`.
+    this parameter (`Parameter.scaled_names`). All other values, such as the taper, are passed on unchanged.
     """
-    if not SCALED_COEFFICIENTS:
+    if not SCALING_PAIRS:
         return values
     own = dict(values)
-    for factor, of in SCALED_COEFFICIENTS:
+    for factor, of in SCALING_PAIRS:
         own[of] = own[of] * values[factor]
     return own
 
 
-def compression_factor(F: Any, k1: Any) -> Any:
+def stretch_of_straight_rod(F: Any, k1: Any) -> Any:
     """Stretch nu = 1 - F/k1 of the straight rod of linear material, for floats or arrays (...,).
 
     The formula has no cancellation for F near k1. nu = 1 for k1 = inf.

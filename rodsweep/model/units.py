@@ -12,14 +12,14 @@ from ..errors import EnvironmentIncomplete, InputError
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-Given = float | str
+GivenQuantity = float | str
 """A quantity as the user writes it: a text with a unit, or a number in SI units."""
-NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
+NUMBER_AND_UNIT_PATTERN = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
 """Pattern of a number and a unit, like "10 cm". The unit may be empty."""
-UNIT_TOKEN = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
+UNIT_TOKEN_PATTERN = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
 """Pattern of one token of a unit: a name, an exponent, a product or quotient sign. Only sequences of tokens
 are passed to pint, which would evaluate any other text and might never return."""
-POWER_OF_POWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
+POWER_OF_POWER_PATTERN = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 """Pattern of the start of a power of a power, like 2**2**2, which pint would evaluate."""
 MAX_UNIT_LENGTH = 40
 """Maximum number of characters of a unit. Longer units are refused."""
@@ -27,13 +27,14 @@ CONVERSION_CACHE_SIZE = 1000
 """Maximum number of cached conversion factors. A config has about ten different units."""
 COMMON_UNITS = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units that are suggested if the user's text differs from the unit only in blanks or capital letters."""
-MULTIPLE_OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
+MULTIPLE_OF_FLUTTER_PATTERN = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a multiple of the flutter threshold, "1.2 of flutter" or "120 % of flutter"."""
-PERCENT_FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+PERCENT_FROM_FLUTTER_PATTERN = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
 """Pattern of a load as a distance from the flutter threshold, "20 % above flutter"."""
+
 LOAD_UNITS = ("Pa", "N")
 """SI units of the loads that can be given relative to flutter."""
-KINEMATIC_VISCOSITY = "is a kinematic viscosity; multiply it by the density of the fluid"
+KINEMATIC_VISCOSITY_MESSAGE = "is a kinematic viscosity; multiply it by the density of the fluid"
 """End of the message on a viscosity in units of length^2/time."""
 
 
@@ -56,13 +57,13 @@ def split_quantity(given: str) -> tuple[float, str]:
     In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit is "" if the text has none, and
     not checked.
     """
-    found = NUMBER_AND_UNIT.fullmatch(given)
+    found = NUMBER_AND_UNIT_PATTERN.fullmatch(given)
     if not found:
         return math.nan, ""
     return float(found[1]), found[2].replace("·", "*").replace(".", "*")
 
 
-def in_si(name: str, given: Given, unit: str, example: str) -> float:
+def quantity_in_si(name: str, given: GivenQuantity, unit: str, example: str) -> float:
     """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `given`.
 
     example: a valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity.
@@ -111,7 +112,11 @@ def conversion_factor(subject: str, written: str, unit: str, allowed: str) -> fl
     """
     if written.startswith(","):
         raise InputError(f"{subject} has a decimal comma; write a point")
-    if len(written) > MAX_UNIT_LENGTH or UNIT_TOKEN.sub("", written) or POWER_OF_POWER.search(written):
+    if (
+        len(written) > MAX_UNIT_LENGTH
+        or UNIT_TOKEN_PATTERN.sub("", written)
+        or POWER_OF_POWER_PATTERN.search(written)
+    ):
         raise InputError(
             f"{subject} has the unit '{written[:MAX_UNIT_LENGTH]}', which is not understood; write {allowed}"
         )
@@ -129,7 +134,7 @@ def conversion_factor(subject: str, written: str, unit: str, allowed: str) -> fl
         is_known_unit = "from" in str(error)  # pint: "Cannot convert from ..." for another dimension
         why = f"is not measured in {unit}" if is_known_unit else f"has the unknown unit '{written}'"
         if is_known_unit and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
-            why = KINEMATIC_VISCOSITY
+            why = KINEMATIC_VISCOSITY_MESSAGE
         raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
     except Exception as error:  # pint's parser raises errors of many types for invalid units
         raise InputError(
@@ -156,7 +161,7 @@ def _suggestion(written: str, unit: str) -> str:
     return ""
 
 
-def unit_of(given: Given, default: str) -> str:
+def unit_of(given: GivenQuantity, default: str) -> str:
     """The unit in the text of a quantity; `default` for a number or a text without a unit."""
     return (split_quantity(given)[1] or default) if isinstance(given, str) else default
 
@@ -166,16 +171,18 @@ def value_in_unit(value: float, unit: str, si: str) -> float:
     return value / conversion_factor("", unit, si, "")
 
 
-def share_of_flutter(given: Given) -> float | None:
+def load_over_flutter(given: GivenQuantity) -> float | None:
     """Load divided by the flutter load, from a text like "1.2 of flutter" or "20 % above flutter".
 
-    None for a load that is not given relative to flutter.
+    None for a number, for any other text, and for 100 % or more below flutter.
     """
     if not isinstance(given, str):
         return None
-    if found := MULTIPLE_OF_FLUTTER.fullmatch(given):
+    if found := MULTIPLE_OF_FLUTTER_PATTERN.fullmatch(given):
         return float(found[1]) / (100.0 if found[2] else 1.0)
-    if (found := PERCENT_FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
+    if (found := PERCENT_FROM_FLUTTER_PATTERN.fullmatch(given)) and (
+        found[2] == "above" or float(found[1]) < 100
+    ):
         return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
     return None
 
@@ -183,8 +190,8 @@ def share_of_flutter(given: Given) -> float | None:
 def with_si_prefix(value: float, unit: str) -> tuple[float, str]:
     """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
-    The SI prefix makes the number readable: compact(0.002, "m") is (1000.0, "mm"). For a value that is 0, inf
-    or nan, returns (1.0, `unit`).
+    The SI prefix makes the number readable: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a value that is
+    0, inf or nan, returns (1.0, `unit`).
     """
     if not value or not math.isfinite(value):
         return 1.0, unit

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..model.floquet import min_unstable_multipliers
+from ..model.floquet import min_unstable_count
 from ..model.parameters import PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
@@ -203,7 +203,7 @@ def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch
     ]
     at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
     crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
-    outside = [min_unstable_multipliers(int(count), float(m), float(error)) for count, m, error in crossing]
+    outside = [min_unstable_count(int(count), float(m), float(error)) for count, m, error in crossing]
     counts = [outside[i] if is_cycle else None for is_cycle, i in order]
     is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
     points = tuple(_special_point(v, i) for i in special)

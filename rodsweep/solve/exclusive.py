@@ -24,8 +24,8 @@ from .backend.solver_pools import destroy_pooled_solvers
 P = ParamSpec("P")
 R = TypeVar("R")
 
-_one = RLock()
-_signals = tuple(map(int, signal.valid_signals()))
+_solve_lock = RLock()
+_signal_numbers = tuple(map(int, signal.valid_signals()))
 """Numbers of all signals, listed once because listing takes longer than replacing the handlers."""
 
 
@@ -34,7 +34,7 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with _one:
+        with _solve_lock:
             return function(*values, **named)
 
     return call
@@ -46,7 +46,7 @@ def defer_signals(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
-        with DeferredSignals() as held, reporting_to(held.call_due):
+        with DeferredSignals() as held, reporting_to(held.call_due_handlers):
             return function(*values, **named)
 
     return call
@@ -77,41 +77,41 @@ class DeferredSignals:
 
     def __init__(self) -> None:
         self._handlers: dict[int, Callable[[int, FrameType | None], Any]] = {}
-        self._due: list[int] = []
+        self._due_signals: list[int] = []
 
     def __enter__(self) -> Self:
         if current_thread() is not main_thread():
             return self
         try:
-            for number in _signals:
+            for number in _signal_numbers:
                 handler = getsignal(number)
                 if callable(handler):
                     self._handlers[number] = handler
-                    signal.signal(number, self._note)
+                    signal.signal(number, self._note_signal)
         except BaseException:  # raised by a handler that is not deferred yet
-            self._restore()
+            self._restore_handlers()
             raise
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._restore()
+        self._restore_handlers()
         self._call_handlers()
 
-    def call_due(self, _: PositionMaker) -> None:
+    def call_due_handlers(self, _: PositionMaker) -> None:
         """Calls the handlers of the signals that arrived since the last call; passes on an exception of a
         handler."""
-        if self._due and current_thread() is main_thread():
+        if self._due_signals and current_thread() is main_thread():
             self._call_handlers()
 
-    def _note(self, number: int, _: FrameType | None) -> None:
-        self._due.append(number)
+    def _note_signal(self, number: int, _: FrameType | None) -> None:
+        self._due_signals.append(number)
 
     def _call_handlers(self) -> None:
-        while self._due:
-            number = self._due.pop(0)
+        while self._due_signals:
+            number = self._due_signals.pop(0)
             self._handlers[number](number, inspect.currentframe())
 
-    def _restore(self) -> None:
+    def _restore_handlers(self) -> None:
         for number, handler in self._handlers.items():
-            if getsignal(number) == self._note:  # otherwise a handler has installed another handler
+            if getsignal(number) == self._note_signal:  # otherwise a handler has installed another handler
                 signal.signal(number, handler)

@@ -57,7 +57,7 @@ def warm_up_arms() -> None:
     path = Path(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
     follow_stretch(Stretch(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
-    search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, crossings=1)
+    search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, max_thresholds=1)
     for arm in (SAMPLE_CONE, SAMPLE_SEGMENTS):
         solve_thresholds(arm, search)
     solve_cycle(SAMPLE_SEGMENTS, REFERENCE_REQUEST, None, "F")
@@ -67,7 +67,9 @@ def warm_up_uniform() -> None:
     """Calls each function with arguments of the types used in runs; the values of the arguments have no
     meaning."""
     w = np.ones((1, 2), dtype=complex)
-    stability_change_between((SAMPLE_ROD.coefficients, SAMPLE_ROD.direction("F")), (1.0, 2.0), -w[0], w[0], 2)
+    stability_change_between(
+        (SAMPLE_ROD.coefficients, SAMPLE_ROD.coefficient_derivative("F")), (1.0, 2.0), -w[0], w[0], 2
+    )
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
     states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknowns))

@@ -151,8 +151,8 @@ def estimate_followed(alone: Estimate, stretches: Stretches, points: Points, mod
     """
     share = FIRST_POINT_COST * stretches.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
-    each = FOLLOWED_ARM_POINT_MS if any(not rod.standard for rod in rods) else FOLLOWED_POINT_MS
-    growing = np.array([0.0 if rod.standard else expected_unstable_count(rod) for rod in rods])
+    each = FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
+    growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
     left_alone = np.where(
         growing > modes + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
     )
@@ -178,13 +178,13 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
         return Estimate(0.0)
-    varied = sum(not rod.standard for rod in rods) / len(rods)
+    varied = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
     dense = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
     each = np.where(n <= MIN_SPARSE_UNKNOWNS, dense, SPARSE_MS_PER_UNKNOWN * n) + (
         CERTIFICATE_MS if certify else 0
     )
-    growing = np.array([0.0 if rod.standard else expected_unstable_count(rod) for rod in rods])
+    growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
     each += varied * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
@@ -195,7 +195,7 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
     """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes to the relative
     accuracy `accuracy`.
     """
-    if not rod.standard:
+    if not rod.is_uniform_and_linear:
         return arm_mesh(rod, modes, accuracy).unknowns
     _, wave = most_amplified_wave(rod)
     return resolution_for(expected_wave_number(modes, wave), accuracy).unknowns

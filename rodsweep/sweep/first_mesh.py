@@ -18,7 +18,7 @@ from .points.points import Points
 
 def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
     """Initial mesh for the `modes` leading eigenvalues of a rod; accuracy: relative error due to the mesh."""
-    if not rod.uniform:
+    if not rod.is_uniform:
         return arm_mesh(rod, modes, accuracy)
     _, wave = most_amplified_wave(rod.equivalent_linear_rod[0])
     resolution = resolution_for(expected_wave_number(modes, wave), accuracy)
@@ -51,11 +51,11 @@ def _rods_at_parameter_ends(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod
         named = dict(zip(ends, values, strict=True))
         if "F" in named:
             force = named.pop("F")
-            there = rod.changed(**named)
-            yield there.changed(F=end_below_crushing(there, force))
+            there = rod.with_values(**named)
+            yield there.with_values(F=end_below_crushing(there, force))
             continue
         try:
-            yield rod.changed(**named)
+            yield rod.with_values(**named)
         except ValueError:
             continue
 

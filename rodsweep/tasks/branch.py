@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
     from ..solve.branch.special.point import SpecialPoint
-    from ..solve.changes.unstable_modes import Crossing
+    from ..solve.changes.unstable_modes import Threshold
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
-    after = {crossing.at: crossing for crossing in result.crossings}
+    after = {crossing.value: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
     specials = [
         _special_point_values(one, starts[number - 1], after.get(one.at))
@@ -139,7 +139,7 @@ SPECIAL_POINT_FIELDS = {
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
-def _special_point_values(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
+def _special_point_values(point: "SpecialPoint", start: int, hopf: "Threshold | None") -> dict[str, Any]:
     """Variables of the file for one special point.
 
     start: index, among all cycles of the rod, of the first cycle of the point's branch. hopf: crossing of the

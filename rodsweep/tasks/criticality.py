@@ -61,7 +61,7 @@ def criticality_values(result: "Criticality", most: int) -> dict[str, Any]:
     search = crossing_values(result, most, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
-    pairs = zip(result.coefficients, result.crossings, strict=False)
+    pairs = zip(result.coefficients, result.hopf_points, strict=False)
     rows = [outcome_values(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
-    ends = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
+    ends = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
     return search | ends | value_lists(NORMAL_FORM, rows, most)

@@ -89,10 +89,15 @@ class ModesTask(CertifiedTask):
 def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
-    values = outcome_values(MODE_VARIABLES + POINT_VARIABLES, vectors.resolution, result, result.spectrum)
+    names = {"elements": "element_count"}
+    values = outcome_values(
+        MODE_VARIABLES + POINT_VARIABLES, vectors.resolution, result, result.spectrum, names=names
+    )
     values |= outcome_values(MODE_NUMBERS, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
-    for name, field in zip(fields, (*vectors.right, *vectors.deformation, *vectors.left), strict=True):
+    for name, field in zip(
+        fields, (*vectors.right_modes, *vectors.deformation, *vectors.left_modes), strict=True
+    ):
         values[f"{name}_real"] = field.real
         values[f"{name}_imag"] = field.imag
     if growth:

@@ -58,7 +58,7 @@ class CertifiedTask(Task):
         By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
         imaginary axis.
         """
-        accuracy = mesh_accuracy(ANCHOR_SETTINGS.place_accuracy, vectors=False)
+        accuracy = mesh_accuracy(ANCHOR_SETTINGS.arm_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, ANCHOR_SETTINGS.min_known_modes, accuracy)
@@ -126,7 +126,7 @@ def crushing_clause(config: Config) -> str:
     """
     if config.standard:
         return ", or to just below k1"
-    crushed = np.isfinite(config.build.constitutive_law.largest_load)
+    crushed = np.isfinite(config.build.constitutive_law.crushing_load)
     return ", or to just below the force that crushes the weakest section" * bool(crushed)
 
 

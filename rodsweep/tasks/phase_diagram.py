@@ -113,7 +113,7 @@ class PhaseDiagramTask(CertifiedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod_of_row(index), request),
-            record=lambda index, result: row_values(result, request.name, request.crossings),
+            record=lambda index, result: row_values(result, request.parameter_name, request.max_thresholds),
             joint_variables=curves if options.curves else None,
         )
         if not options.cycles:
@@ -131,7 +131,7 @@ class PhaseDiagramTask(CertifiedTask):
             warm_up=warm_up_branches,
             solve=solve,
             record=lambda index, result: (
-                of_rows.record(index, result.straight_rod_row) | cycles_record(result, request.name)
+                of_rows.record(index, result.straight_rod_row) | cycles_record(result, request.parameter_name)
             ),
         )
 
@@ -147,11 +147,11 @@ class PhaseDiagramTask(CertifiedTask):
 
         options = self.config.phase_diagram
         return RowRequest(
-            name=self.config.plane_parameters[0],
+            parameter_name=self.config.plane_parameters[0],
             values=self.line_values,
             accuracy=self.config.accuracy,
             certify=options.certify,
-            crossings=options.crossings,
+            max_thresholds=options.crossings,
             cycle_accuracy=options.cycle_accuracy,
         )
 
@@ -163,5 +163,5 @@ def row_values(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
     """
     classes = {"class": result.rod_class, "unstable_count": result.unstable_count}
     changes = crossing_values(result.thresholds, most, line, "crossing_at")
-    certified = result.thresholds.transitions.proved_to_the_end
+    certified = result.thresholds.search_result.proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

@@ -54,11 +54,11 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
     """
     from ..discretization.beam import Beam
     from ..solve.cycle.transient.motion_mesh import integrable_rod, motion_mesh
-    from ..solve.motion.fixed_tip import equilibrium_at_tip
+    from ..solve.motion.fixed_tip import bent_state_with_tip_at
 
     rod = job.points.rod(0)
     beam = Beam(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
-    z = np.zeros(beam.unknowns) if tip is None else equilibrium_at_tip(beam, *tip)
+    z = np.zeros(beam.unknowns) if tip is None else bent_state_with_tip_at(beam, *tip)
     shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation_matrix(lobatto_points(NODE_COUNT)).T
     return shape
 

@@ -13,7 +13,7 @@ from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
 from ..discretization.straight.longitudinal_modes import longitudinal_modes
 from ..errors import InputError
-from ..model.longitudinal import longitudinal_rates
+from ..model.longitudinal import longitudinal_eigenvalues
 from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
@@ -81,7 +81,7 @@ class SpectrumTask(CertifiedTask):
         standard = self.config.standard
         variables = longitudinal_variables(gamma1, *along, in_closed_form=standard)
         if standard:
-            rates = [longitudinal_rates(float(k1), gamma1, modes) for k1 in columns["k1"]]
+            rates = [longitudinal_eigenvalues(float(k1), gamma1, modes) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*shape, modes))),)
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
         rods = [dict(zip(columns, each, strict=True)) | {"gamma1": gamma1} for each in values]

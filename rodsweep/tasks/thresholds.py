@@ -66,11 +66,11 @@ class ThresholdsTask(CertifiedTask):
 
 def threshold_values(result: "Thresholds", most: int) -> dict[str, Any]:
     """Variables of the file for the thresholds of a rod; most: length of the list of crossings."""
-    values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
+    values = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
     for kind, number in FIRST_CROSSINGS.items():
         kind_index = CROSSING_KINDS.index(kind)
-        first = next((crossing for crossing in result.crossings if crossing.kind == kind_index), None)
-        for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):
+        first = next((crossing for crossing in result.thresholds if crossing.kind == kind_index), None)
+        for name, field in ((f"F_{kind}", "value"), (f"{kind}_{number}", number)):
             values[name] = getattr(first, field, np.nan)
     return values | crossing_values(result, most, "F", "crossing_F")
 
@@ -80,17 +80,17 @@ def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at
 
     most: length of the list of crossings. at: name of the variable with the parameter value at a crossing.
     """
-    found = result.transitions
+    found = result.search_result
     variables = crossing_variables(line, at)
     rows = [
-        outcome_values(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings
+        outcome_values(variables, each, prefix="crossing_", names={at: "value"}) for each in found.thresholds
     ]
     return value_lists(variables, rows, most) | {
-        "crossing_count": len(found.crossings),
+        "crossing_count": len(found.thresholds),
         "open_from": found.open_range[0],
         "open_to": found.open_range[1],
         "certified": found.proved,
-        "boxes": found.box_count,
+        "boxes": found.evaluation_count,
         "solves": found.solve_count,
         "seconds": result.seconds,
         "status": int(result.status),

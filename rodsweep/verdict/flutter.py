@@ -8,11 +8,11 @@ from math import inf, pi
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
-from ..solve.changes.unstable_modes import ChangeKind, Crossing
+from ..solve.changes.unstable_modes import ChangeKind, Threshold
 from ..solve.exclusive import exclusive_solve
 from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
 
-SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, crossings=1000)
+SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
 MIN_SEARCH_RATIO = 2.0
 """For an arm that is not uniform or not of linear material, the search is extended until its largest force is
@@ -52,15 +52,15 @@ class ThresholdsWithDrag:
         """
         found = self.thresholds
         accuracy = SEARCH_REQUEST.accuracy
-        if any(c.error > accuracy * abs(c.at) for c in found.crossings if c.kind in KINDS_OF_VERDICT):
+        if any(c.error > accuracy * abs(c.value) for c in found.thresholds if c.kind in KINDS_OF_VERDICT):
             return f"a threshold misses the relative accuracy of {accuracy:g}"
-        if found.transitions.proved:
+        if found.search_result.proved:
             return ""
         return found.message or "the list of thresholds is not proved complete"
 
-    def first_threshold(self, kind: ChangeKind) -> Crossing | None:
+    def first_threshold(self, kind: ChangeKind) -> Threshold | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
-        return next((c for c in self.thresholds.crossings if c.kind == kind), None)
+        return next((c for c in self.thresholds.thresholds if c.kind == kind), None)
 
     def first_frequency(self, kind: ChangeKind) -> float | None:
         """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
@@ -70,28 +70,28 @@ class ThresholdsWithDrag:
     def first_force(self, kind: ChangeKind) -> float | None:
         """Force, in k3/L^2, at the first threshold of the given kind; None if no threshold has this kind."""
         found = self.first_threshold(kind)
-        return None if found is None else found.at
+        return None if found is None else found.value
 
     @property
     def second_flutter_force(self) -> float | None:
         """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if it does
         not."""
         back = self.first_force(ChangeKind.restabilization)
-        later = (c.at for c in self.thresholds.crossings if c.kind == ChangeKind.hopf)
+        later = (c.value for c in self.thresholds.thresholds if c.kind == ChangeKind.hopf)
         return None if back is None else next((F for F in later if back < F), None)
 
     def is_unstable_at(self, F: float) -> bool:
         """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
         stability at this end is returned.
         """
-        before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
+        before = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
         return bool(before) and before[-1] != 0
 
     def up_to(self, end: float) -> "ThresholdsWithDrag":
         """A copy without the thresholds at forces larger than `end`."""
         found = self.thresholds
-        crossings = tuple(c for c in found.crossings if c.at <= end)
-        cut = replace(found, transitions=replace(found.transitions, crossings=crossings), end=end)
+        crossings = tuple(c for c in found.thresholds if c.value <= end)
+        cut = replace(found, search_result=replace(found.search_result, thresholds=crossings), end=end)
         return replace(self, thresholds=cut)
 
 

@@ -99,9 +99,9 @@ def first_hopf_force(rod: Rod) -> float:
     overflows or cannot exclude a Hopf point at a smaller F.
     """
     path = Path(rod, "F")
-    first_up_to = _first_hopf_force_by_boxes if rod.standard else _first_hopf_force_of_varied
+    first_up_to = _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varied
     try:
-        for end in (FIRST_SEARCH_END, SEARCH_END) if rod.standard else SEARCH_ENDS_OF_VARIED:
+        for end in (FIRST_SEARCH_END, SEARCH_END) if rod.is_uniform_and_linear else SEARCH_ENDS_OF_VARIED:
             first = first_up_to(path, end_below_crushing(rod, end))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")
@@ -138,17 +138,17 @@ def _first_hopf_force_of_varied(path: Path, end: float) -> float:
     smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Raises
     FlutterSearchFailed if the search along F fails or a smaller F is not excluded.
     """
-    from ..solve.changes.along_path import pair_crossings
+    from ..solve.changes.along_path import find_axis_crossings
     from ..solve.point import FAILURES, cause_of
 
     try:
-        found = pair_crossings(path, 0.0, end)
+        found = find_axis_crossings(path, 0.0, end)
     except FAILURES as error:
         raise FlutterSearchFailed(
             f"the search for the flutter threshold to which a relative load refers fails: {cause_of(error)}"
         ) from error
     first = min(
-        (crossing.at for crossing in found.crossings if crossing.kind == ChangeKind.hopf), default=inf
+        (crossing.value for crossing in found.thresholds if crossing.kind == ChangeKind.hopf), default=inf
     )
     if not found.proved or (found.ended_early and first == inf):
         raise FlutterSearchFailed(

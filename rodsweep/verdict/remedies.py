@@ -51,7 +51,7 @@ def excess_text(effect: Effect) -> str:
     """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
     FOUR_DIGIT_EXCESS.
     """
-    excess = float(effect.excess)
+    excess = float(effect.value_over_limit)
     return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
 
 
@@ -62,7 +62,7 @@ def _first_effect_of_each_kind(effects: list[Effect]) -> list[Effect]:
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     """Clause that names the change of arm, fluid or load by which the effect is reduced to its limit."""
-    share = float(1 / effect.excess)
+    share = float(1 / effect.value_over_limit)
     if effect_kind(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
     if effect_kind(effect) == "weight":

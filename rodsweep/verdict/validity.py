@@ -12,13 +12,13 @@ from ..model.arm.neglected import (
     Effect,
     Validity,
     compression_effect,
+    equivalent_base_force,
     largest_angular_frequency,
     neglected_effects,
-    weakest_section_force,
     worst_validity,
 )
-from ..model.arm.quantities import LOADS, SECTION_SIDES
-from ..solve.changes.unstable_modes import ChangeKind, Crossing
+from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
+from ..solve.changes.unstable_modes import ChangeKind, Threshold
 from ..solve.exclusive import exclusive_solve
 from .flutter import ThresholdsOverDrags, thresholds_with_drag
 
@@ -59,7 +59,7 @@ class Assessment:
         return (
             ()
             if self.arm.load is None
-            else (compression_effect(self.arm, weakest_section_force(self.arm, self.arm.F)),)
+            else (compression_effect(self.arm, equivalent_base_force(self.arm, self.arm.F)),)
         )
 
     @property
@@ -68,7 +68,7 @@ class Assessment:
         arm flutters for no drag.
         """
         first = first_hopf_point(self.thresholds)
-        return None if first is None else first.at
+        return None if first is None else first.value
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -90,10 +90,10 @@ class Assessment:
         on cycles alone are left out.
         """
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
-        return sorted(counted, key=lambda effect: -float(effect.excess))
+        return sorted(counted, key=lambda effect: -float(effect.value_over_limit))
 
 
-def first_hopf_point(found: ThresholdsOverDrags) -> Crossing | None:
+def first_hopf_point(found: ThresholdsOverDrags) -> Threshold | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if the arm flutters for no
     drag.
     """
@@ -109,7 +109,7 @@ def effects_at_flutter(arm: SlenderArm, found: ThresholdsOverDrags) -> tuple[Eff
     if first is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
-        arm, largest_angular_frequency(arm, abs(first.frequency)), weakest_section_force(arm, first.at)
+        arm, largest_angular_frequency(arm, abs(first.frequency)), equivalent_base_force(arm, first.value)
     )
 
 
@@ -147,7 +147,7 @@ def thickness_factor(arm: SlenderArm) -> float:
 
 def _with_scaled_section(arm: SlenderArm, factor: float) -> SlenderArm:
     """The uniform arm `arm` without its load, with all sides of the section multiplied by `factor`."""
-    left_out = {*LOADS, *chain(*SECTION_SIDES)}
+    left_out = {*LOADS, *chain(*SECTION_SIZE_NAMES)}
     others = {
         name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in left_out
     }

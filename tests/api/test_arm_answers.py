@@ -20,7 +20,7 @@ def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
     arm = rs.Arm(**THICK)
     answer = arm.thresholds()
     flutter = arm.flutter.by_drag[0].first_threshold(ChangeKind.hopf)
-    assert answer.F_hopf == pytest.approx(flutter.at, rel=1e-6)
+    assert answer.F_hopf == pytest.approx(flutter.value, rel=1e-6)
     assert answer.data["F_hopf"].size == 1
     loaded = rs.Arm(**THICK, pressure="1 kPa").thresholds()
     assert loaded.F_hopf == answer.F_hopf

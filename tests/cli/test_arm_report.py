@@ -167,17 +167,17 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     )
     first, found = plane[0], plane[1].flutter
     hopf = found.by_drag[0].first_threshold(ChangeKind.hopf)
-    effects = neglected_effects(first, largest_angular_frequency(first, abs(hopf.frequency)), hopf.at)
+    effects = neglected_effects(first, largest_angular_frequency(first, abs(hopf.frequency)), hopf.value)
     worst = int(worst_validity(effects, of_cycles=False))
     if arm.share_of_flutter is not None:
-        share = arm.share_of_flutter * hopf.at / first.k1
+        share = arm.share_of_flutter * hopf.value / first.k1
         worst = max(worst, 2 if share > 0.1 else 1 if share > 0.01 else 0)
     assert report.validity == worst
     assert report.verdict[0].startswith("The model does not apply") == (worst == 2)
     assert bool(report.warnings) == (worst == 1)
     if worst < 2 and arm.share_of_flutter is not None:
         spans = found.first_forces(ChangeKind.hopf)
-        at = arm.share_of_flutter * hopf.at
+        at = arm.share_of_flutter * hopf.value
         words = "stays straight" if at < spans.low else "drag decides" if at < spans.high else "the arm beats"
         assert words in report.verdict[0]
 

@@ -52,7 +52,7 @@ def by_ode(rod, w):
     columns[2, 0] = columns[3, 1] = 1.0
 
     def rates(u, x):
-        nu, c2, c3, gamma2, gamma3, g = (values[0] for values in rod.local(np.array([u])))
+        nu, c2, c3, gamma2, gamma3, g = (values[0] for values in rod.local_coefficients(np.array([u])))
         y, theta, s, m = x.reshape(4, 2)
         rows = nu * theta + c2 * s, c3 * m, w * gamma2 * y + rod.F * c3 * m, w * gamma3 * theta - g * s
         return np.concatenate(rows)

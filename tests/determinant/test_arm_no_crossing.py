@@ -5,7 +5,7 @@ import pytest
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
+from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
 from rodsweep.determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.solve.spectrum.path.arm_stretch import follow_interval
@@ -18,7 +18,7 @@ CHANGES = {"F": 0.6, "k1": 1.4, "k2": 1.4, "gamma3": 2.0, "taper": 1.2}
 
 def proves(path, found, line, ends, kept):
     """Whether no eigenvalue but those kept, by index, is proved to lie on a line between two points."""
-    points = sampled_points(*ends)
+    points = sampled_point_indices(*ends)
     known = found.track.w[points][:, kept], found.track.error[points][:, kept]
     rods = [path.rod_at(p) for p in found.p[points].tolist()]
     return proves_no_crossing(line, rods, found.p[points], known, found.family, found.hulls)
@@ -31,7 +31,7 @@ def followed_path(rng):
         name = str(rng.choice(list(CHANGES)))
         path = Path(rod, name)
         ends = np.array([1.0, CHANGES[name]]) * getattr(rod, name)
-        p = np.linspace(*(1 / ends if path.is_compliance else ends), 64)
+        p = np.linspace(*(1 / ends if path.is_compliance_path else ends), 64)
         try:
             found = follow_interval(path, p, REQUEST)
         except ValueError:  # crushed before the end of the path

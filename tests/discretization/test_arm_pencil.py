@@ -76,7 +76,7 @@ def test_mesh_ends_elements_at_breaks_and_gets_finer():
 def test_values_at_points_are_those_of_the_polynomials():
     pencil = ArmPencil(ArmMesh((0.0, 0.3, 1.0), 6))
     points = np.linspace(0, 1, 17)
-    nodal = pencil.positions**5
+    nodal = pencil.node_positions**5
     np.testing.assert_allclose(pencil.evaluation_matrix(points) @ nodal, points**5, atol=1e-14)
 
 
@@ -88,4 +88,4 @@ def test_coefficients_are_sampled_at_the_nodes_and_on_their_own_side_of_a_jump()
     assert (np.diff(points) > 0).all()
     assert (points[:, 0] > edges[:-1]).all()
     assert (points[:, -1] < edges[1:]).all()
-    assert np.abs(points.ravel() - mesh.positions[mesh.element_nodes].ravel()).max() < 2e-15
+    assert np.abs(points.ravel() - mesh.node_positions[mesh.element_nodes].ravel()).max() < 2e-15

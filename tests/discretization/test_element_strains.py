@@ -29,7 +29,7 @@ def arm(order, names=LINEAR_ARM, **values):
 
 
 def smooth_state(form):
-    u = form.mesh.positions
+    u = form.mesh.node_positions
     return form.layout.state(np.array([field(u) for field in FIELDS.values()]), np.zeros((3, len(u))))
 
 

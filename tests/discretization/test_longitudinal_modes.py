@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
-from rodsweep.model.longitudinal import longitudinal_rates
+from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -47,11 +47,15 @@ def tip_stress(rod, w):
 
 def test_uniform_arms_have_the_closed_form():
     linear = Rod(F=3.0, k1=100.0, k2=50.0, gamma3=0.1, gamma1=0.7)
-    assert longitudinal_modes(linear, 8)[0] == pytest.approx(longitudinal_rates(100.0, 0.7, 8), rel=1e-13)
+    assert longitudinal_modes(linear, 8)[0] == pytest.approx(
+        longitudinal_eigenvalues(100.0, 0.7, 8), rel=1e-13
+    )
     rubber = Rod(F=30.0, k1=100.0, k2=50.0, gamma3=0.1, build=Build(law="neo_hookean"))
     (nu,) = np.roots([1, 3 * 0.3, 0, -1])[np.isreal(np.roots([1, 0.9, 0, -1]))].real
     tangent = 100.0 * (1 + 2 / nu**3) / 3
-    assert longitudinal_modes(rubber, 3)[0] == pytest.approx(longitudinal_rates(tangent, 1.0, 3), rel=1e-12)
+    assert longitudinal_modes(rubber, 3)[0] == pytest.approx(
+        longitudinal_eigenvalues(tangent, 1.0, 3), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -12,7 +12,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
-from rodsweep.model.longitudinal import longitudinal_rates
+from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 
 INF = np.inf
@@ -79,7 +79,7 @@ def test_spectrum_is_that_of_the_determinant(reference_spectra, group, gamma3, e
     rods = list(roots(reference_spectra, group, gamma3))[:12]
     assert len(rods) >= 5
     for rod, exact in rods:
-        found = finite_eigenvalues(mixed_form(rod.changed(gamma1=GAMMA1), elements, order))
+        found = finite_eigenvalues(mixed_form(rod.with_values(gamma1=GAMMA1), elements, order))
         for w in exact:
             assert np.abs(found - w).min() <= 1e-12 * abs(w)
 
@@ -91,15 +91,15 @@ def test_reference_holds_filaments_and_rods_that_shear_without_rotational_drag(r
 
 
 def test_longitudinal_modes_are_in_the_spectrum():
-    found = finite_eigenvalues(mixed_form(SOFT.changed(gamma1=GAMMA1), 1, 24))
-    for rate in longitudinal_rates(SOFT.k1, GAMMA1, 3):
+    found = finite_eigenvalues(mixed_form(SOFT.with_values(gamma1=GAMMA1), 1, 24))
+    for rate in longitudinal_eigenvalues(SOFT.k1, GAMMA1, 3):
         assert np.abs(found - rate).min() <= 1e-11 * abs(rate)
 
 
 @RODS
 def test_A_is_affine_in_F_with_the_slope_A_F(rod):
-    here = mixed_form(rod.changed(gamma1=GAMMA1), 2, 6)
-    there = mixed_form((replace(rod, F=rod.F - 7.5)).changed(gamma1=GAMMA1), 2, 6)
+    here = mixed_form(rod.with_values(gamma1=GAMMA1), 2, 6)
+    there = mixed_form((replace(rod, F=rod.F - 7.5)).with_values(gamma1=GAMMA1), 2, 6)
     A_F = here.times_force_derivative_of_A(np.eye(here.unknowns)).T
     assert np.abs(here.A - 7.5 * A_F - there.A).max() <= 1e-14 * np.abs(here.A).max()
     assert np.abs(A_F).max() > 0
@@ -108,7 +108,7 @@ def test_A_is_affine_in_F_with_the_slope_A_F(rod):
 @RODS
 @MESHES
 def test_straight_rod_is_at_rest_and_its_mirror_images_move_as_such(rod, elements, order):
-    form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
     assert np.abs(mixed.rate(form, np.zeros(form.unknowns))).max() == 0
     X, R = some_state(form), form.reflection_signs
     assert mixed.rate(form, R * X) == pytest.approx(R * mixed.rate(form, X), rel=1e-13, abs=1e-10)
@@ -120,7 +120,7 @@ def test_straight_rod_is_at_rest_and_its_mirror_images_move_as_such(rod, element
 @RODS
 @MESHES
 def test_bilinear_form_is_symmetric_and_linear(rod, elements, order):
-    form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
     X, Y, Z = (some_state(form, seed, imaginary=True) for seed in (1, 2, 3))
     close = {"rel": 1e-12, "abs": 1e-9}
     assert form.bilinear(X, Y) == pytest.approx(form.bilinear(Y, X), **close)
@@ -133,7 +133,7 @@ def test_bilinear_form_is_symmetric_and_linear(rod, elements, order):
 @RODS
 @MESHES
 def test_jacobian_is_the_derivative_of_the_rate(rod, elements, order):
-    form, step = mixed_form(rod.changed(gamma1=GAMMA1), elements, order), 1e-30
+    form, step = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order), 1e-30
     X = some_state(form)
     J = mixed.jacobian(form, X)
     for k, direction in enumerate(1j * step * np.eye(form.unknowns)):
@@ -145,8 +145,8 @@ def test_jacobian_is_the_derivative_of_the_rate(rod, elements, order):
 def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
     """By the derivative within each element, of whose residuals those of shared nodes are the sum."""
     form, material = (
-        mixed_form(SOFT.changed(gamma1=GAMMA1), elements, order),
-        SOFT.changed(gamma1=GAMMA1).material,
+        mixed_form(SOFT.with_values(gamma1=GAMMA1), elements, order),
+        SOFT.with_values(gamma1=GAMMA1).material,
     )
     X = some_state(form)
     S, V = form.stresses_and_velocities(X)
@@ -176,8 +176,8 @@ def test_derivative_is_summed_by_parts(elements, order):
     )
     ends[0, 0], ends[-1, -1] = -1, 1
     assert np.abs(WD + WD.T - ends).max() <= 1e-13
-    form = mixed_form(FILAMENT.changed(gamma1=GAMMA1), elements, order)
-    u, W = form.mesh.positions, form.mesh.quadrature
+    form = mixed_form(FILAMENT.with_values(gamma1=GAMMA1), elements, order)
+    u, W = form.mesh.node_positions, form.mesh.quadrature
     assert WD @ u**order == pytest.approx(W * order * u ** (order - 1), abs=1e-13)
 
 
@@ -185,7 +185,7 @@ def test_derivative_is_summed_by_parts(elements, order):
 @pytest.mark.parametrize("rod", [STIFF, SOFT, Rod(F=-20.0, k1=30.0, k2=20.0, gamma3=0.5)])
 @MESHES
 def test_energy_law_holds_on_the_mesh_to_rounding(rod, elements, order):
-    form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
     X = consistent(form, some_state(form))
     equation, stresses = mixed.rate(form, X), slice(form.stress_count)
     change = np.zeros(form.unknowns)
@@ -198,7 +198,7 @@ def test_energy_law_holds_on_the_mesh_to_rounding(rod, elements, order):
 
 @MESHES
 def test_consistent_velocities_satisfy_their_equation(elements, order):
-    form = mixed_form(SOFT.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(SOFT.with_values(gamma1=GAMMA1), elements, order)
     X = some_state(form)
     moving = consistent(form, X)
     left = mixed.rate(form, moving)[form.stress_count :]
@@ -210,11 +210,11 @@ def test_consistent_velocities_satisfy_their_equation(elements, order):
 @pytest.mark.parametrize("rod", [STIFF, SOFT, Rod(F=-20.0, k1=30.0, k2=20.0, gamma3=0.5)])
 @MESHES
 def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, order):
-    form = mixed_form(rod.changed(gamma1=GAMMA1), elements, order)
+    form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
     root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count)
     X = consistent(form, some_state(form))
     z = root * X[: form.stress_count]
-    expected = Beam(rod.changed(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(z)
+    expected = Beam(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(z)
     rate = root * mixed.rate(form, X)[: form.stress_count] / form.M[: form.stress_count]
     assert rate == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
 
@@ -223,10 +223,13 @@ def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, 
 @pytest.mark.parametrize("elements, order", [(1, 24), (3, 10)])
 def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, order):
     form, beam = (
-        mixed_form(rod.changed(gamma1=GAMMA1), elements, order),
-        Beam(rod.changed(gamma1=GAMMA1), uniform_mesh(elements, order)),
+        mixed_form(rod.with_values(gamma1=GAMMA1), elements, order),
+        Beam(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)),
     )
-    u, root = form.mesh.positions[:-1], np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count)
+    u, root = (
+        form.mesh.node_positions[:-1],
+        np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count),
+    )
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
     exact = beam.tip_velocity(np.zeros(beam.layout.unknowns), root * S)[1]
     assert form.tip_y_row @ np.append(S, np.zeros(form.unknowns - len(S))) == pytest.approx(exact, rel=1e-12)
@@ -235,9 +238,9 @@ def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, ord
 @RODS
 def test_tip_of_a_small_motion_moves_with_the_reaction(rod):
     """dy/dt = -r2 to first order, exactly on every mesh; derivative of the first equation under the row."""
-    form = mixed_form(rod.changed(gamma1=GAMMA1), 2, 8)
+    form = mixed_form(rod.with_values(gamma1=GAMMA1), 2, 8)
     X = 1j * 1e-30 * some_state(form)
-    u = form.mesh.positions[:-1]
+    u = form.mesh.node_positions[:-1]
     test = np.concatenate([0 * u, 1 + 0 * u, rod.nu * (1 - u)])  # tip_y = test W C
     assert form.tip_y_row[: form.stress_count] == pytest.approx(test * form.M[: form.stress_count], rel=1e-14)
     rate = test @ mixed.rate(form, X).imag[: form.stress_count]
@@ -246,7 +249,7 @@ def test_tip_of_a_small_motion_moves_with_the_reaction(rod):
 
 def test_clamp_and_tip_are_met_in_the_limit():
     """V(0) = 0 is natural and r(V) tends to -V(1): both by the leading mode."""
-    form = mixed_form(SOFT.changed(gamma1=GAMMA1), 1, 26)
+    form = mixed_form(SOFT.with_values(gamma1=GAMMA1), 1, 26)
     values, vectors = np.linalg.eig(np.linalg.solve(form.A, np.diag(form.M)))
     X = vectors[:, np.argmax(values.real)]  # of 1/w: the one that grows
     _, V = form.stresses_and_velocities(X)

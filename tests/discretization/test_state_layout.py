@@ -29,8 +29,8 @@ def states(layout, *many):
 def test_a_state_is_made_of_its_fields_and_taken_apart_again(layout, many):
     x = states(layout, *many)
     S, known = layout.stresses(x), layout.velocities(x)
-    assert S.shape == (layout.components, *many, layout.nodes + 1)
-    assert known.shape == (len(layout.unknown_velocities), *many, layout.nodes + 1)
+    assert S.shape == (layout.components, *many, layout.node_count + 1)
+    assert known.shape == (len(layout.unknown_velocities), *many, layout.node_count + 1)
     assert not S[..., -1].any()
     V = np.full(S.shape, np.nan)
     V[list(layout.unknown_velocities)] = known

@@ -343,7 +343,7 @@ def load_changes() -> None:
     from rodsweep.model.rod import Rod
 
     rod, w = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), np.ones(1, complex)
-    stability_change_between((rod.coefficients, rod.direction("F")), (1.0, 2.0), -w, w, 2)
+    stability_change_between((rod.coefficients, rod.coefficient_derivative("F")), (1.0, 2.0), -w, w, 2)
 
 
 def load_arms() -> None:
@@ -363,8 +363,8 @@ def find_provenance(solving: bool) -> None:
     if solving:
         from rodsweep.solve.backend import blas_kernel
 
-        blas_kernel.blas = cache(blas_kernel.blas)
-        blas_kernel.blas()
+        blas_kernel.blas_description = cache(blas_kernel.blas_description)
+        blas_kernel.blas_description()
 
 
 def draw() -> None:

@@ -12,7 +12,7 @@ from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAGS
+from rodsweep.model.arm.drag import DRAG_NAMES
 from rodsweep.model.arm.neglected import (
     CURVATURE_OVER_AMPLITUDE,
     DOUBTFUL_RATIO,
@@ -132,7 +132,7 @@ def quantities_at_points(view):
 def arm_of(q):
     """The arm of quantities at a point."""
     given = {n: x for n, x in q.items() if not np.isnan(x) and n != "drag" and not n.endswith("over_flutter")}
-    return SlenderArm(**given, drag=DRAGS[int(q.get("drag", 0))])
+    return SlenderArm(**given, drag=DRAG_NAMES[int(q.get("drag", 0))])
 
 
 def in_si(view):
@@ -215,7 +215,7 @@ def _thresholds(view, page, scales):
         changes = changes_on_lines(view, "F")
         for start, kind in SAID.items():
             of_kind = [(c, i) for _, c, at in changes if c.kind.name == kind for i in at]
-            loads = [c.at * to_load[i] for c, i in of_kind]
+            loads = [c.value * to_load[i] for c, i in of_kind]
             hertz = [c.frequency * to_hertz[i] for c, i in of_kind]
             pattern = rf"^{start} {value}(?: on)?(?:, where it begins to beat at {value})?$"
             found += [(line, _in_units(match.groups(), loads, hertz)) for line, match in read(page, pattern)]
@@ -226,12 +226,12 @@ def _thresholds(view, page, scales):
     every = [changes_over_force(rod, top) for rod, top in zip(rods, _tops(view), strict=True)]
     for line, match in read(page, rf"^(\w+) at {value}: .*?(?:; frequency {value})?$"):
         unit = UNITS[match[3]]
-        near = min(every[0], key=lambda c: abs(c.at * to_load[0] / unit - float(match[2])))
-        why = _in_units(match.groups()[1:], [near.at * to_load[0]], [near.frequency * to_hertz[0]])
+        near = min(every[0], key=lambda c: abs(c.value * to_load[0] / unit - float(match[2])))
+        why = _in_units(match.groups()[1:], [near.value * to_load[0]], [near.frequency * to_hertz[0]])
         found.append((line, why if near.kind.name == match[1] else f"it is {near.kind.name}"))
     for line, match in read(page, rf"^(\w+): on (?:all )?NUMBER (?:of NUMBER )?rows?, at {value}$"):
         of_kind = [
-            [c.at * to_load[i] for c in each if c.kind.name == match[1]] for i, each in enumerate(every)
+            [c.value * to_load[i] for c in each if c.kind.name == match[1]] for i, each in enumerate(every)
         ]
         having = sum(map(bool, of_kind))
         why = [] if (int(match[2]), int(match[3] or having)) == (having, len(rods)) else [f"on {having}"]
@@ -269,7 +269,7 @@ def _first(view, scales, kind):
         to_hertz = 1 / (2 * pi * scales["tau2"][i])
         nothing = (np.nan, np.nan)
         found.append(
-            (first.at * scales[force_unit(view)][i], first.frequency * to_hertz) if first else nothing
+            (first.value * scales[force_unit(view)][i], first.frequency * to_hertz) if first else nothing
         )
     return np.array(found).T
 
@@ -290,7 +290,7 @@ def region_as_stated(view, text, mask):
     for item in text.split(", "):
         if match := re.fullmatch(r"drag (.*)", item):
             name = "drag"
-            names = {DRAGS[int(x)].replace("_", " ") for x in columns[name][mask]}
+            names = {DRAG_NAMES[int(x)].replace("_", " ") for x in columns[name][mask]}
             why += [] if set(match[1].split(" and ")) == names else [f"drags {names}"]
         elif match := re.fullmatch(rf"({NUMBER}(?: to {NUMBER})?) of flutter", item):
             name = next(name for name in columns if name.endswith("over_flutter"))
@@ -322,7 +322,7 @@ def _drag_sentences(view, page, start, chosen, numbers):
     found, alike = [], _alike_but_for_drag(view)
     sentence = rf"{start}the results of an arm vary over the NUMBER drags of its range: (.*)$"
     for line, match in read(page, sentence):
-        why = [] if int(match[1]) == len(DRAGS) else ["drags"]
+        why = [] if int(match[1]) == len(DRAG_NAMES) else ["drags"]
         items = re.findall(
             rf"([a-z ]+?) by (up to )?(?:({NUMBER}) %|a factor of ({NUMBER}))(?:, |$)", match[2]
         )
@@ -462,7 +462,7 @@ def _validity_line(view, page, fine):
             effects = neglected_effects(arm, largest_angular_frequency(arm, rate), F, amplitude=amplitude)
         of = [e for e in effects if cycles or not e.of_cycles_only]
         applies.append(int(np.max(worst_validity(effects, of_cycles=cycles))))
-        excess.append(max(float(np.nanmax(np.append(e.excess, -1.0))) for e in of))
+        excess.append(max(float(np.nanmax(np.append(e.value_over_limit, -1.0))) for e in of))
     found, count = [], len(excess)
     for line, match in read(
         page,
@@ -503,7 +503,7 @@ def _motion(view, fine, i):
         rod = rod_of(0.0, *(float(columns[name][i]) for name in ("k1", "k2", "gamma3")))
         hopf = next((c for c in changes_over_force(rod, top) if c.kind.name == "hopf"), None)
         return (
-            (hopf.frequency, hopf.at, LARGE_AMPLITUDE, False)
+            (hopf.frequency, hopf.value, LARGE_AMPLITUDE, False)
             if hopf
             else (np.nan, np.nan, LARGE_AMPLITUDE, False)
         )
@@ -586,7 +586,7 @@ class ArmTruth:
             crossings = changes_over_force(Rod(F=0.0, k1=k1, k2=k2, gamma3=ratio), 1000.0)
             for kind in ("hopf", "onset", "restabilization"):
                 first = next((c for c in crossings if c.kind.name == kind), None)
-                found[kind].append(first.at if first else np.nan)
+                found[kind].append(first.value if first else np.nan)
                 if kind == "hopf":
                     tau2 = gamma2 * length**4 / k3
                     found["hertz"].append(abs(first.frequency) / (2 * pi * tau2) if first else np.nan)
@@ -684,7 +684,7 @@ class ArmTruth:
         effects = self._effects()
         for line, match in read(page, r"(?:: |^)([A-Za-z ]+) is NUMBER times what the model allows"):
             name = match[1].strip().lower()
-            excess = max((float(e.excess) for e in effects if e.name == name), default=np.nan)
+            excess = max((float(e.value_over_limit) for e in effects if e.name == name), default=np.nan)
             off = abs(float(match[2]) - excess) > TWO_DIGITS * excess
             found.append((line, f"{name} is {excess}" if off else ""))
         for line, match in read(page, rf"at least NUMBER times as viscous \(NUMBER ({UNIT})\)"):
@@ -700,7 +700,7 @@ class ArmTruth:
         for line, match in read(page, r"within NUMBER (\S+) of the fluid's"):
             q = self.q | {"density_difference": float(match[1]) * UNITS.get(match[2], 1.0)}
             weight = next(
-                float(e.excess)
+                float(e.value_over_limit)
                 for e in neglected_effects(SlenderArm(**q), np.nan, np.nan)
                 if e.name == "weight"
             )
@@ -740,7 +740,9 @@ class ArmTruth:
         arm = SlenderArm(**q)
         rate = 2 * pi * flutter["hertz"][0] * drags_of(q)[0][1] / min(d[1] for d in drags_of(q))
         return max(
-            float(e.excess) for e in neglected_effects(arm, rate, flutter["hopf"][0]) if "inertia" in e.name
+            float(e.value_over_limit)
+            for e in neglected_effects(arm, rate, flutter["hopf"][0])
+            if "inertia" in e.name
         )
 
     def _effects(self):

@@ -89,7 +89,7 @@ def _amplitudes(d, view, fine):
     hopf = {"F**": [], "restabilization": []}
     for _, c, _ in changes_on_lines(view, "F") if x == "F" else ():
         if c.kind.name != "onset":
-            hopf["F**" if c.kind.name == "hopf" else "restabilization"].append(c.at)
+            hopf["F**" if c.kind.name == "hopf" else "restabilization"].append(c.value)
     low, high = columns[x].min(), columns[x].max()
     hopf = {word: [at for at in places if low <= at <= high] for word, places in hopf.items()}
     for axes in d.panels:

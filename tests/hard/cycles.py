@@ -57,7 +57,7 @@ def first_hopf(k1, k2, gamma3):
         Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3),
         ThresholdsRequest(min(0.9999 * k1, MOST_FORCE), 1e-11, False, 6),
     )
-    return next((c.at for c in found.crossings if c.kind.name == "hopf"), None)
+    return next((c.value for c in found.thresholds if c.kind.name == "hopf"), None)
 
 
 def cycle_of(case) -> RefinedCycle | None:

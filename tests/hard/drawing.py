@@ -375,6 +375,6 @@ def first_forces(view):
     """The first force of each kind of every rod, nan without: {kind: (rods,)}."""
     every = [changes_to(rod, top) for rod, top in unloaded(view)]
     return {
-        kind: np.array([next((c.at for c in each if c.kind.name == kind), np.nan) for each in every])
+        kind: np.array([next((c.value for c in each if c.kind.name == kind), np.nan) for each in every])
         for kind in CRITICAL.values()
     }

@@ -395,7 +395,7 @@ def thresholds_sentences(view, page, keywords, _):
         ("onset", r"F\* \(straight", "growth rate"),
     ):
         first = [next((c for c in each if c.kind.name == kind), None) for each in every]
-        F = np.array([c.at if c else np.nan for c in first])
+        F = np.array([c.value if c else np.nan for c in first])
         beside = np.array(
             [(c.growth_rate if kind == "onset" else c.frequency) if c else np.nan for c in first]
         )
@@ -452,22 +452,22 @@ def _crossing_sentences(rod, crossings, page):
         r"^(onset|hopf|hopf_reverse|restabilization|real_again|real_leads|pair_leads) +"
         "NUMBER +NUMBER +NUMBER +NUMBER +NUMBER$",
     ):
-        near = min(crossings, key=lambda c: abs(c.at - float(match[2])))
-        why = [with_error(match[2], match[3], near.at)]
+        near = min(crossings, key=lambda c: abs(c.value - float(match[2])))
+        why = [with_error(match[2], match[3], near.value)]
         why += [as_stated(match[4], near.growth_rate), as_stated(match[5], near.frequency)]
-        if match[1] in ("onset", "restabilization") and not is_change(rod, "F", near.at, match[1]):
+        if match[1] in ("onset", "restabilization") and not is_change(rod, "F", near.value, match[1]):
             why.append("eigenvalues do not change there")
         w = solve_spectrum(
-            replace(rod, F=near.at * (1 + 10 * BESIDE)), SpectrumRequest(12, 1e-11, False)
+            replace(rod, F=near.value * (1 + 10 * BESIDE)), SpectrumRequest(12, 1e-11, False)
         ).eigenvalues
         above = int((w.real > 0).sum())
         why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
         found.append((line, "; ".join(filter(None, why))))
     for line, match in read(page, r"(?:oscillates|beats|stable again) from F = NUMBER"):
-        near = min(crossings, key=lambda c: abs(c.at - float(match[1])))
-        found.append((line, as_stated(match[1], near.at)))
+        near = min(crossings, key=lambda c: abs(c.value - float(match[1])))
+        found.append((line, as_stated(match[1], near.value)))
     for line, match in read(page, r"(?:^|; )NUMBER crossings? up to F = NUMBER$"):
-        within = sum(c.at <= float(match[2]) for c in crossings)
+        within = sum(c.value <= float(match[2]) for c in crossings)
         found.append((line, "" if int(match[1]) == within else f"there are {within}"))
     return found
 
@@ -489,7 +489,7 @@ def _search_sentences(view, page, every, noun):
     for at, there, true in zip(v[name].reshape(rods, -1), stored, every, strict=True):
         if there.sum() != len(true) and v["crossing_count"].max() <= stored.shape[1]:
             found.append((page[0], f"{there.sum()} crossings are stored of {len(true)}"))
-        off = max([off, *(min(abs(c.at - x) for c in true) for x in at[there] if true)])
+        off = max([off, *(min(abs(c.value - x) for c in true) for x in at[there] if true)])
     numbers = stored.sum(axis=1)
     found += counts(page, HIDDEN, sum(map(len, every)) - numbers.sum())
     for line, match in read(
@@ -762,7 +762,7 @@ def diagram_sentences(view, page, keywords, fine):
         rows[~beats],
     )
     for kind in ("onset", "hopf", "restabilization", "real_again", "hopf_reverse"):
-        of_kind = [[c.at for c in each if c.kind.name == kind] for each in every]
+        of_kind = [[c.value for c in each if c.kind.name == kind] for each in every]
         having = np.array([bool(each) for each in of_kind])
         first = [each[0] for each in of_kind if each]
         again = [at for each in of_kind for at in each[1:]]

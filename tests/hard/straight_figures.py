@@ -142,7 +142,7 @@ def _changes_marked(d, axes, name, rods, here, x, growth):
     for at, line in d.verticals(axes):
         word, _, number = plain(line.get_label()).partition(" = ")
         kind = {"F*": "onset", "F**": "hopf", "restabilization": "restabilization"}[word.strip()]
-        near = min((c.at for c in true if c.kind.name == kind), key=lambda c: abs(c - at), default=np.inf)
+        near = min((c.value for c in true if c.kind.name == kind), key=lambda c: abs(c - at), default=np.inf)
         yield d.compare(axes, ([at], [0.0]), ([near], [0.0]), LINE) if near < np.inf else f"no {kind} at {at}"
         yield nearly(number, near)
         texts = [
@@ -164,7 +164,7 @@ def _changes_marked(d, axes, name, rods, here, x, growth):
             left, right = corners[:, 0].min(), corners[:, 0].max()
             rounding = SAME * (right - left)
             inside |= (x >= left - rounding) & (x <= right + rounding)
-            edges = np.concatenate([[c.at for c in true], x])
+            edges = np.concatenate([[c.value for c in true], x])
             yield d.compare(axes, ([left, right], [0, 0]), (edges, np.zeros(len(edges))), LINE, whole=False)
     wrong = (inside != (growth > 0)) & np.isfinite(growth) & (growth != 0)
     yield f"shade and growth differ at {x[wrong]}" if wrong.any() else ""
@@ -333,7 +333,7 @@ def _bars(d, view):
         rod, top = rods[round(place)]
         d.marks += 1
         covered[round(place)] = max(covered[round(place)], end)
-        edges = np.array([0.0, top, *(c.at for c in changes_to(rod, top))])
+        edges = np.array([0.0, top, *(c.value for c in changes_to(rod, top))])
         off = max(np.abs(edges - at).min() for at in (start, end)) / top
         found.append((f"bar {start} to {end}", "" if off <= SAME else f"an end is off by {off}"))
         word = words.get(colour_of(bar))
@@ -347,7 +347,7 @@ def _bars(d, view):
             for c in changes_to(rod, top):
                 kind = c.kind.name if c.kind.name != "hopf" or c.unstable_after <= 2 else "further Hopf point"
                 if kind == CRITICAL.get(word, word.removesuffix("s")):
-                    places.append((i + 1, c.at) if upright else (c.at, i))
+                    places.append((i + 1, c.value) if upright else (c.value, i))
         found.append((word, d.compare(axes, xy([line]), np.array(places).reshape(-1, 2).T)))
         for text, match in [] if upright else read(d.page, rf"^{re.escape(word)} = (.*)$"):
             numbers = match[1].split(", ")
@@ -655,7 +655,7 @@ def _chords(d, axes, one, view, line, row, rods):
             if name == "k1":
                 low = max(low, 1.001 * rod.F)
             true = [
-                c.at
+                c.value
                 for c in changes_along(rod, name, float(low), float(high))
                 if not kinds or c.kind.name in kinds
             ]

@@ -25,7 +25,7 @@ ACCURACY = 1e-7
 def hopf(rod):
     """F** of a rod."""
     found = solve_thresholds(rod_of(0.0, *rod), ThresholdsRequest(60.0, 1e-12, False, 4))
-    return next(c.at for c in found.crossings if c.kind.name == "hopf")
+    return next(c.value for c in found.thresholds if c.kind.name == "hopf")
 
 
 @cache

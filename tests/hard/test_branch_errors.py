@@ -21,7 +21,7 @@ from rodsweep.solve.branch.arc import BranchCycle, next_cycle
 from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
 from rodsweep.solve.branch.mesh_choice import is_measurement_due, with_errors_within_accuracy
-from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, newton_step
@@ -78,11 +78,11 @@ def random_case(index: int) -> Case:
 def cycles_of(case: Case) -> Iterator[BranchCycle]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
     rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
-    crossings = pair_crossings(Path(rod, "F"), 0.0, case.stop).crossings
+    crossings = find_axis_crossings(Path(rod, "F"), 0.0, case.stop).thresholds
     if not crossings:
         return
     here = last = first_cycle(
-        hopf_branch_start(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]),
+        hopf_branch_start(Path(rod.with_values(gamma1=case.gamma1), "F"), crossings[0]),
         case.accuracy,
         NewtonWorkspace(),
     )

@@ -71,10 +71,10 @@ def test_the_threshold_keeps_all_the_digits_that_the_eigenvalues_lose(place):
     end = min(1.05 * float(F), 0.999 * k1)
     found = solve_thresholds(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), ThresholdsRequest(end, 1e-12, True, 16))
     assert found.status == ThresholdStatus.ok
-    nearest = min(found.crossings, key=lambda c: abs(c.at - float(F)))
+    nearest = min(found.thresholds, key=lambda c: abs(c.value - float(F)))
     assert nearest.kind.name in DOUBLE
-    assert nearest.at == pytest.approx(float(F), rel=1e-12)
-    assert abs(nearest.at - float(F)) <= 10 * nearest.error
+    assert nearest.value == pytest.approx(float(F), rel=1e-12)
+    assert abs(nearest.value - float(F)) <= 10 * nearest.error
 
 
 @pytest.mark.parametrize("place", EXCEPTIONAL[:4], ids=name)

@@ -66,8 +66,8 @@ def thresholds(path, epsilon):
 def test_thresholds_leave_the_limit_at_first_order(path):
     limit = thresholds(path, 0.0)
     assert limit.status == ThresholdStatus.ok
-    for i, there in enumerate(limit.crossings[:2]):
-        here = (there.at, *path[1:])
+    for i, there in enumerate(limit.thresholds[:2]):
+        here = (there.value, *path[1:])
         if there.kind == ChangeKind.onset:
             slope = float(mp.re(onset_slope(here, there.growth_rate)))
         else:
@@ -75,9 +75,9 @@ def test_thresholds_leave_the_limit_at_first_order(path):
         for epsilon in EPSILONS:
             found = thresholds(path, epsilon)
             assert found.status == ThresholdStatus.ok, epsilon
-            assert [c.kind for c in found.crossings] == [c.kind for c in limit.crossings]
-            off, bend = deviation(found.crossings[i].at, there.at, slope, epsilon)
-            rounding = 10 * (found.crossings[i].error + there.error) + DIGIT * there.at
+            assert [c.kind for c in found.thresholds] == [c.kind for c in limit.thresholds]
+            off, bend = deviation(found.thresholds[i].value, there.value, slope, epsilon)
+            rounding = 10 * (found.thresholds[i].error + there.error) + DIGIT * there.value
             assert off <= bend + rounding, (epsilon, there.kind)
             if epsilon >= 1e-10:
                 assert bend + rounding < 2e-2 * abs(slope * epsilon)

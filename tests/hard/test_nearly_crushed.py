@@ -57,15 +57,15 @@ def test_the_reference_obeys_the_disguise():
 
 def mirrored(k1, end):
     found = solve_thresholds(Rod(F=0.0, k1=k1, k2=inf, gamma3=0.0), ThresholdsRequest(end, 1e-10, True, 60))
-    at = np.array([c.at for c in found.crossings])
+    at = np.array([c.value for c in found.thresholds])
     assert at + at[::-1] == pytest.approx(np.full(len(at), k1), rel=1e-12)
     opposite = {
         ChangeKind.onset: {ChangeKind.real_again},
         ChangeKind.hopf: {ChangeKind.hopf_reverse, ChangeKind.restabilization},
     }
-    for first, last in zip(found.crossings[: len(at) // 2], found.crossings[::-1], strict=False):
+    for first, last in zip(found.thresholds[: len(at) // 2], found.thresholds[::-1], strict=False):
         assert last.kind in opposite[first.kind]
-    assert found.transitions.unstable_at_end == 0
+    assert found.search_result.unstable_at_end == 0
     return found
 
 
@@ -73,8 +73,8 @@ def mirrored(k1, end):
 def test_thresholds_of_a_partial_beam_mirror_each_other(k1, changes):
     """F (1 - F/k1) is the same at F and k1 - F: two thresholds for every one of the filament below k1/4."""
     found = mirrored(k1, 0.999 * k1)
-    assert len(found.crossings) == changes
-    assert (found.status, found.transitions.proved) == (ThresholdStatus.ok, True)
+    assert len(found.thresholds) == changes
+    assert (found.status, found.search_result.proved) == (ThresholdStatus.ok, True)
 
 
 @pytest.mark.parametrize("k1", [100.0, 160.0])
@@ -90,5 +90,5 @@ def test_the_last_threshold_before_a_rod_is_crushed_keeps_its_digits():
     )
     assert found.status == ThresholdStatus.ok
     assert found.end < 100.0
-    assert found.crossings[-1].kind == ChangeKind.onset
-    assert found.crossings[-1].at == pytest.approx(98.9023098589847539, rel=1e-12)
+    assert found.thresholds[-1].kind == ChangeKind.onset
+    assert found.thresholds[-1].value == pytest.approx(98.9023098589847539, rel=1e-12)

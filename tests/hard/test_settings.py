@@ -36,7 +36,7 @@ from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
-from rodsweep.model.compiled.digest import digest, kernel_of
+from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.settings import CompiledSettings
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -46,8 +46,8 @@ from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
-from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
@@ -58,8 +58,8 @@ from rodsweep.solve.hopf.coefficient_errors import hopf_coefficients
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
-from rodsweep.solve.motion.integrator import RunEnding, forget_integrators, integrator
+from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
+from rodsweep.solve.motion.integrator import RunEnding, destroy_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
@@ -77,8 +77,8 @@ BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 STRONGLY_UNSTABLE = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
-    ("INTEGRATOR_SETTINGS", "relaxation_share"),
-    ("INTEGRATOR_SETTINGS", "relaxation_steps"),
+    ("INTEGRATOR_SETTINGS", "relaxation_duration_ratio"),
+    ("INTEGRATOR_SETTINGS", "relaxation_steps_per_period"),
     ("INTEGRATOR_SETTINGS", "relaxation_tolerance"),
 }
 """Fields that define the state from which a motion starts: another value is another motion."""
@@ -141,9 +141,9 @@ def curve_of_folds(accuracy: float) -> Answer:
 
 def coefficients(accuracy: float) -> Answer:
     """Normal form of a Hopf point of a rod that is soft in shear, at a high force."""
-    crossing = pair_crossings(Path(SOFT_IN_SHEAR, "F"), 0.0, 25.0).crossings[-1]
+    crossing = find_axis_crossings(Path(SOFT_IN_SHEAR, "F"), 0.0, 25.0).thresholds[-1]
     try:
-        found = hopf_coefficients(SOFT_IN_SHEAR.changed(F=crossing.at), crossing, accuracy)
+        found = hopf_coefficients(SOFT_IN_SHEAR.with_values(F=crossing.value), crossing, accuracy)
     except FAILURES:
         return None
     c, slope = found.landau, found.growth_slope
@@ -190,7 +190,7 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
 
 def beside(accuracy: float) -> Answer:
     """The subcritical Hopf point above a force; its search states no error, only the digits it needs."""
-    found = subcritical_hopf_near(WITH_FOLD.changed(k1=200.0, F=156.0))
+    found = subcritical_hopf_near(WITH_FOLD.with_values(k1=200.0, F=156.0))
     if found is None:
         return None
     return {"F": (found.F, 1e-9 * found.F), "unstable y": (found.unstable_y, 2e-3 * found.unstable_y)}
@@ -202,7 +202,7 @@ def modes(accuracy: float) -> Answer:
 
 
 def modes_answer(rod: Rod, accuracy: float) -> Answer:
-    found = solve_modes(rod, ModesRequest(4, accuracy, 9, growth=True))
+    found = solve_modes(rod, ModesRequest(4, accuracy, 9, computes_growth=True))
     if found.status.value:
         return None
     growth, vectors = found.growth, found.vectors
@@ -277,9 +277,9 @@ def changes_of(found: Thresholds) -> Answer:
     if found.status.value:
         return None
     answer = {}
-    for place, crossing in enumerate(found.crossings):
+    for place, crossing in enumerate(found.thresholds):
         name = f"{place}, {crossing.kind.name}: "
-        answer[name + "at"] = crossing.at, crossing.error
+        answer[name + "at"] = crossing.value, crossing.error
         answer[name + "unstable after"] = crossing.unstable_after, 0.0
     return answer
 
@@ -307,12 +307,14 @@ def curves_of_changes(accuracy: float) -> Answer:
     request = RowRequest("F", np.linspace(60.0, 110.0, 5), accuracy, True, 10)
     seeds = []
     for k1 in (150.0, 155.0):
-        row = solve_row(rod.changed(k1=k1), request)
+        row = solve_row(rod.with_values(k1=k1), request)
         if row.status.value:
             return None
-        found = (seed_of((c.at, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings)
+        found = (
+            seed_of((c.value, k1), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
+        )
         seeds += [seed for seed in found if seed is not None]
-    curves = curves_through(plane, seeds)
+    curves = boundary_curves_through(plane, seeds)
     if curves.untraced_count:
         return None
     answer: dict[str, tuple[float, float]] = {"curves": (len(curves.curves), 0.0)}
@@ -342,9 +344,11 @@ def segments(accuracy: float) -> Answer:
 def changes_between(accuracy: float) -> Answer:
     """Crossings between two spectra, whose accuracy is that of Newton's method."""
     rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
-    before, after = (solve_spectrum(rod.changed(F=F), SpectrumRequest(4, 1e-10, True)) for F in (20.0, 30.0))
+    before, after = (
+        solve_spectrum(rod.with_values(F=F), SpectrumRequest(4, 1e-10, True)) for F in (20.0, 30.0)
+    )
     zeros = crossings_between(
-        20.0, 30.0, before.eigenvalues, after.eigenvalues, rod.coefficients, rod.direction("F")
+        20.0, 30.0, before.eigenvalues, after.eigenvalues, rod.coefficients, rod.coefficient_derivative("F")
     )
     return {f"zero {i}": (float(F), float(error)) for i, (F, _, error) in enumerate(sorted(zeros.tolist()))}
 
@@ -357,7 +361,7 @@ def modes_of_a_cone(accuracy: float) -> Answer:
 def on_mesh(accuracy: float) -> Answer:
     """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    u = beam.mesh.positions
+    u = beam.mesh.node_positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
     numbers = [*beam.tip_coordinates(z), *beam.tip_velocity(z, 0.1 * z), beam.elastic_energy(z)]
@@ -373,7 +377,7 @@ def longitudinal(accuracy: float) -> Answer:
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
     beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    z = equilibrium_at_tip(beam, 0.5, 0.4)
+    z = bent_state_with_tip_at(beam, 0.5, 0.4)
     x, y, _ = beam.tip_coordinates(z)
     if np.hypot(x - 0.5, y - 0.4) > 1e-6:
         return None
@@ -388,11 +392,11 @@ def small_drag(accuracy: float) -> Answer:
 def motion(accuracy: float) -> Answer:
     """State after a free motion. Its error is that of the scheme's tolerance, some steps' worth."""
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    u = beam.mesh.positions
+    u = beam.mesh.node_positions
     rest = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
     start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
-    forget_integrators()
+    destroy_integrators()
     run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
     if run.ending is not RunEnding.reached:
         return None
@@ -421,7 +425,7 @@ def request(accuracy: float, amplitude: float = 0.1, start: str = "mode") -> Cyc
 
 
 def single_cycle(accuracy: float) -> Answer:
-    return cycle_answer(solve_cycle(BEATING.changed(F=60.0), request(accuracy)))
+    return cycle_answer(solve_cycle(BEATING.with_values(F=60.0), request(accuracy)))
 
 
 def cycles_of_a_chain(accuracy: float) -> Answer:
@@ -429,7 +433,10 @@ def cycles_of_a_chain(accuracy: float) -> Answer:
     last = None
     for F in (60.0, 64.0, 72.0):
         cycle = solve_cycle(
-            BEATING.changed(F=F), request(accuracy, start="neighbour"), last.neighbour if last else None, "F"
+            BEATING.with_values(F=F),
+            request(accuracy, start="neighbour"),
+            last.neighbour if last else None,
+            "F",
         )
         last = cycle
     return cycle_answer(last)
@@ -437,7 +444,7 @@ def cycles_of_a_chain(accuracy: float) -> Answer:
 
 def cycle_beside_the_hopf_point(accuracy: float) -> Answer:
     """From the leading mode and from the Hopf point, of which the second answer is taken with its errors."""
-    rod = BEATING.changed(F=27.6)
+    rod = BEATING.with_values(F=27.6)
     slow = cycle_answer(solve_cycle(rod, request(accuracy, 0.01)))
     found = cycle_answer(solve_cycle(rod, request(accuracy, start="hopf")))
     if slow is None or found is None:
@@ -446,13 +453,13 @@ def cycle_beside_the_hopf_point(accuracy: float) -> Answer:
 
 
 def cycle_by_integration(accuracy: float) -> Answer:
-    cycle = solve_by_integration(BEATING.changed(F=60.0), request(accuracy))
+    cycle = solve_by_integration(BEATING.with_values(F=60.0), request(accuracy))
     found = cycle_answer(cycle)
     return found and {name: value for name, value in found.items() if name != "multiplier"}
 
 
 def torus(accuracy: float) -> Answer:
-    return cycle_answer(solve_cycle(BEATING.changed(F=207.0), request(accuracy)))
+    return cycle_answer(solve_cycle(BEATING.with_values(F=207.0), request(accuracy)))
 
 
 class Case(NamedTuple):
@@ -721,9 +728,9 @@ def digests() -> dict[Any, str]:
     for title, module in list(sys.modules.items()):
         for value in list(vars(module).values()) if title.startswith("rodsweep.") else ():
             if isinstance(value, Dispatcher):
-                found[value] = digest(kernel_of(value.py_func, value.targetoptions), parts)
+                found[value] = kernel_digest(kernel_of(value.py_func, value.targetoptions), parts)
             elif isinstance(value, CFunc):
-                found[value] = digest(kernel_of(value.__wrapped__, {"signature": "C"}), parts)
+                found[value] = kernel_digest(kernel_of(value.__wrapped__, {"signature": "C"}), parts)
     return found
 
 

@@ -12,7 +12,7 @@ from rods import rod_of
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.solve.branch.arc import next_cycle
 from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
-from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -32,7 +32,7 @@ PERIODS = 40
 def unstable():
     """An unstable cycle on the branch from the restabilization."""
     rod = rod_of(0.0, *STIFFNESS)
-    crossing = pair_crossings(Path(rod, "F"), 100.0, 199.0).crossings[-1]
+    crossing = find_axis_crossings(Path(rod, "F"), 100.0, 199.0).thresholds[-1]
     here = first_cycle(hopf_branch_start(Path(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
     while here.cycle.measures.tip_y_max < LEAST_Y:
         here = next_cycle(here, ACCURACY)

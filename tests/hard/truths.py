@@ -8,7 +8,7 @@ from rods import rod_of
 from rodsweep.determinant.parameter_path import Path as ParameterPath
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.sweep.points.points import lines_along
 
@@ -51,7 +51,7 @@ def is_change(rod, name, at, kind):
 
 def changes_along(rod, name, low, high):
     """All that changes between two values of a parameter."""
-    return transitions(ParameterPath(rod, name), low, high).crossings
+    return find_thresholds(ParameterPath(rod, name), low, high).thresholds
 
 
 def changes_over_force(rod, top):
@@ -75,4 +75,4 @@ def changes_on_lines(view, name):
 
 def changes_of(view, name):
     """(rod, kind, value, frequency) of all these."""
-    return [(rod, c.kind.name, c.at, c.frequency) for rod, c, _ in changes_on_lines(view, name)]
+    return [(rod, c.kind.name, c.value, c.frequency) for rod, c, _ in changes_on_lines(view, name)]

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 
 from rodsweep.errors import InputError
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAGS, cox, gray_hancock, lighthill
-from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, least_drag, neglected_effects
+from rodsweep.model.arm.drag import DRAG_NAMES, cox_drag, gray_hancock_drag, lighthill_drag
+from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects, smallest_drag
 from rodsweep.model.arm.shape import MAX_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
@@ -66,8 +66,8 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     cone = uniform(radius=radius, tip_radius=taper * radius, pressure=None)
     u = np.linspace(0, 1, 1001)[1:-1]
     values = {name: cone.parameter(name) for name in ("k1", "k2", "gamma3", "taper")}
-    for number, form, error in ((0, cox, 3e-4), (1, gray_hancock, 3e-4), (3, lighthill, 6e-4)):
-        local = cone.build_with_drag(cone.drags[number]).local(0.0, values, u)
+    for number, form, error in ((0, cox_drag, 3e-4), (1, gray_hancock_drag, 3e-4), (3, lighthill_drag, 6e-4)):
+        local = cone.build_with_drag(cone.drags[number]).local_coefficients(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
         across = np.array([form(1.0, each)[1] for each in slenderness])
         assert local.gamma2 == pytest.approx(across / form(1.0, 0.1 / radius)[1], rel=error)
@@ -86,7 +86,7 @@ def test_factors_of_segments_by_hand():
     kappa = 9 * 1.5625 / (10 * 1.5625 + 26 * 0.25)
     k1 = 2.5 * (16 - 4) / 36
     axial, across = (
-        thin / thick for thin, thick in zip(cox(1, 0.1 / 0.004), cox(1, 0.1 / 0.006), strict=True)
+        thin / thick for thin, thick in zip(cox_drag(1, 0.1 / 0.004), cox_drag(1, 0.1 / 0.006), strict=True)
     )
     expected = (k1, k1 * kappa / 0.9, 2.5 * (256 - 16) / 1296, axial, across, 16 / 36)
     assert rows[2] == pytest.approx(expected, rel=1e-12)
@@ -102,12 +102,14 @@ def test_many_segments_have_the_coefficients_of_a_cone():
     middles = (np.arange(count) + 0.5) / count
     radii = 5 - 3 * middles
     steps = segmented(*(f"4 mm: radius {float(r)!r} mm" for r in radii), young="100 kPa")
-    for number in range(len(DRAGS)):
+    for number in range(len(DRAG_NAMES)):
         found = []
         for arm in (cone, steps):
             values = {name: arm.parameter(name) for name in ("k1", "k2", "taper")}
             drag = arm.drags[number]
-            own = arm.build_with_drag(drag).local(0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles)
+            own = arm.build_with_drag(drag).local_coefficients(
+                0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles
+            )
             stiffness, L = arm.bending_stiffness, arm.si.length
             found.append(
                 (
@@ -145,7 +147,7 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
     assert arm.crushing_force * arm.force_scale == pytest.approx(thin.k1 * thin.force_scale, rel=1e-12)
     own = {e.name: float(e.value) for e in neglected_effects(arm, 2.0, 1.0)}
     found = [
-        {e.name: float(e.value) for e in neglected_effects(each, 2.0, 1.0, drag=least_drag(each))}
+        {e.name: float(e.value) for e in neglected_effects(each, 2.0, 1.0, drag=smallest_drag(each))}
         for each in (thick, thin)
     ]
     for name in ("inertia of the arm", "inertia of the fluid", "Reynolds number"):
@@ -167,7 +169,7 @@ def test_effects_are_those_of_the_section_where_they_are_largest():
 def test_an_upright_arm_buckles_under_the_weight_that_is_stated(changes):
     """Integrated from the tip with theta' = m/(E I), m' = -W theta: theta vanishes at the base."""
     arm = uniform(**changes, pressure=None)
-    shape, weight = arm.shape, 1 / arm.shape.relative_weight(1.0)
+    shape, weight = arm.shape, 1 / arm.shape.weight_over_buckling_weight(1.0)
 
     def section(x):
         if arm.tip_radius is None:

@@ -15,8 +15,8 @@ from rodsweep.model.balance import (
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), 0.7
-PLANE = ROD.changed(gamma1=GAMMA1).material
-SPACE = ROD.changed(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
+PLANE = ROD.with_values(gamma1=GAMMA1).material
+SPACE = ROD.with_values(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 SIZES = pytest.mark.parametrize("size", [3, 6], ids=["plane", "space"])
 
 
@@ -127,11 +127,11 @@ def test_energy_law(material, size):
     ends = [stresses(np.array([end]), size) for end in (0.0, 1.0)]
     clamp, tip = ((fields[0] * rates(material, *fields)[0]).sum() for fields in ends)
     assert ends[1][0][:, 0] == pytest.approx(material.tip_stress)
-    change, lost = (Sigma * rate).sum(axis=0) @ weights, material.dissipation(V) @ weights
+    change, lost = (Sigma * rate).sum(axis=0) @ weights, material.dissipated_power_per_length(V) @ weights
     assert change == pytest.approx(tip - clamp - lost, rel=1e-11, abs=1e-11 * lost)
     small = 1e-7  # C dSigma = dE: the energy's derivative along the motion
     motion = rate / material.compliance[:, None]
-    ahead, back = (material.energy(Sigma + sign * small * motion) @ weights for sign in (1, -1))
+    ahead, back = (material.energy_per_length(Sigma + sign * small * motion) @ weights for sign in (1, -1))
     assert (ahead - back) / (2 * small) == pytest.approx(change, rel=1e-6)
 
 
@@ -161,14 +161,14 @@ def rough(beam):
 
 
 def test_compiled_rate_is_the_balance_at_the_nodes():
-    beam = Beam(ROD.changed(gamma1=GAMMA1), uniform_mesh(1, 16))
+    beam = Beam(ROD.with_values(gamma1=GAMMA1), uniform_mesh(1, 16))
     z = rough(beam)
     rate = collocated(beam, z)
     assert beam.state_derivative(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
 
 
 def test_compiled_jacobian_is_the_derivative_of_the_balance():
-    beam, step = Beam(ROD.changed(gamma1=GAMMA1), uniform_mesh(1, 12)), 1e-30
+    beam, step = Beam(ROD.with_values(gamma1=GAMMA1), uniform_mesh(1, 12)), 1e-30
     z = rough(beam)
     J = beam.jacobian(z)
     for k, direction in enumerate(1j * step * np.eye(len(z))):
@@ -179,8 +179,8 @@ def test_compiled_jacobian_is_the_derivative_of_the_balance():
 @pytest.mark.parametrize("elements, order", [(1, 26), (3, 14)])
 def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     """But at the clamp: V(0) of an arbitrary field is not 0, and the natural condition answers with 1/w."""
-    beam = Beam(ROD.changed(gamma1=GAMMA1), uniform_mesh(elements, order))
-    u = beam.mesh.positions
+    beam = Beam(ROD.with_values(gamma1=GAMMA1), uniform_mesh(elements, order))
+    u = beam.mesh.node_positions
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
     z = beam.state_of_strains(PLANE.strain(Sigma))

@@ -251,7 +251,7 @@ def test_places_of_the_cache(monkeypatch):
     for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("HOME", "/home/me")
-    package = compilation.PACKAGE / "__pycache__" / "compiled"
+    package = compilation.PACKAGE_DIRECTORY / "__pycache__" / "compiled"
     assert compilation.cache_directories() == [package, Path("/home/me/.cache/rodsweep/compiled")]
     monkeypatch.setenv("XDG_CACHE_HOME", "/scratch")
     assert compilation.cache_directories() == [package, Path("/scratch/rodsweep/compiled")]

@@ -15,11 +15,11 @@ from rodsweep.model.arm.neglected import (
     Effect,
     Validity,
     largest_angular_frequency,
-    least_drag,
     neglected_effects,
+    smallest_drag,
     worst_validity,
 )
-from rodsweep.model.arm.unsteady_drag import SERIES_END, drag_phase_lag
+from rodsweep.model.arm.unsteady_drag import MAX_SERIES_FREQUENCY, drag_phase_lag
 
 WATER = {"length": 0.12, "radius": 0.006, "young": 80e3, "poisson": 0.49, "viscosity": 1e-3}
 """A soft arm in water, in SI units."""
@@ -87,7 +87,7 @@ def test_phase_of_the_fluid_is_proportional_to_slow_rates():
 
 def test_phase_of_the_fluid_is_smooth_where_its_series_ends():
     """Steps of 1, 2 and 1 % of s across the end: the middle change of phase/s is the sum of the others."""
-    s = SERIES_END * np.array([0.98, 0.99, 1.01, 1.02])
+    s = MAX_SERIES_FREQUENCY * np.array([0.98, 0.99, 1.01, 1.02])
     phase = drag_phase_lag(s, 1.5) / s
     assert phase[2] - phase[1] == pytest.approx(phase[1] - phase[0] + phase[3] - phase[2], rel=0.02)
 
@@ -100,7 +100,7 @@ def test_a_fluid_as_viscous_as_stated_brings_an_effect_to_its_limit(name):
     factor = float(before.viscosity_factor)
     thicker = SlenderArm(**WATER | {"viscosity": factor * 1e-3})
     after = named(neglected_effects(thicker, largest_angular_frequency(thicker, 170.0), 35.0))[name]
-    assert before.excess > 1
+    assert before.value_over_limit > 1
     assert factor > 1
     assert after.value == pytest.approx(after.limit, rel=1e-9)
 
@@ -118,7 +118,7 @@ def test_least_drag_moves_fastest():
     arm = SlenderArm(**WATER)
     rates = [170.0 / arm.tau2_with(drag) for drag in arm.drags]
     assert largest_angular_frequency(arm, 170.0) == pytest.approx(max(rates))
-    assert least_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
+    assert smallest_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
 
 
 def test_validity_goes_by_tenths_of_the_limit_and_is_of_arrays():

@@ -14,7 +14,7 @@ from rodsweep.model.parameters import (
     NONLINEAR_PARAMETERS,
     OPTIONAL_PARAMETERS,
     PARAMETERS,
-    names_except,
+    parameter_names_except,
 )
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.variables import DIMENSIONS
@@ -24,7 +24,7 @@ def test_the_rod_has_all_parameters():
     assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "build")
     assert NONLINEAR_PARAMETERS[:4] == LINEAR_PARAMETERS
     assert OPTIONAL_PARAMETERS == ("taper",)
-    assert names_except("F") == LINEAR_PARAMETERS[1:]
+    assert parameter_names_except("F") == LINEAR_PARAMETERS[1:]
     assert set(CRUSHING_PARAMETERS) <= set(LINEAR_PARAMETERS)
 
 
@@ -48,10 +48,10 @@ def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension
 )
 def test_ranges(name, good, bad):
     for value in good:
-        PARAMETERS[name].require(value)
+        PARAMETERS[name].require_in_range(value)
     for value in (*bad, nan):
         with pytest.raises(ValueError, match=f"{name} = .* is not a .*number"):
-            PARAMETERS[name].require(value)
+            PARAMETERS[name].require_in_range(value)
 
 
 def test_the_sequence_of_parameters_stands_once():

@@ -16,7 +16,7 @@ def test_factors_meet_the_rows_and_stay_between_them():
     u, k3 = [0.0, 0.2, 0.5, 0.9, 1.0], [1.0, 4.0, 4.5, 0.01, 0.02]
     table = profile(u, k3)
     inside = np.linspace(0, 1, 4001)[1:-1]
-    values = table.factors(inside)[FACTOR_NAMES.index("k3")]
+    values = table.factors_at(inside)[FACTOR_NAMES.index("k3")]
     np.testing.assert_allclose(np.interp(u[1:-1], inside, values), k3[1:-1], rtol=1e-3)
     for a, b, low, high in zip(u[:-1], u[1:], k3[:-1], k3[1:], strict=True):
         between = values[(inside > a) & (inside < b)]
@@ -27,11 +27,11 @@ def test_factors_meet_the_rows_and_stay_between_them():
 
 def test_two_rows_at_one_place_are_a_jump():
     table = profile([0.0, 0.4, 0.4, 1.0], [1.0, 1.0, 100.0, 50.0])
-    before, after = table.factors(np.array([0.4 - 1e-12, 0.4 + 1e-12]))[FACTOR_NAMES.index("k3")]
+    before, after = table.factors_at(np.array([0.4 - 1e-12, 0.4 + 1e-12]))[FACTOR_NAMES.index("k3")]
     assert before == 1
     assert after == pytest.approx(100, rel=1e-9)
     np.testing.assert_allclose(
-        table.factors(np.array([0.7]))[FACTOR_NAMES.index("k3")], 75
+        table.factors_at(np.array([0.7]))[FACTOR_NAMES.index("k3")], 75
     )  # two rows: a line
 
 
@@ -62,7 +62,7 @@ def test_a_taper_of_a_point_is_refused(taper):
 def test_a_cone_scales_as_its_radius():
     """r = 0.75 in the middle of a cone of radius ratio 1/2."""
     rod = Rod(F=3.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5)
-    here = rod.local(np.array([0.5]))
+    here = rod.local_coefficients(np.array([0.5]))
     np.testing.assert_allclose(1 / here.c2, 50 * 0.75**2)
     np.testing.assert_allclose(1 / here.c3, 0.75**4)
     np.testing.assert_allclose(here.gamma3, 0.01 * 0.75**2)

@@ -15,8 +15,8 @@ from rodsweep.model.balance import PLANE_COMPONENTS, ad
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), 0.7
-PLANE = ROD.changed(gamma1=GAMMA1).material
-SPACE = ROD.changed(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
+PLANE = ROD.with_values(gamma1=GAMMA1).material
+SPACE = ROD.with_values(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {"plane": PLANE, "space": SPACE}
 ALL = pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
 MESHES = pytest.mark.parametrize(
@@ -26,11 +26,11 @@ MESHES = pytest.mark.parametrize(
 
 def tapered(material, grid):
     """The material with compliances and drags that vary along the rod, each in its own way."""
-    u, phase = grid.positions, np.arange(len(material.drag))[:, None]
+    u, phase = grid.node_positions, np.arange(len(material.drag))[:, None]
     profile = 1 + 0.4 * np.sin(2 * u + phase)
     compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
-    rest = material.straight[:, None] + compliance * material.tip_stress[:, None]
-    return material._replace(compliance=compliance, drag=drag, rest=rest)
+    rest = material.unloaded_strain[:, None] + compliance * material.tip_stress[:, None]
+    return material._replace(compliance=compliance, drag=drag, rest_strain=rest)
 
 
 def state(rod, grid):
@@ -150,7 +150,7 @@ def test_a_rigid_motion_strains_no_rod():
     E = np.array([0.9, 0.2, -0.1, 1.5, 2.0, 0.7])
     bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
-    V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
+    V = np.stack([expm(-u * bracket) @ seen for u in grid.node_positions], axis=1)
     G, strain = np.empty(V.shape), np.repeat(E[:, None], grid.node_count + 1, axis=1)
     write_strain_rates.compiled_for(SE3)(strain, V, G, grid.matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold

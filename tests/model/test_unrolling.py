@@ -12,18 +12,18 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
 from rodsweep.discretization.stress.balance import write_balance, write_balance_derivative
 from rodsweep.model.algebra import SE2, SE3
-from rodsweep.model.compiled.digest import digest, kernel_of
+from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
 from rodsweep.model.rod import Rod
 
 ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), uniform_mesh(2, 3)
-PLANE = ROD.changed(gamma1=0.7).material
+PLANE = ROD.with_values(gamma1=0.7).material
 HEAD = "from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra\n\n@UnrolledOverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 
 def test_derivative_along_a_parameter_is_that_of_loops_in_python():
-    rod, change = nodal_rod(PLANE, GRID), nodal_change(ROD.material_change("k1"), GRID)
+    rod, change = nodal_rod(PLANE, GRID), nodal_change(ROD.material_derivative("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.node_count)
     V, G = np.empty((2, 3, GRID.node_count + 1))
     write_balance(SE2, x, V, G, rod, GRID.matrices)
@@ -85,5 +85,5 @@ def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text
         spec = importlib.util.spec_from_file_location("of_a_test", path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        digests.append(digest(kernel_of(module.f.unrolled_for(SE2), {}), {}))
+        digests.append(kernel_digest(kernel_of(module.f.unrolled_for(SE2), {}), {}))
     assert (digests[0] == digests[1]) == same

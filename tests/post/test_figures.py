@@ -194,7 +194,7 @@ def test_config_changes_stability_where_its_head_comment_says(name):
 
 def _with_force(job, force):
     rod = job.points.rod(0)
-    return rod.changed(F=force)
+    return rod.with_values(F=force)
 
 
 @pytest.mark.parametrize(

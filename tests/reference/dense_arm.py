@@ -1,6 +1,6 @@
 """Eigenvalues of arms by another discretisation: displacements on elements, shear by its stiffness, dense QR.
 
-Shares nothing with the package but `Rod.local`, the coefficients along the arm.
+Shares nothing with the package but `Rod.local_coefficients`, the coefficients along the arm.
 """
 
 import numpy as np
@@ -52,8 +52,8 @@ def matrices(rod, per_length=4, p=20):
     n = (len(edges) - 1) * p + 1
     A, M = np.zeros((2 * n, 2 * n)), np.zeros(2 * n)
     for e, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
-        here = rod.local(a + (b - a) * (g + 1) / 2)
-        at_nodes = rod.local(np.clip(a + (b - a) * (x + 1) / 2, a + 1e-12, b - 1e-12))
+        here = rod.local_coefficients(a + (b - a) * (g + 1) / 2)
+        at_nodes = rod.local_coefficients(np.clip(a + (b - a) * (x + 1) / 2, a + 1e-12, b - 1e-12))
         y, weight, d = np.arange(e * p, e * p + p + 1), wg * (b - a) / 2, slope * 2 / (b - a)
         t = y + n
         by_y, by_t = d / here.c2[:, None], -(here.nu / here.c2)[:, None] * value  # s of y and theta

@@ -13,7 +13,7 @@ from rodsweep.results.file.provenance import (
 )
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.backend import blas_kernel as blas_module
-from rodsweep.solve.backend.blas_kernel import blas
+from rodsweep.solve.backend.blas_kernel import blas_description
 
 SPECTRA = """
 task: spectrum
@@ -60,7 +60,7 @@ SYSTEM, WHEEL, SCIPY = "/usr/lib/libopenblas.so.0", "/v/site-packages/numpy.libs
 )
 def test_libraries_are_named_by_who_uses_them(monkeypatch, loaded, said):
     monkeypatch.setattr(blas_module, "threadpool_info", lambda: loaded)
-    assert blas() == said
+    assert blas_description() == said
 
 
 def test_kernels_of_several_runs_are_kept_once_each():
@@ -85,8 +85,8 @@ def test_one_kernel_is_recorded_and_nothing_said(command):
     run = command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5")
     again = command("run", "c.yaml", "-o", "c.h5", ranks=2)
     assert "BLAS" not in run.stdout + again.stdout
-    assert blas_kernels_in(read_view(command.directory / "c.h5").attributes) == [blas()]
-    assert blas() in command("show", "c.h5").stdout
+    assert blas_kernels_in(read_view(command.directory / "c.h5").attributes) == [blas_description()]
+    assert blas_description() in command("show", "c.h5").stdout
 
 
 @pytest.mark.long
@@ -104,7 +104,7 @@ def test_other_kernel_is_told_on_resume_and_merge_and_gives_the_same_numbers(com
         assert run.returncode == 0, run.stderr
         assert run.stdout.count(f"{name}: computed in parts by 2 BLAS kernels") == 1
         attributes = read_view(command.directory / name).attributes
-        assert set(blas_kernels_in(attributes)) == {blas(), next(iter(others.values()))}
+        assert set(blas_kernels_in(attributes)) == {blas_description(), next(iter(others.values()))}
         assert same_spectra(content(command.directory / name), plain)
     # Later runs that compute nothing, or nothing else, change nothing of it.
     assert "BLAS" not in command("run", "c.yaml", "-o", "merged.h5").stdout

@@ -130,7 +130,11 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 
     before = signal.signal(signal.SIGUSR2, handler)
     try:
-        with pytest.raises(TimeoutError), DeferredSignals() as held, watch.reporting_to(held.call_due):
+        with (
+            pytest.raises(TimeoutError),
+            DeferredSignals() as held,
+            watch.reporting_to(held.call_due_handlers),
+        ):
             signal.raise_signal(signal.SIGUSR2)
             assert place == []
             watch.report()

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from rodsweep.cli.checking import print_job_check
-from rodsweep.model.material.build import STANDARD, Build
+from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.sweep.branch_cost import estimate_branches
 from rodsweep.sweep.points.points import Points
-from rodsweep.tasks.running.job import make_job
+from rodsweep.tasks.running.job import job_of_file
 
 
 def points_of(build=None, **columns):
@@ -15,7 +15,7 @@ def points_of(build=None, **columns):
     columns = {name: np.atleast_1d(value) for name, value in values.items()}
     length = max(map(len, columns.values()))
     full = {name: np.resize(value, length) for name, value in columns.items()}
-    return Points(tuple(full), tuple(full.values()), is_grid=False, build=build or STANDARD)
+    return Points(tuple(full), tuple(full.values()), is_grid=False, build=build or DEFAULT_BUILD)
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,6 @@ def test_check_of_a_diagram_with_cycles_says_when_its_time_is_not_known(tmp_path
         "task: phase_diagram\nparameters: {F: [0, 60], k1: [330, 600], k2: 1.0e4, gamma3: 1.0e-4}\n"
         f"{material}phase_diagram: {{cycles: true}}\n"
     )
-    print_job_check(make_job(path, ()))
+    print_job_check(job_of_file(path, ()))
     text = " ".join(capsys.readouterr().out.split())
     assert ("time and memory are not known: branches of rubber" in text) is not known

@@ -49,8 +49,8 @@ def test_each_point_has_the_worst_of_what_is_left_out():
         effects = neglected_effects(arm, largest_angular_frequency(arm, point.hopf_frequency), point.F_hopf)
         counted = [effect for effect in effects if not effect.of_cycles_only]
         assert point.model_applies == worst_validity(effects, of_cycles=False)
-        largest = max(counted, key=lambda effect: effect.excess)
-        assert point.neglected_excess.item() == pytest.approx(float(largest.excess), rel=1e-12)
+        largest = max(counted, key=lambda effect: effect.value_over_limit)
+        assert point.neglected_excess.item() == pytest.approx(float(largest.value_over_limit), rel=1e-12)
         words = data.neglected_effect.flag_meanings.split()
         assert words[1 + int(point.neglected_effect)] == largest.name.replace(" ", "_")
     assert set(data.model_applies.values.tolist()) == {Validity.doubtful, Validity.does_not_apply}
@@ -143,7 +143,7 @@ def test_the_motion_is_that_of_the_task(task, more):
         )
         assert point.model_applies == worst_validity(effects, of_cycles=task == "limit_cycle")
         counted = [e for e in effects if task == "limit_cycle" or not e.of_cycles_only]
-        expected = np.nanmax([float(effect.excess) for effect in counted])
+        expected = np.nanmax([float(effect.value_over_limit) for effect in counted])
         assert point.neglected_excess.item() == pytest.approx(expected, rel=1e-12)
 
 
@@ -179,7 +179,7 @@ def test_branches_and_diagrams_are_judged_too():
     fastest = np.nanmax(2 * np.pi / branch.period.values)
     here = arm_at(branch)
     effect = neglected_effects(here, largest_angular_frequency(here, fastest), 0.0)[0]
-    assert branch.neglected_excess.item() >= float(effect.excess) * (1 - 1e-12)
+    assert branch.neglected_excess.item() >= float(effect.value_over_limit) * (1 - 1e-12)
     diagram = rs.sweep(
         "phase_diagram", arm=arm | {"pressure": rs.linspace("1 kPa", "3 kPa", 5)}, gamma3=[0.002, 0.004],
         curves=False,

@@ -12,7 +12,7 @@ from test_paper import run, stated
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.model.floquet import min_unstable_multipliers
+from rodsweep.model.floquet import min_unstable_count
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import (
     RodBranches,
@@ -157,8 +157,8 @@ def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_point
     ],
 )
 def test_a_cycle_is_unstable_if_its_largest_multiplier_lies_outside_for_certain(multiplier, error, outside):
-    assert min_unstable_multipliers(-1, multiplier, error) == outside
-    assert min_unstable_multipliers(2, multiplier, error) == 2
+    assert min_unstable_count(-1, multiplier, error) == outside
+    assert min_unstable_count(2, multiplier, error) == 2
 
 
 def test_ranges_are_joined_and_intersected():

@@ -76,21 +76,23 @@ def plan_of(job):
 
 def crossing(at, kind, unstable):
     return SimpleNamespace(
-        at=at, kind=kind, frequency=10 * at, growth_rate=-at, error=1e-12, unstable_after=unstable
+        value=at, kind=kind, frequency=10 * at, growth_rate=-at, error=1e-12, unstable_after=unstable
     )
 
 
 def search(index=0, **more):
     """A search that found an onset, a Hopf point, its reverse, and two more; index moves them."""
     kinds = list(enumerate((1, 2, 4, 5, 1)))
+    found = tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds)
     return SimpleNamespace(
         status=0,
-        crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
-        transitions=SimpleNamespace(
-            crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
+        thresholds=found,
+        hopf_points=found,
+        search_result=SimpleNamespace(
+            thresholds=found,
             open_range=(np.nan, np.nan),
             proved=True,
-            box_count=100,
+            evaluation_count=100,
             solve_count=7,
             unstable_at_end=0,
         ),
@@ -118,9 +120,9 @@ def of_modes(number, nodes):
     spectrum = of_spectrum(number, nodes)
     vectors = SimpleNamespace(
         resolution=Resolution(1, 20),
-        right=spectrum.vectors,
+        right_modes=spectrum.vectors,
         deformation=spectrum.vectors + 100,
-        left=spectrum.vectors + 200,
+        left_modes=spectrum.vectors + 200,
         pairing=np.full(number, 2 + 1j),
         condition=np.full(number, 3.0),
         mode_error=np.full(number, 1e-9),
@@ -233,7 +235,7 @@ def test_first_crossings_are_stored_and_all_are_counted(tmp_path):
 
 def test_places_without_a_crossing_are_filled():
     nothing = search()
-    nothing.crossings = ()
+    nothing.thresholds = nothing.search_result.thresholds = ()
     record = thresholds.threshold_values(nothing, 2)
     assert np.isnan([record["F_onset"], record["F_hopf"], *record["crossing_F"]]).all()
     assert record["crossing_kind"] == [0, 0]
@@ -374,10 +376,12 @@ def solve_thresholds(rod, request):
     if os.environ.get("DIE_AT") == f"{k1:g}":
         os._exit(9)
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
-    found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
-    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, box_count=3, solve_count=4)
+    found = (Value(value=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
+    found = real.ThresholdList(
+        thresholds=found, unstable_at_end=2, proved=True, evaluation_count=3, solve_count=4
+    )
     return real.Thresholds(
-        status=status, transitions=found, end=request.F_max, seconds=0.01, message="a message"
+        status=status, search_result=found, end=request.F_max, seconds=0.01, message="a message"
     )
 
 real.solve_thresholds = solve_thresholds

@@ -9,13 +9,19 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
-from rodsweep.model.arm.drag import cox, gray_hancock, lighthill, max_rotational_drag, min_rotational_drag
+from rodsweep.model.arm.drag import (
+    cox_drag,
+    gray_hancock_drag,
+    lighthill_drag,
+    max_rotational_drag,
+    min_rotational_drag,
+)
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
-from rodsweep.model.units import share_of_flutter
-from rodsweep.solve.changes.along_path import Transitions
+from rodsweep.model.units import load_over_flutter
+from rodsweep.solve.changes.along_path import ThresholdList
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, empty_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind, Crossing
+from rodsweep.solve.changes.unstable_modes import ChangeKind, Threshold
 from rodsweep.verdict import flutter
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.planes import PlaneOfMotion, Planes
@@ -57,9 +63,11 @@ def test_silicone_arm_by_hand():
 
 def test_drag_by_hand():
     """L/a = 20: ln 40 = 3.688879, ln 160 = 5.075174, ln 3.6 = 1.280934; per viscosity."""
-    assert cox(1, 20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
-    assert gray_hancock(1, 20) == pytest.approx((2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6)
-    assert lighthill(1, 20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
+    assert cox_drag(1, 20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
+    assert gray_hancock_drag(1, 20) == pytest.approx(
+        (2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6
+    )
+    assert lighthill_drag(1, 20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
     assert (min_rotational_drag(1, 1), max_rotational_drag(1, 1)) == pytest.approx((math.pi, 4 * math.pi))
 
 
@@ -142,7 +150,7 @@ def test_only_time_scales_with_viscosity():
     ],
 )
 def test_a_load_relative_to_flutter_is_read_as_people_write_it(given, share):
-    assert share_of_flutter(given) == (None if share is None else pytest.approx(share, rel=1e-15))
+    assert load_over_flutter(given) == (None if share is None else pytest.approx(share, rel=1e-15))
 
 
 @pytest.mark.parametrize(
@@ -229,7 +237,7 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
         found = solve_thresholds(
             Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), SEARCH_REQUEST
         )
-        first = next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
+        first = next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)
         assert flutter.low <= first <= flutter.high
 
 
@@ -285,9 +293,9 @@ def test_numbers_need_no_solver_and_help_no_units():
 
 def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
-    crossings = tuple(Crossing(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
-    transitions = Transitions(crossings=crossings, proved=True)
-    return ThresholdsWithDrag(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
+    crossings = tuple(Threshold(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
+    transitions = ThresholdList(thresholds=crossings, proved=True)
+    return ThresholdsWithDrag(tau2=tau2, thresholds=Thresholds(status=OK, search_result=transitions, end=end))
 
 
 def verdict(rod, *forces):
@@ -331,9 +339,12 @@ def test_a_second_window_of_flutter_is_told():
 
 def test_thresholds_without_proof_are_told_with_the_doubt():
     known = found(1.0, (20.0, ChangeKind.hopf, 2))
-    unproved = replace(known.thresholds.transitions, proved=False)
+    unproved = replace(known.thresholds.search_result, proved=False)
     thresholds = replace(
-        known.thresholds, transitions=unproved, status=ThresholdStatus.not_certified, message="a count fails"
+        known.thresholds,
+        search_result=unproved,
+        status=ThresholdStatus.not_certified,
+        message="a count fails",
     )
     told = verdict(arm(viscosity=1e3), known, replace(known, thresholds=thresholds))
     assert told[:2] == [
@@ -345,10 +356,10 @@ def test_thresholds_without_proof_are_told_with_the_doubt():
 @pytest.mark.parametrize(("kind", "certain"), [(ChangeKind.real_leads, True), (ChangeKind.hopf, False)])
 def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certain):
     known = found(1.0, (20.0, kind, 2), (40.0, ChangeKind.hopf, 2))
-    inaccurate = tuple(replace(c, error=0.1 if c.at == 20.0 else 0.0) for c in known.thresholds.crossings)
+    inaccurate = tuple(replace(c, error=0.1 if c.value == 20.0 else 0.0) for c in known.thresholds.thresholds)
     thresholds = replace(
         known.thresholds,
-        transitions=Transitions(crossings=inaccurate, proved=True),
+        search_result=ThresholdList(thresholds=inaccurate, proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))

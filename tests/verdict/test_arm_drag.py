@@ -14,8 +14,8 @@ from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.arm.drag import DRAGS
-from rodsweep.model.arm.neglected import CURVATURE_OVER_AMPLITUDE, LARGE_AMPLITUDE, wall_effect
+from rodsweep.model.arm.drag import DRAG_NAMES
+from rodsweep.model.arm.neglected import CURVATURE_OVER_AMPLITUDE, LARGE_AMPLITUDE, wall_flattening_effect
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
@@ -46,10 +46,10 @@ limit_cycle: {start: neighbour, harmonics: 2}
 def test_thresholds_over_the_drags_are_those_of_the_verdict():
     data = rs.sweep("thresholds", arm=SILICONE | {"drag": "range"}, crossings=4)
     arm = rs.Arm(**SILICONE)
-    assert data.drag.attrs["flag_meanings"].split() == list(DRAGS)
+    assert data.drag.attrs["flag_meanings"].split() == list(DRAG_NAMES)
     assert data.drag.values.tolist() == [0, 1, 2, 3, 4]
-    for drag, found in zip(DRAGS, arm.flutter.by_drag, strict=True):
-        here = data.sel(drag=DRAGS.index(drag))
+    for drag, found in zip(DRAG_NAMES, arm.flutter.by_drag, strict=True):
+        here = data.sel(drag=DRAG_NAMES.index(drag))
         force = found.first_force(ChangeKind.hopf) * arm.pressure_scale
         assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
         assert here.frequency_hopf_hz.item() == pytest.approx(
@@ -63,7 +63,7 @@ def test_cycles_over_the_drags_are_those_of_arms_with_each():
     data = rs.sweep("limit_cycle", arm=SILICONE | {"drag": ["least", "most"], "pressure": pressure}, **QUICK)
     for drag in ("least", "most"):
         alone = rs.Arm(**SILICONE, pressure=pressure, drag=drag).limit_cycle(**QUICK)
-        here = data.sel(drag=DRAGS.index(drag))
+        here = data.sel(drag=DRAG_NAMES.index(drag))
         assert here.period_si.item() == pytest.approx(alone.period_si, rel=1e-12)
         assert here.gamma1.item() == alone.data.gamma1.item()
 
@@ -74,7 +74,7 @@ def test_a_phase_diagram_has_the_drags_along_gamma3():
     assert data.drag.dims == data.tau2.dims == ("gamma3",)
     assert (np.diff(data.gamma3) > 0).all()
     for place, gamma3, tau2 in zip(data.drag.values, data.gamma3.values, data.tau2.values, strict=True):
-        arm = SlenderArm(**SILICONE, drag=DRAGS[place])
+        arm = SlenderArm(**SILICONE, drag=DRAG_NAMES[place])
         assert (gamma3, tau2) == (arm.gamma3, arm.tau2)
     with pytest.raises(rs.InputError, match=r"arm\.pressure is relative to flutter; a phase diagram"):
         rs.sweep("phase_diagram", arm=SILICONE | {"pressure": "1.2 of flutter"}, gamma3=[1e-3, 2e-3])
@@ -159,7 +159,7 @@ def test_a_taper_beside_an_arm_moves_the_flutter_of_relative_loads():
     own = SlenderArm(**SILICONE)
     cone = Rod(F=0.0, k1=own.k1, k2=own.k2, gamma3=own.gamma3, taper=0.5)
     found = solve_thresholds(cone, ThresholdsRequest(40.0, 1e-10, True, 8))
-    hopf = next(each.at for each in found.crossings if each.kind == ChangeKind.hopf)
+    hopf = next(each.value for each in found.thresholds if each.kind == ChangeKind.hopf)
     assert data.F.sel(taper=0.5).values == pytest.approx([0.9999 * hopf, 1.0001 * hopf], rel=1e-9)
     assert (np.sign(data.growth_rate[..., 0].values) == [[-1, -1], [1, 1]]).all()
 
@@ -297,7 +297,9 @@ def test_a_tube_flattens_as_brazier_found():
     """The largest moment of M = E pi r^3 t kappa (1 - loss) is 2 sqrt(2)/9 pi E r t^2/sqrt(1 - nu^2)."""
     r, t, nu = 10.0, 0.01, 0.3
     bend = np.linspace(0, 2e-3, 200001)[1:] / r  # curvatures up to beyond the maximum
-    loss = wall_effect(CURVATURE_OVER_AMPLITUDE * LARGE_AMPLITUDE / bend, r + t / 2, r - t / 2, nu).value
+    loss = wall_flattening_effect(
+        CURVATURE_OVER_AMPLITUDE * LARGE_AMPLITUDE / bend, r + t / 2, r - t / 2, nu
+    ).value
     moment = np.pi * r**3 * t * bend * (1 - loss)
     assert moment.max() == pytest.approx(2 * np.sqrt(2) / 9 * np.pi * r * t**2 / np.sqrt(1 - nu**2), rel=1e-6)
     report = str(rs.Arm(**SILICONE, inner_radius="3.6 mm").report())

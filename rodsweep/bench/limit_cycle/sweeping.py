@@ -183,7 +183,7 @@ def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement
 def rod_label(point: Rod) -> str:
     """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, law and section if not the default."""
     further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
-    further += [] if point.build.standard else [point.build.law, point.build.section]
+    further += [] if point.build.is_uniform_and_linear else [point.build.law, point.build.section]
     values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
     return ", ".join([*(f"{value:g}" for value in values), *further])
 

@@ -76,7 +76,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     determinant = ArmDeterminant(rod)
     roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
-        values = [determinant.value_at_level(w, REFERENCE_REFINEMENT) for w in roots]
+        values = [determinant.value_on_finer_elements(w, REFERENCE_REFINEMENT) for w in roots]
         roots = [w - value.D / value.D_w for w, value in zip(roots, values, strict=True)]
     return roots
 

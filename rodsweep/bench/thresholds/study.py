@@ -11,7 +11,7 @@ from functools import partial
 from math import inf, isinf, isnan, log10, nan
 from typing import Any
 
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ..peers import Peers
@@ -52,7 +52,7 @@ class ThresholdCase:
     hopf: float
     search_end: float = 60.0
     taper: float = 1.0
-    build: Build = STANDARD
+    build: Build = DEFAULT_BUILD
 
     def rod(self, F: float) -> Rod:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)
@@ -165,12 +165,14 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
     """The first threshold of the kind `kind` by rodsweep, from the list of all thresholds of the rod.
     certify: whether rodsweep proves this list complete."""
     rod = case.rod(0.0)
-    F_max = F_MAX if rod.standard else ARM_F_MAX
+    F_max = F_MAX if rod.is_uniform_and_linear else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
-    at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
-    if not rod.standard:
+    at = next((change.value for change in result.thresholds if change.kind.name == kind), nan)
+    if not rod.is_uniform_and_linear:
         return FirstThreshold(at)
-    return FirstThreshold(at, result.transitions.solve_count, determinants=result.transitions.box_count)
+    return FirstThreshold(
+        at, result.search_result.solve_count, determinants=result.search_result.evaluation_count
+    )
 
 
 def measure_rods(

@@ -11,7 +11,7 @@ from ...config import load_config
 from ...results.file import provenance
 from ...results.file.store import Store
 from ...results.file.view import read_view
-from ...solve.backend.availability import require_directory, require_solvers
+from ...solve.backend.availability import require_solvers, require_working_directory
 from ...sweep.loop import RankWork
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.stop import StopRequest
@@ -33,7 +33,7 @@ run."""
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
     """Runs the config file `path`, or a shard of it, on all ranks; returns the exit status of the command."""
-    require_directory()
+    require_working_directory()
     team = Team()
     with team.abort_all_ranks_on_error():
         config, text = team.call_on_first_rank(lambda: load_config(path, options.overrides))
@@ -53,7 +53,7 @@ class _RankRun:
     """The result file, on the first rank, after `_open_store`."""
 
     def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
-        from ...solve.backend.blas_kernel import blas
+        from ...solve.backend.blas_kernel import blas_description
 
         self.team = team
         self.job = job
@@ -66,7 +66,7 @@ class _RankRun:
         self.seconds = 0.0
         self.log = TracebackLog(output, team.rank, self._point_text, options.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
-        self.kernels = provenance.merged_blas_kernels(team.gather(blas()) or [])
+        self.kernels = provenance.merged_blas_kernels(team.gather(blas_description()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.point_work = PointWork(

@@ -10,17 +10,17 @@ estimates are the values of an axis of gamma3.
 from collections.abc import Mapping
 
 from ...errors import InputError
-from ...model.arm.quantities import LOADS, RELATIVE_LOADS
+from ...model.arm.quantities import LOAD_OF_RATIO, LOADS
 from ...model.arm.refusals import NotSlender
 from ...model.arm.section import BoreTooWide
 from ...model.parameters import PARAMETERS
 
-LOAD_KEYS = (*LOADS, *RELATIVE_LOADS)
+LOAD_KEYS = (*LOADS, *LOAD_OF_RATIO)
 """Names of the config keys for the load, absolute or relative to flutter. An arm has at most one load."""
 SINGLE_PARAMETER_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """Name of the only parameter that depends on a quantity of the arm, by name of the quantity. Quantities on
 which several parameters depend are not included."""
-CHANGED_PARAMETER = SINGLE_PARAMETER_OF | dict.fromkeys(RELATIVE_LOADS, "F")
+CHANGED_PARAMETER = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_OF_RATIO, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
 PARAMETER_STORED_ALONG = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
@@ -58,7 +58,7 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     in_diagram: whether the points are the rows of a phase diagram.
     """
     given = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
-    quantities = [name for name in given if sizes[name] > 1 or name in RELATIVE_LOADS]
+    quantities = [name for name in given if sizes[name] > 1 or name in LOAD_OF_RATIO]
     if all(name in (PARAMETER_STORED_ALONG if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
         return ()
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))

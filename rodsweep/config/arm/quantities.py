@@ -6,9 +6,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ...errors import InputError
-from ...model.arm.drag import DRAGS, RANGE_OF_DRAG
-from ...model.arm.quantities import RELATIVE_LOADS, UNITS
-from ...model.units import in_si, share_of_flutter, split_quantity, value_in_unit
+from ...model.arm.drag import DRAG_NAMES, DRAG_RANGE_NAME
+from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
+from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
 from ..values import AXIS_SCHEMA, Axis, as_axis, as_float, short_repr
 
 RANGE_ENDS = ("start", "stop")
@@ -55,7 +55,7 @@ def _si_number(name: str, value: Any) -> float:
     if not isinstance(value, str):
         return as_float(value)
     try:
-        return in_si(f"parameters.arm.{name}", value, *UNITS[name])
+        return quantity_in_si(f"parameters.arm.{name}", value, *UNITS[name])
     except InputError as error:
         raise ValueError(str(error)) from None
 
@@ -68,7 +68,7 @@ def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
     if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
     found = dict(given)
-    for name, load in RELATIVE_LOADS.items():
+    for name, load in LOAD_OF_RATIO.items():
         shares, is_relative = _loads_over_flutter_load(given.get(load))
         if not is_relative:
             continue
@@ -91,28 +91,29 @@ def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
     """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
-    shares = [None if one is None else share_of_flutter(one) for one in _written_values(value)]
+    shares = [None if one is None else load_over_flutter(one) for one in _written_values(value)]
     return shares, any(share is not None for share in shares)
 
 
 def drag_axis(value: Any) -> Axis:
-    """Axis of indices into DRAGS, from a drag's name, a list of names, or "range"; ValueError otherwise."""
+    """Axis of indices into DRAG_NAMES, from a drag's name, a list of names, or "range"; ValueError
+    otherwise."""
     if isinstance(value, Axis):
         return value
     names = value if isinstance(value, list | tuple) else [value]
-    if value == RANGE_OF_DRAG:
-        names = list(DRAGS)
-    if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
+    if value == DRAG_RANGE_NAME:
+        names = list(DRAG_NAMES)
+    if not names or not all(isinstance(name, str) and name in DRAG_NAMES for name in names):
         raise ValueError(
-            f"{short_repr(value)} is not a drag; write {RANGE_OF_DRAG}, one of the names {', '.join(DRAGS)}, "
-            "or a list of these names"
+            f"{short_repr(value)} is not a drag; write {DRAG_RANGE_NAME}, one of the names "
+            f"{', '.join(DRAG_NAMES)}, or a list of these names"
         )
-    return Axis(values=tuple(float(index) for index in sorted({DRAGS.index(name) for name in names})))
+    return Axis(values=tuple(float(index) for index in sorted({DRAG_NAMES.index(name) for name in names})))
 
 
 def drag_names(values: list[float]) -> list[str]:
-    """Names of drag estimates from `values`, their indices in DRAGS."""
-    return [DRAGS[int(index)] for index in values]
+    """Names of drag estimates from `values`, their indices in DRAG_NAMES."""
+    return [DRAG_NAMES[int(index)] for index in values]
 
 
 def typed_unit(name: str, axis: Axis) -> str:
@@ -134,7 +135,7 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":
             names = drag_names(axis.array().tolist())
-            words.append(f"drag {RANGE_OF_DRAG if len(names) == len(DRAGS) else ' and '.join(names)}")
+            words.append(f"drag {DRAG_RANGE_NAME if len(names) == len(DRAG_NAMES) else ' and '.join(names)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
@@ -162,7 +163,7 @@ def _quantity_schema() -> dict[str, Any]:
     }
 
 
-DRAG_NAME_SCHEMA = {"enum": list(DRAGS)}
+DRAG_NAME_SCHEMA = {"enum": list(DRAG_NAMES)}
 """JSON schema of the name of a drag estimate."""
 QuantityAxis = Annotated[Axis, BeforeValidator(quantity_axis), WithJsonSchema(_quantity_schema())]
 DragAxis = Annotated[
@@ -171,7 +172,7 @@ DragAxis = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"enum": [RANGE_OF_DRAG, *DRAGS]},
+                {"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]},
                 {"type": "array", "items": DRAG_NAME_SCHEMA, "minItems": 1},
             ]
         }

@@ -11,9 +11,9 @@ from pydantic import Field, model_validator
 from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE_LOADS, SCALE_NAME, UNITS
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAME, UNITS
 from ...model.material.build import Build
-from ...model.parameters import NONLINEAR_PARAMETERS, names_except
+from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..material import LawName, SectionName
 from ..values import Axis, ParameterAxis, StrictSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
@@ -107,8 +107,8 @@ class ArmSection(StrictSection):
     def standard(self) -> bool:
         """Whether all arms are uniform and of linear material."""
         if self.segments is None:
-            return self.build.standard and tapers_of(self) == {1.0}
-        return all(build.standard for build in builds_of(self))
+            return self.build.is_uniform_and_linear and tapers_of(self) == {1.0}
+        return all(build.is_uniform_and_linear for build in builds_of(self))
 
     @property
     def load_key(self) -> str | None:
@@ -118,12 +118,12 @@ class ArmSection(StrictSection):
     @property
     def load(self) -> str | None:
         """Name of the given load, "pressure" or "force", absolute or relative; None if no load is given."""
-        return RELATIVE_LOADS.get(str(self.load_key), self.load_key)
+        return LOAD_OF_RATIO.get(str(self.load_key), self.load_key)
 
     @property
     def varying_quantities(self) -> tuple[str, ...]:
         """Names of the quantities that have several values or are relative to flutter."""
-        return tuple(n for n, axis in self.quantity_axes.items() if axis.size > 1 or n in RELATIVE_LOADS)
+        return tuple(n for n, axis in self.quantity_axes.items() if axis.size > 1 or n in LOAD_OF_RATIO)
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
@@ -151,9 +151,9 @@ class ArmSection(StrictSection):
         """Raises ValueError for a value out of range, or if the model does not cover a grid's first arm."""
         for name, axis in self.quantity_axes.items():
             low = float(axis.array()[0])
-            if name in RELATIVE_LOADS and low < 0:
+            if name in LOAD_OF_RATIO and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
-            if name in UNITS and not (QUANTITIES[name].signed or low > 0):
+            if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_parameter_grid:
             self.arm_of(self.first_values, loaded=True)
@@ -189,7 +189,7 @@ class ArmSection(StrictSection):
         Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
         arm = self.arm_of(self.first_values, loaded=True)
-        names = (*names_except("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
+        names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
             different = {getattr(self.arm_of(each), name) for each in self.values_of_arms()}
@@ -204,7 +204,7 @@ class ArmSection(StrictSection):
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
         first = self.arm_of(self.first_values)
-        units = {name: np.array([getattr(first, name)]) for name in ARM_UNITS}
+        units = {name: np.array([getattr(first, name)]) for name in ARM_SCALES}
         if len(values.get("drag", ())) > 1:
             first_values = self.first_values
             arms = {drag: self.arm_of(first_values | {"drag": drag}) for drag in values["drag"].tolist()}

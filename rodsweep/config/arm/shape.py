@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from ...errors import InputError
 from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.units import unit_of, value_in_unit
 from .axes import UncoveredArm
 
@@ -55,7 +55,7 @@ def build_of(arm: "ArmSection") -> Build:
     Raises ValueError if the arms of a grid of parameters have different profiles.
     """
     try:
-        alike = Build(arm.law or STANDARD.law, arm.section or STANDARD.section)
+        alike = Build(arm.law or DEFAULT_BUILD.law, arm.section or DEFAULT_BUILD.section)
     except ValueError as error:
         raise ValueError(f"parameters.arm.{error}") from None
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):

@@ -11,7 +11,7 @@ from ...model.parameters import (
     NONLINEAR_PARAMETERS,
     OPTIONAL_PARAMETERS,
     PARAMETERS,
-    names_except,
+    parameter_names_except,
 )
 from ..axes import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
 from ..schema import Config
@@ -75,11 +75,11 @@ class BranchConfig(Config):
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
-        return (*names_except(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
+        return (*parameter_names_except(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return names_except(options.get("along", "F"), NONLINEAR_PARAMETERS)
+        return parameter_names_except(options.get("along", "F"), NONLINEAR_PARAMETERS)
 
     @model_validator(mode="before")
     @classmethod

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ...model.parameters import NONLINEAR_PARAMETERS, names_except
+from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..axes import NonlinearParameters
 from ..schema import Config, CrossingCount
 from ..values import Number, StrictSection
@@ -41,7 +41,7 @@ class CriticalityConfig(Config):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return names_except("F", NONLINEAR_PARAMETERS)
+        return parameter_names_except("F", NONLINEAR_PARAMETERS)
 
     @model_validator(mode="after")
     def _refuse_force(self) -> "CriticalityConfig":

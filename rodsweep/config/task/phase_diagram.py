@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...model.arm.quantities import RELATIVE_LOADS
+from ...model.arm.quantities import LOAD_OF_RATIO
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axes import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
@@ -179,11 +179,11 @@ class PhaseDiagramConfig(LinearConfig):
             moves = "no parameter" if several in FLUID_QUANTITIES else "several parameters at once"
             why = (
                 "is relative to flutter"
-                if several in RELATIVE_LOADS
+                if several in LOAD_OF_RATIO
                 else f"has several values, which move {moves}"
             )
             raise ValueError(
-                f"parameters.arm.{RELATIVE_LOADS.get(several, several)} {why}; a phase diagram of an "
+                f"parameters.arm.{LOAD_OF_RATIO.get(several, several)} {why}; a phase diagram of an "
                 f"arm is over {joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given with "
                 "the arm"
             )

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ...model.parameters import names_except
+from ...model.parameters import parameter_names_except
 from ..schema import CrossingCount, LinearConfig
 from ..values import Number, StrictSection
 
@@ -33,7 +33,7 @@ class ThresholdsConfig(LinearConfig):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return names_except("F")
+        return parameter_names_except("F")
 
     @model_validator(mode="after")
     def _refuse_force(self) -> "ThresholdsConfig":

@@ -20,8 +20,8 @@ from .determinant import ArmDeterminant, arm_determinant
 from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_of_family_arm, eigenvalue_of_family_arm
 from .newton import refine_eigenvalue_and_error
 
-CENTRAL_DIFFERENCE = ((1, 0.5), (-1, -0.5))
-FORWARD_DIFFERENCE = ((0, -1.5), (1, 2.0), (2, -0.5))
+CENTRAL_DIFFERENCE_STENCIL = ((1, 0.5), (-1, -0.5))
+FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
 """Differences of second order for a first derivative: pairs (offset in steps, weight times step)."""
 
 
@@ -35,7 +35,7 @@ class ArmDoubleEigenvalueSettings:
     compared_level_factors: tuple[int, ...] = (1, 4, 16)
     """D at w is computed on the elements for each of these multiples of |w|. The differences estimate the
     rounding error of D at a double eigenvalue."""
-    spread_factor: float = 3.0
+    error_over_spread: float = 3.0
     """The rounding error of D is estimated as this number times max - min of D on different elements."""
     max_shortenings: int = 20
     """Maximum number of divisions of a difference step by `step_divisor`, to 1e-12 of the first step."""
@@ -49,21 +49,22 @@ ARM_DOUBLE_EIGENVALUE_SETTINGS = ArmDoubleEigenvalueSettings()
 class ArmAlongPath:
     """D of the arms of one path, as a function of the path variable p.
 
-    family: function that returns the family of arms that contains p, or None to compute D from the arm at p
-    itself.
+    family_at: function that returns the family of arms that contains p, or None to compute D from the arm at
+    p itself.
     """
 
     def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
         self.path = path
-        self.family = family
+        self.family_at = family
 
     def determinant(self, p: float) -> ArmDeterminant:
         """The determinant D of the arm at p."""
         return arm_determinant(self.path.rod_at(p))
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        """Returns (w, dw/dp, error of w) of the eigenvalue w near `guess`, for the arm at p."""
-        family = self.family(p)
+        """Returns (w, dw/dp, absolute error of w) of the eigenvalue w near `guess`, for the arm at p: from
+        the family that contains p if the result is accurate, else from the arm itself."""
+        family = self.family_at(p)
         # The family is valid for |w| <= W; Newton's iterates from |guess| < W/2 stay in this disc.
         if family is not None and abs(guess) < family.largest_w / 2:
             w, slope, error = eigenvalue_of_family_arm(family, guess, p)
@@ -133,8 +134,8 @@ class ArmAlongPath:
         return FAILED_ZERO
 
     def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
-        """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `spread_factor` times (max -
-        min) of D on different divisions of the arm into elements. S: scale of the result.
+        """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `error_over_spread` times
+        (max - min) of D on different divisions of the arm into elements. S: scale of the result.
 
         Minors that are large in the middle of an arm have rounding errors that `noise` does not contain.
         """
@@ -142,16 +143,16 @@ class ArmAlongPath:
         values = [
             self._determinant_value(x, p),
             *(
-                arm.value_at_level(x, factor)
+                arm.value_on_finer_elements(x, factor)
                 for factor in ARM_DOUBLE_EIGENVALUE_SETTINGS.compared_level_factors
             ),
         ]
         D = [value.D.real * math.exp(value.S - S) for value in values]
-        return ARM_DOUBLE_EIGENVALUE_SETTINGS.spread_factor * (max(D) - min(D))
+        return ARM_DOUBLE_EIGENVALUE_SETTINGS.error_over_spread * (max(D) - min(D))
 
     def _determinant_value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
-        family = self.family(p)
+        family = self.family_at(p)
         if family is not None and abs(x) < family.largest_w:
             return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
@@ -171,12 +172,12 @@ class ArmAlongPath:
         """
         step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
-            return FORWARD_DIFFERENCE, step
+            return FORWARD_DIFFERENCE_STENCIL, step
         for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_shortenings):
             if self._is_valid_at(p + step) and self._is_valid_at(p - step):
                 break
             step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor
-        return CENTRAL_DIFFERENCE, step
+        return CENTRAL_DIFFERENCE_STENCIL, step
 
     def _is_valid_at(self, p: float) -> bool:
         """Whether the arm at p is valid."""

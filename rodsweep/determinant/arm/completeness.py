@@ -34,13 +34,13 @@ from .value import determinant_along_chain
 class CompletenessSettings(CompiledSettings):
     """Settings for proofs of completeness, and for the points x_j at which D'/D is summed."""
 
-    spare_eigenvalues: int = 2
+    additional_eigenvalues: int = 2
     """Number of eigenvalues requested beyond the modes to prove. With 2 additional eigenvalues, 59 of 100
     random arms need a count; with 0, 73 arms. A count costs more than two eigenvalues."""
     point_counts: tuple[int, ...] = (3, 6)
     """Numbers k of points x_j of successive trials. Fewer points can lie closer to the hull; more points
     suffice for a wider hull."""
-    max_last_point: tuple[float, ...] = (1.5, 6.0)
+    max_last_point_ratios: tuple[float, ...] = (1.5, 6.0)
     """Largest x_k divided by the largest known |w|, for each of `point_counts`. Most proofs with a larger x_k
     fail, because there unknown and known eigenvalues contribute almost equally."""
     min_first_point: float = 0.35
@@ -63,7 +63,7 @@ class CompletenessSettings(CompiledSettings):
 
     def proof_trials(self) -> list[tuple[int, float]]:
         """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
-        return list(zip(self.point_counts, self.max_last_point, strict=True))
+        return list(zip(self.point_counts, self.max_last_point_ratios, strict=True))
 
 
 COMPLETENESS_SETTINGS = CompletenessSettings()
@@ -88,6 +88,7 @@ def prove_complete(
 
     line: if positive, or if no hull exists, nothing is proved. known, error: known eigenvalues and their
     absolute errors, (n,) each. Complex eigenvalues without their conjugate in `known` are treated as unknown.
+    Raises FloatingPointError if no elements resolve the arm.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0

@@ -46,7 +46,7 @@ class ArmDeterminant:
         W, polynomials = self.propagators_for(abs(w))
         return determinant_along_chain(complex(w), W, polynomials)
 
-    def value_at_level(self, w: complex, factor: float) -> DeterminantValue:
+    def value_on_finer_elements(self, w: complex, factor: float) -> DeterminantValue:
         """D and D' at w times exp(-S), from elements made for factor * |w|, factor >= 1.
 
         The differences between values for several factors show the rounding error of D.
@@ -80,7 +80,7 @@ class ArmDeterminant:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
         points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
         lengths = np.diff(self.rod.build.breaks)[:, None]
-        local = self.rod.local((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
+        local = self.rod.local_coefficients((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
         return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
 
     def propagators_for(self, size: float, highest: float | None = None) -> PropagatorsUpToW:
@@ -128,7 +128,7 @@ class PropagatorElements(NamedTuple):
 def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     """Samples of the arms `rods`, whose profiles have equal breaks."""
     points, weights, _ = sampled_arm(rods[0])
-    local = Rod.local_of_all(rods, points)
+    local = Rod.local_coefficients_of_rods(rods, points)
     forces = np.array([[rod.F] for rod in rods])
     return CoefficientSamples(points, local, arm_samples(forces, local, weights).squares)
 
@@ -145,7 +145,7 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
             break
         lengths = edges[1:] - edges[:-1]
-        local = np.array(Rod.local_of_all(rods, edges[:-1, None] + lengths[:, None] * points))
+        local = np.array(Rod.local_coefficients_of_rods(rods, edges[:-1, None] + lengths[:, None] * points))
         finer = halved_where_coarse(edges, local)
         if finer is edges:
             return PropagatorElements(lengths, local)

@@ -46,7 +46,7 @@ BOX_SETTINGS = BoxSettings()
 class ZeroFreeDiscSettings:
     """Settings for the disc about w = 0 in which D has no zero."""
 
-    max_departure: float = 0.5
+    max_deviation_from_one: float = 0.5
     """Bound of |D - 1| in the disc about w = 0. Any bound below 1 excludes zeros of D."""
 
 
@@ -155,7 +155,7 @@ def _zero_free_radius(r: float, T: float, X: float, G: float, pull: float) -> fl
 
     T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. pull: bound of -F g, at least 0.
     """
-    while _distance_from_one_bound(r, T, X, G, pull) >= ZERO_FREE_DISC_SETTINGS.max_departure:
+    while _distance_from_one_bound(r, T, X, G, pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one:
         r /= 2
     return r
 

@@ -66,8 +66,8 @@ BOX_PROOF_SETTINGS = BoxProofSettings()
 EMPTY_BOX = 0
 REGULAR_BOX = 1
 UNDECIDED_BOX = 2
-"""Outcomes of `examine_box`. EMPTY: D has no zero in the box. REGULAR: at most one zero in the doubled box.
-UNDECIDED: neither is proved."""
+"""Outcomes of `examine_box`. EMPTY_BOX: D has no zero in the box. REGULAR_BOX: D has at most one zero in the
+doubled box. UNDECIDED_BOX: neither is proved."""
 
 
 class Box(NamedTuple):
@@ -139,9 +139,9 @@ def examine_box(
 ) -> tuple[int, float, float]:
     """Returns (outcome, cost in eta, cost in p) for the box about w = i eta with half-widths `half`.
 
-    outcome: EMPTY, REGULAR or UNDECIDED. cost: for an undecided box, the change of the exponents of D across
-    the box in this variable; the variable with the higher cost is divided. 0 for other boxes. coefficients,
-    direction: coefficients at the centre and their derivative by p.
+    outcome: EMPTY_BOX, REGULAR_BOX or UNDECIDED_BOX. cost: for an undecided box, the change of the exponents
+    of D across the box in this variable; the variable with the higher cost is divided. 0 for other boxes.
+    coefficients, direction: coefficients at the centre and their derivative by p.
     """
     D, D_w, D_p, S, noise = determinant_along_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)

@@ -41,6 +41,7 @@ class Collocation(NamedTuple):
 
     @property
     def stages(self) -> int:
+        """Number of stages s."""
         return len(self.nodes)
 
     def evaluation_matrix(self, at: Array) -> Array:

@@ -56,7 +56,7 @@ class Elements:
         return np.diff(self.edges)
 
     @cached_property
-    def positions(self) -> Array:
+    def node_positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
         inner = (gauss_lobatto_rule(self.order)[0][1:] + 1) / 2
         starts: Array = np.array(self.edges[:-1])

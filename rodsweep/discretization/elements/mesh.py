@@ -43,7 +43,7 @@ class NodeMatrices(NamedTuple):
 
 @dataclass(frozen=True)
 class Mesh(Elements):
-    """Elements with matrices over all nodes. `nodes` is the number of nodes without the tip.
+    """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip.
 
     Meshes with equal edges and order compare equal, also in different processes.
     """
@@ -90,9 +90,9 @@ def mesh_with_edges(edges: tuple[float, ...], order: int) -> Mesh:
 def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
     """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`.
 
-    Shape (target.nodes + 1, source.nodes + 1).
+    Shape (target nodes + 1, source nodes + 1); the numbers of nodes are without the tip.
     """
-    return source.evaluation_matrix(target.positions)
+    return source.evaluation_matrix(target.node_positions)
 
 
 def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
@@ -137,7 +137,7 @@ class ShapeIntegrationMatrices(NamedTuple):
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def shape_integration_matrices(order: int) -> ShapeIntegrationMatrices:
-    """The `ShapeIntegrationMatrices` matrices of elements of order `order`, cached."""
+    """The `ShapeIntegrationMatrices` of elements of order `order`, cached."""
     x = gauss_lobatto_rule(order)[0]
     g = gauss_legendre_rule(order + RECONSTRUCTION_SETTINGS.extra_points)[0]
     return ShapeIntegrationMatrices(

@@ -41,7 +41,7 @@ def gauss_lobatto_rule(p: int) -> tuple[Array, Array]:
     x = -np.cos(np.pi * np.arange(p + 1) / p)
     for _ in range(LOBATTO_SETTINGS.max_steps):
         # (1 - x^2) P_p' = p (P_{p-1} - x P_p) and its derivative -p (p + 1) P_p.
-        P, Q = _legendre_pair(p, x)
+        P, Q = _two_highest_legendre_values(p, x)
         step = (x * P - Q) / ((p + 1) * P)
         x = x - step
         if np.abs(step).max() < LOBATTO_SETTINGS.tolerance:
@@ -50,7 +50,7 @@ def gauss_lobatto_rule(p: int) -> tuple[Array, Array]:
     x = (x - x[::-1]) / 2
     x[0] = -1.0
     x[-1] = 1.0
-    return x, 2 / (p * (p + 1) * _legendre_pair(p, x)[0] ** 2)
+    return x, 2 / (p * (p + 1) * _two_highest_legendre_values(p, x)[0] ** 2)
 
 
 def lobatto_points(nodes: int) -> Array:
@@ -58,7 +58,7 @@ def lobatto_points(nodes: int) -> Array:
     return (gauss_lobatto_rule(nodes - 1)[0] + 1) / 2
 
 
-def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
+def _two_highest_legendre_values(p: int, x: Array) -> tuple[Array, Array]:
     """Returns (P_p(x), P_{p-1}(x)), Legendre polynomials at points x, (n,), by the three-term recurrence."""
     previous = np.ones_like(x)
     current = x.copy()

@@ -22,7 +22,7 @@ class ResolutionSettings:
     digit_intercept: float = 0.7
     """Increase of the order for each further digit, at |q| = 0."""
     digit_slope: float = 0.02
-    """Increase of `digit_intercept` per unit of |q|."""
+    """Increase of the order for each further digit, per unit of |q|, in addition to `digit_intercept`."""
     digit_slope_max_wave_number: float = 35.0
     """The increase of the order for each further digit is constant for |q| larger than this."""
     wave_factor: float = 1.4
@@ -54,6 +54,7 @@ class Resolution:
 
     @property
     def unknowns(self) -> int:
+        """Number of unknowns y, theta and s on this mesh."""
         return 3 * self.element_count * self.order
 
 

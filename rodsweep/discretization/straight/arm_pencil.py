@@ -49,7 +49,7 @@ class ArmPencil:
 
     Every break of the arm must be an edge of the mesh. rows, columns: row and column of each entry of the
     pattern, (nnz,), sorted by row, then column, with the full diagonal. The unknowns are y, theta and s,
-    `mesh.nodes` of each.
+    `mesh.node_count` of each.
     """
 
     def __init__(self, mesh: ArmMesh):
@@ -67,7 +67,7 @@ class ArmPencil:
         # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
         self._sample_points = np.concatenate([gauss_points, mesh.points_inside_elements], axis=1)
         slopes = slope.T * wg
-        self._y: NDArray[np.int64] = (
+        self._y_indices: NDArray[np.int64] = (
             np.arange(mesh.element_count)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
         self.rows, self.columns, where = self._sparsity_pattern()
@@ -87,15 +87,15 @@ class ArmPencil:
         )
 
     @property
-    def positions(self) -> Array:
+    def node_positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
-        return self.mesh.positions
+        return self.mesh.node_positions
 
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of the arm `rod`."""
         return PencilMatrices(
             *_pencil_of_coefficients(
-                float(rod.F), np.array(rod.local(self._sample_points)), self._mesh_matrices
+                float(rod.F), np.array(rod.local_coefficients(self._sample_points)), self._mesh_matrices
             )
         )
 
@@ -111,7 +111,7 @@ class ArmPencil:
         """
         n = self.node_count
         size = self.unknowns
-        y = self._y
+        y = self._y_indices
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]

@@ -86,7 +86,7 @@ def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: i
         largest = max(largest, float(share) / count)
     order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
     return Elements(
-        tuple(edges), order + (0 if rod.uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
+        tuple(edges), order + (0 if rod.is_uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
     )
 
 

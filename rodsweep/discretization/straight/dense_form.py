@@ -31,7 +31,7 @@ class DenseForm:
     B: Array
     displacement_factors: Array
 
-    def fields(self, vectors: Complex) -> tuple[NDArray, NDArray]:
+    def displacements(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
         (nodes + 1, k) each.
         """
@@ -44,9 +44,9 @@ class DenseForm:
         h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains are limits from
         the right.
         """
-        c2 = self.rod.local(_points_inside_elements(self.mesh, points)).c2
+        c2 = self.rod.local_coefficients(_points_inside_elements(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
-        return np.stack([shear.T, field_derivatives_at(self.mesh, self.fields(vectors)[1], points).T])
+        return np.stack([shear.T, field_derivatives_at(self.mesh, self.displacements(vectors)[1], points).T])
 
     def with_tip_terms(self, pair: float, tip: float) -> Array:
         """A plus the matrix of the tip term pair (a theta - b y) - tip a y at u = 1, (unknowns, unknowns); a,

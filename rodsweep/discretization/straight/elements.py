@@ -64,7 +64,7 @@ class StraightElements:
         each = np.eye(PLANE_COMPONENT_COUNT)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
-        E = material.rest[:, None]
+        E = material.rest_strain[:, None]
         Sigma = material.tip_stress[:, None]
         WD, W = self._element_matrices
         half = len(self.components)
@@ -95,7 +95,7 @@ class StraightElements:
         WD, w = _weighted_derivative_matrix(self.form.mesh.order)
         return WD, w / (2 * self.form.mesh.element_count)
 
-    def apply_A(self, x: Values) -> Values:
+    def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
         return self.assemble(self.gather(x) @ self.A.T)
 

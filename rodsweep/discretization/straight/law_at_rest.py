@@ -70,9 +70,9 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     c1, _, c3 = nodal.compliance
     stiffness = law.stiffness(nu)
     slope = law.stiffness_slope(nu)
-    bending = law.bending(nu)
-    bending_slope = law.bending_slope(nu)
-    bending_curvature = law.bending_curvature(nu)
+    bending = law.bending_factor(nu)
+    bending_slope = law.bending_factor_slope(nu)
+    bending_curvature = law.bending_factor_second_derivative(nu)
     # The force compresses the straight arm: d nu/dF = -c1/(dN/dS1).
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
@@ -84,7 +84,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
         N11=slope * c1,
         N33=bending_slope * c3,
         M13=bending_slope * c1,
-        N111=law.stiffness_curvature(nu) * c1**2,
+        N111=law.stiffness_second_derivative(nu) * c1**2,
         N133=bending_curvature * c1 * c3,
         M113=bending_curvature * c1**2,
         M333=0 * ones,
@@ -104,9 +104,9 @@ def _write_derivatives_at_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> 
     c1 = sides[..., 1]
     means = sides[..., 5]
     shares = np.moveaxis(sides[..., 3:5], -1, 0)
-    T = np.array([law.stiffness(nu), law.bending(nu)])
-    slopes = np.array([law.stiffness_slope(nu), law.bending_slope(nu)])
-    first, second, third = mean_derivatives_at_jumps(law, sides)
+    T = np.array([law.stiffness(nu), law.bending_factor(nu)])
+    slopes = np.array([law.stiffness_slope(nu), law.bending_factor_slope(nu)])
+    first, second, third = derivatives_by_mean_unknowns(law, sides)
     moved = -c1 / T[0]
     tangent = 1 / (shares / T).sum(axis=-1)
     for component, (own, change) in enumerate(
@@ -129,7 +129,7 @@ LawDerivatives = tuple[Array, Array, Array]
 (..., 2, 2, 2, 2). The first of the listed indices is the function; all further indices are variables."""
 
 
-def mean_derivatives_at_jumps(law: Law, sides: Array) -> LawDerivatives:
+def derivatives_by_mean_unknowns(law: Law, sides: Array) -> LawDerivatives:
     """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
     (k, 2, 7).
 
@@ -150,12 +150,12 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDe
     """
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
     first[..., 0, 0] = law.stiffness(nu)
-    first[..., 1, 1] = law.bending(nu)
+    first[..., 1, 1] = law.bending_factor(nu)
     second[..., 0, 0, 0] = law.stiffness_slope(nu) * c1
-    second[..., 0, 1, 1] = law.bending_slope(nu) * c3
-    second[..., 1, 0, 1] = second[..., 1, 1, 0] = law.bending_slope(nu) * c1
-    third[..., 0, 0, 0, 0] = law.stiffness_curvature(nu) * c1**2
-    bending = law.bending_curvature(nu)
+    second[..., 0, 1, 1] = law.bending_factor_slope(nu) * c3
+    second[..., 1, 0, 1] = second[..., 1, 1, 0] = law.bending_factor_slope(nu) * c1
+    third[..., 0, 0, 0, 0] = law.stiffness_second_derivative(nu) * c1**2
+    bending = law.bending_factor_second_derivative(nu)
     for mixed in ((0, 1, 1), (1, 0, 1), (1, 1, 0)):
         third[(..., 0, *mixed)] = bending * c1 * c3
     for mixed in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):

@@ -41,9 +41,9 @@ MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
 class MixedForm:
     """One rod on one mesh in mixed form; k1, k2 may be inf and gamma3 may be 0.
 
-    A state X has the shape (..., unknowns). With N = mesh.nodes, X contains N values of S1 and of S2 (k3/L^2)
-    and of S3 (k3/L) at all nodes except the tip, then N + 1 values of v1 and of v2 (L/tau2) and of Omega3
-    (1/tau2) at all nodes. X may be complex.
+    A state X has the shape (..., unknowns). With N = mesh.node_count, X contains N values of S1 and of S2
+    (k3/L^2) and of S3 (k3/L) at all nodes except the tip, then N + 1 values of v1 and of v2 (L/tau2) and of
+    Omega3 (1/tau2) at all nodes. X may be complex.
     """
 
     rod: Rod

@@ -69,8 +69,8 @@ class Pencil(Elements):
     The matrix of one rod is A = sum_i coefficients(rod)[i] term_entries[i]. term_entries: entries of the
     constant matrices, (6, nnz). rows, columns: row and column of each entry, (nnz,), sorted by row, then
     column, with the full diagonal. nodal_masses: lumped mass of the nodes, (nodes,). B is diagonal: 1 for y,
-    gamma3 divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s, `nodes` of
-    each, without the clamp."""
+    gamma3 divided by the squared angle weight for theta, 0 for s. The unknowns are y, theta and s,
+    `node_count` of each, without the clamp."""
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]

@@ -44,7 +44,7 @@ def tip_layer_ratio(rod: Rod) -> float:
     """T = d(1)/m(1) of a rod without rotational drag; 0 for a rod with rotational drag or without shear."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return tip_layer_factor(rod)
     edges = _element_edges(rod)
     x, _ = gauss_lobatto_rule(TIP_LAYER_ORDER)
@@ -52,7 +52,7 @@ def tip_layer_ratio(rod: Rod) -> float:
     value = lagrange_interpolation_matrix(x, points)
     slope = value @ differentiation_matrix(x)
     lengths = np.diff(edges)
-    local = rod.local(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
+    local = rod.local_coefficients(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
     stiffness = 1 / local.c3 * weights * (2 / lengths)[:, None]
     foundation = local.g * local.nu / local.c2 * weights * (lengths / 2)[:, None]
     total = 0.0
@@ -88,7 +88,7 @@ def _element_edges(rod: Rod) -> Array:
     middles = np.concatenate(
         [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in pieces]
     )
-    local = rod.local(middles)
+    local = rod.local_coefficients(middles)
     waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
     count = min(max(1, ceil(waves / TIP_LAYER_SETTINGS.max_length)), TIP_LAYER_SETTINGS.max_equal_elements)
     equal = np.linspace(0.0, 1.0, count + 1)

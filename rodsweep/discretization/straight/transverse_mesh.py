@@ -22,7 +22,7 @@ def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
     """The mesh that resolves fields of the wave number `wave_number`, in 1/L, on a rod to the relative
     accuracy `accuracy`.
     """
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
     return ArmMesh(elements.edges, elements.order)

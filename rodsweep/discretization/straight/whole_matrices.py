@@ -46,7 +46,7 @@ class WholeRodMatrices:
         """Diagonal of M for the unknowns of `components`, (n,)."""
         return self.form.M[self.state_indices]
 
-    def apply_A(self, x: Values) -> Values:
+    def times_A(self, x: Values) -> Values:
         """Product A x, (unknowns,)."""
         return self._scatter(self.A @ x[self.state_indices])
 
@@ -91,4 +91,4 @@ def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightE
     """A and M of the form `form` about its straight rod. components: indices of the components of stresses
     and velocities to which A and M are restricted.
     """
-    return (StraightElements if form.rod.standard else WholeRodMatrices)(form, components)
+    return (StraightElements if form.rod.is_uniform_and_linear else WholeRodMatrices)(form, components)

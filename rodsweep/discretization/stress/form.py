@@ -66,8 +66,8 @@ class StressForm(RodOnMesh):
         return layout.state(self.stresses_on_mesh(grid, x), V)
 
     def parameter_derivative(self, name: str) -> NodalChange:
-        """Derivative of `nodal` with respect to the coordinate of the parameter `name`: 1/k for a stiffness
-        k, else the parameter itself.
+        """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a
+        stiffness k, else the parameter itself.
         """
         change = material_derivative_at_nodes(self.rod, name, self.mesh)
         return nodal_change(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
@@ -75,9 +75,9 @@ class StressForm(RodOnMesh):
     @cached_property
     def mass_diagonal(self) -> Array:
         """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
-        return self.mass_of(self.nodal_rod)
+        return self.mass_diagonal_of(self.nodal_rod)
 
-    def mass_of(self, rod: NodalRod | NodalChange) -> Array:
+    def mass_diagonal_of(self, rod: NodalRod | NodalChange) -> Array:
         """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
         of a rod.
         """

@@ -12,7 +12,7 @@ from ...api.arm import Arm
 from ...api.sweeping import sweep
 from ...errors import InputError
 from ...model.arm.quantities import QUANTITIES
-from ...model.units import in_si
+from ...model.units import quantity_in_si
 from ..state import LAWS, PageState, float_or_text
 
 Dataset = Any
@@ -168,7 +168,7 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     """
     given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
     quantity = QUANTITIES[state.second]
-    middle = in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
+    middle = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
     values = np.geomspace(middle / ARM_SPAN_RATIO, middle * ARM_SPAN_RATIO, ARM_ROW_COUNT)
     subject = state.subject()
     assert isinstance(subject, Arm)

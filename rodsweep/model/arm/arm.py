@@ -12,11 +12,11 @@ from math import isnan
 from types import SimpleNamespace
 
 from ...errors import InputError
-from ..material.build import STANDARD, Build
+from ..material.build import DEFAULT_BUILD, Build
 from ..parameters import PARAMETERS
-from ..units import Given, share_of_flutter
-from .drag import DRAGS, Drag
-from .quantities import LOADS, UNITS, number_in_si, quoted_quantity
+from ..units import GivenQuantity, load_over_flutter
+from .drag import DRAG_NAMES, Drag
+from .quantities import LOADS, UNITS, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
@@ -33,27 +33,27 @@ class SlenderArm:
     the bore is closed at the tip and filled with the surrounding fluid at ambient pressure. (law, section): a
     key of `rodsweep.model.material.laws.LAWS`. Load: pressure, force, or no load; positive loads push towards
     the base; "1.2 of flutter" is a multiple of the flutter threshold. density_difference: density of the
-    arm's material minus density of the fluid. drag: name in DRAGS of the drag estimate that the rod uses.
-    Raises InputError, naming the quantity.
+    arm's material minus density of the fluid. drag: name in DRAG_NAMES of the drag estimate that the rod
+    uses. Raises InputError, naming the quantity.
     """
 
-    length: Given | None = None
-    young: Given | None = None
-    viscosity: Given
-    radius: Given | None = None
-    inner_radius: Given | None = None
-    tip_radius: Given | None = None
-    width: Given | None = None
-    height: Given | None = None
-    segments: Sequence[str | Mapping[str, Given]] | None = None
-    pressure: Given | None = None
-    force: Given | None = None
+    length: GivenQuantity | None = None
+    young: GivenQuantity | None = None
+    viscosity: GivenQuantity
+    radius: GivenQuantity | None = None
+    inner_radius: GivenQuantity | None = None
+    tip_radius: GivenQuantity | None = None
+    width: GivenQuantity | None = None
+    height: GivenQuantity | None = None
+    segments: Sequence[str | Mapping[str, GivenQuantity]] | None = None
+    pressure: GivenQuantity | None = None
+    force: GivenQuantity | None = None
     poisson: float = 0.5
-    law: str = STANDARD.law
-    section: str = STANDARD.section
-    fluid_density: Given = "1000 kg/m^3"
-    density_difference: Given | None = None
-    drag: str = DRAGS[0]
+    law: str = DEFAULT_BUILD.law
+    section: str = DEFAULT_BUILD.section
+    fluid_density: GivenQuantity = "1000 kg/m^3"
+    density_difference: GivenQuantity | None = None
+    drag: str = DRAG_NAMES[0]
     si: SimpleNamespace = field(init=False, repr=False, compare=False)
     """Quantities of UNITS in SI units; nan if not given. `length`, `young` (base): of segments, if any."""
     si_segments: tuple[ArmSegment, ...] = field(init=False, repr=False, compare=False)
@@ -62,7 +62,7 @@ class SlenderArm:
     def __post_init__(self) -> None:
         """Converts quantities to SI. Raises InputError for invalid quantities, NotSlender for a short arm."""
         object.__setattr__(self, "poisson", getattr(self.poisson, "tolist", lambda: self.poisson)())
-        numbers = {name: number_in_si(name, getattr(self, name)) for name in UNITS}
+        numbers = {name: arm_quantity_in_si(name, getattr(self, name)) for name in UNITS}
         texts = None if self.segments is None else segment_texts(self.segments)
         object.__setattr__(self, "si", SimpleNamespace(**numbers))
         object.__setattr__(self, "segments", texts)
@@ -127,7 +127,7 @@ class SlenderArm:
     @property
     def standard(self) -> bool:
         """Whether the arm is uniform and of linear material."""
-        return self.build.standard and self.taper == 1
+        return self.build.is_uniform_and_linear and self.taper == 1
 
     @property
     def crushing_force(self) -> float:
@@ -142,7 +142,7 @@ class SlenderArm:
     @property
     def share_of_flutter(self) -> float | None:
         """Load divided by the flutter load; None for an absolute load and for an arm without load."""
-        return None if self.load is None else share_of_flutter(getattr(self, self.load))
+        return None if self.load is None else load_over_flutter(getattr(self, self.load))
 
     def mass_at(self, station: Station) -> float:
         """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore.
@@ -208,18 +208,18 @@ class SlenderArm:
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """Estimates of the drag at the base, in the order of DRAGS."""
-        return self.shape.drags(self.shape.base, self.si.viscosity)
+        """Estimates of the drag at the base, in the order of DRAG_NAMES."""
+        return self.shape.drags_at(self.shape.base, self.si.viscosity)
 
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
         """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
         index = self.drags.index(drag)
-        return tuple(self.shape.drags(each, self.si.viscosity)[index] for each in self.shape.stations)
+        return tuple(self.shape.drags_at(each, self.si.viscosity)[index] for each in self.shape.stations)
 
     @property
     def chosen_drag(self) -> Drag:
         """Drag of the rod at the base: the drag estimate with the name in the field `drag`."""
-        return self.drags[DRAGS.index(self.drag)]
+        return self.drags[DRAG_NAMES.index(self.drag)]
 
     def gamma3_with(self, drag: Drag) -> float:
         """Dimensionless rotational drag gamma3/(gamma2 L^2) for the drag estimate `drag` (Sec. VI)."""

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..material.build import STANDARD
+from ..material.build import DEFAULT_BUILD
 from ..material.profile import FACTOR_NAMES
 from ..parameters import NONLINEAR_PARAMETERS
 from .arm import SlenderArm
@@ -18,13 +18,16 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
     return {name: arm.parameter(name) for name in names}
 
 
-def material_of(arm: SlenderArm) -> dict[str, Any]:
+def material_section_of(arm: SlenderArm) -> dict[str, Any]:
     """Keys and values of the config section `material` for `arm`; keys with default values are left out.
 
     Possible keys are law, section and profile.
     """
     build = arm.build
-    words = {"law": (build.law, STANDARD.law), "section": (build.section, STANDARD.section)}
+    words = {
+        "law": (build.law, DEFAULT_BUILD.law),
+        "section": (build.section, DEFAULT_BUILD.section),
+    }
     material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}
     if build.profile is not None:
         columns = (build.profile.u, *zip(*build.profile.rows, strict=True))

@@ -13,14 +13,14 @@ LEAST_SLENDERNESS = 10.0
 slender-body theory are then meaningless."""
 
 
-DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
+DRAG_NAMES = ("likeliest", "least", "most_rotational", "most_translational", "most")
 
-"""Names of the drag estimates in the order of `range_of_drag`: the likeliest, then the corners of the range.
+"""Names of the drag estimates in the order of `drag_estimates`: the likeliest, then the corners of the range.
 `least` has the smallest translational and rotational drag, `most` the largest; `most_rotational` combines the
 largest rotational with the smallest translational drag, `most_translational` the reverse."""
 
-RANGE_OF_DRAG = "range"
-"""Value of the config key `drag` for a sweep over all estimates in DRAGS."""
+DRAG_RANGE_NAME = "range"
+"""Value of the config key `drag` for a sweep over all estimates in DRAG_NAMES."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +53,7 @@ class Drag:
         return self.viscosity * self.rotational
 
 
-def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
+def cox_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
     """Returns (gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970).
 
     viscosity: in Pa s. slenderness: L/a.
@@ -62,7 +62,7 @@ def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
     return 2 * pi * viscosity / (logarithm - 1.5), 4 * pi * viscosity / (logarithm - 0.5)
 
 
-def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
+def gray_hancock_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
     """Returns (gamma1, gamma2), in Pa s, for waves of length 4 L, the longest waves of a clamped rod.
 
     Gray and Hancock (1955). viscosity: in Pa s. slenderness: L/a.
@@ -71,7 +71,7 @@ def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
     return 2 * pi * viscosity / (logarithm - 0.5), 4 * pi * viscosity / (logarithm + 0.5)
 
 
-def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
+def lighthill_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
     """Returns (gamma1, gamma2), in Pa s, for helical waves of length L, which is near the wavelength of
     flutter.
 
@@ -101,8 +101,8 @@ def max_rotational_drag(viscosity: float, half_height: float) -> float:
     return 4 * pi * viscosity * half_height**2
 
 
-def range_of_drag(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Drag estimates of one arm, in the order of DRAGS.
+def drag_estimates(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
+    """Drag estimates of one arm, in the order of DRAG_NAMES.
 
     The likeliest estimate has the geometric mean of the smallest and largest gamma3. viscosity: in Pa s.
     length, radius, half_height: in m.
@@ -110,9 +110,9 @@ def range_of_drag(viscosity: float, length: float, radius: float, half_height: f
     slenderness = length / radius
     least = min_rotational_drag(1.0, half_height)
     most = max_rotational_drag(1.0, half_height)
-    translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
+    translations = (gray_hancock_drag(1.0, slenderness), lighthill_drag(1.0, slenderness))
     # All estimates are for viscosity 1, because drag is proportional to the viscosity.
-    members = [(*cox(1.0, slenderness), (least * most) ** 0.5)]
+    members = [(*cox_drag(1.0, slenderness), (least * most) ** 0.5)]
     members += [(*translation, rotational) for translation in translations for rotational in (least, most)]
     return tuple(
         Drag(viscosity=viscosity, axial=axial, across=across, rotational=rotational)

@@ -34,7 +34,7 @@ COMPRESSION_LIMIT = 0.1
 WEIGHT_LIMIT = 0.1
 """Limit of the ratio of weight minus buoyancy to the weight that buckles the upright arm. At a ratio of 0.1 a
 horizontal arm sags by a tenth of its length, at 0.01 by a hundredth."""
-WALL_LIMIT = 0.1
+WALL_FLATTENING_LIMIT = 0.1
 """Limit of the fraction of bending stiffness that a tube loses as its section flattens in a large-amplitude
 cycle. An infinitely long tube buckles after losing a third of its stiffness."""
 CURVATURE_OVER_AMPLITUDE = 6.0
@@ -72,20 +72,20 @@ class Effect:
     limit: float
     """The model does not apply if `value` is larger than this."""
     viscosity_factor: Array
-    """Factor on the viscosity of the fluid with which `value` would equal `limit`; inf if no viscosity is
-    high enough."""
+    """Factor on the viscosity of the fluid with which `value` would equal `limit`. For an effect that does
+    not depend on the viscosity: 0 if `value` is at most `limit`, else inf."""
     of_cycles_only: bool = False
     """Whether the effect changes only limit cycles, not the thresholds of the straight arm."""
 
     @property
-    def excess(self) -> Array:
+    def value_over_limit(self) -> Array:
         """Ratio of `value` to `limit`, (...,). The model does not apply where the ratio is larger than 1."""
         return self.value / self.limit
 
     @property
     def validity(self) -> NDArray[np.int8]:
         """`Validity` of the model in view of this effect, integers, (...,); `applies` for an arm at rest."""
-        return (self.excess > DOUBTFUL_RATIO).astype(np.int8) + (self.excess > 1.0)
+        return (self.value_over_limit > DOUBTFUL_RATIO).astype(np.int8) + (self.value_over_limit > 1.0)
 
 
 def neglected_effects(
@@ -98,25 +98,27 @@ def neglected_effects(
 ) -> tuple[Effect, ...]:
     """All neglected effects on a moving arm.
 
-    rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `weakest_section_force` of the
+    rate: angular frequency of the motion, in rad/s; nan for an arm at rest. F: `equivalent_base_force` of the
     follower force, in k3/L^2; nan without load. drag: the drag estimate for which `rate` was computed; by
     default the smallest estimate, for which inertia is largest. amplitude: amplitude of the tip divided by L.
     Weight is included if the arm has a density difference, flattening of the wall if the arm has a bore.
     """
-    drag = least_drag(arm) if drag is None else drag
+    drag = smallest_drag(arm) if drag is None else drag
     motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
     motion = abs(motion)
     effects = [
-        inertia_of_arm(arm, motion, drag),
-        inertia_of_fluid(arm, motion, drag),
+        arm_inertia_effect(arm, motion, drag),
+        fluid_inertia_effect(arm, motion, drag),
         compression_effect(arm, force),
-        reynolds_number(arm, motion, wide),
+        reynolds_number_effect(arm, motion, wide),
     ]
     if not isnan(arm.si.density_difference):
         effects.append(weight_effect(arm, force))
     tubes = [each.section for each in arm.shape.stations if isinstance(each.section, Tube)]
     if tubes:
-        walls = [wall_effect(arm.si.length, t.radius, t.inner_radius, arm.poisson, wide) for t in tubes]
+        walls = [
+            wall_flattening_effect(arm.si.length, t.radius, t.inner_radius, arm.poisson, wide) for t in tubes
+        ]
         effects.append(max(walls, key=lambda effect: np.fmax.reduce(np.ravel(effect.value))))
     return tuple(effects)
 
@@ -130,17 +132,17 @@ def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.
     return np.maximum.reduce(list(counted))
 
 
-def least_drag(arm: SlenderArm) -> Drag:
+def smallest_drag(arm: SlenderArm) -> Drag:
     """The drag estimate with the smallest gamma2, for which the motion of the arm is fastest."""
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
 def largest_angular_frequency(arm: SlenderArm, frequency: ArrayLike) -> Array:
     """Angular frequency in rad/s for the smallest drag of the arm. frequency: in rad/tau2, (...,)."""
-    return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
+    return np.asarray(frequency, float) / arm.tau2_with(smallest_drag(arm))
 
 
-def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
+def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase lag m omega/gamma2 of the drag, caused by the mass of the arm; `rate` and the effect: (...,)."""
     along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
@@ -150,7 +152,7 @@ def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
 
 
-def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
+def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase lag of the drag, caused by the inertia of the fluid; `rate` and the effect: (...,)."""
     logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
@@ -171,7 +173,7 @@ def compression_effect(arm: SlenderArm, F: Array) -> Effect:
     return _independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
-def weakest_section_force(arm: SlenderArm, F: ArrayLike) -> Array:
+def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
     """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
 
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression.
@@ -187,11 +189,11 @@ def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)
-    value = arm.shape.relative_weight(heaviness) if arm.shape.varies else uniform
+    value = arm.shape.weight_over_buckling_weight(heaviness) if arm.shape.varies else uniform
     return _independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
-def wall_effect(
+def wall_flattening_effect(
     length: ArrayLike,
     radius: ArrayLike,
     bore: ArrayLike,
@@ -211,10 +213,12 @@ def wall_effect(
     middle = (outer + inner) / 2
     thickness = outer - inner
     value = 1.5 * (1 - ratio**2) * (curvature * middle**2 / thickness) ** 2
-    return _independent_of_viscosity("flattening of the wall", value, WALL_LIMIT, of_cycles_only=True)
+    return _independent_of_viscosity(
+        "flattening of the wall", value, WALL_FLATTENING_LIMIT, of_cycles_only=True
+    )
 
 
-def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
+def reynolds_number_effect(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
     """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L.
 
     rate: in rad/s, (...,). amplitude: in L. The effect has the shape of `rate`.

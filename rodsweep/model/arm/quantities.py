@@ -7,7 +7,7 @@ no formula.
 from typing import NamedTuple
 
 from ...errors import InputError
-from ..units import Given, in_si, share_of_flutter
+from ..units import GivenQuantity, load_over_flutter, quantity_in_si
 
 LOADS = ("pressure", "force")
 """Names of the loads on the tip; an arm has at most one load."""
@@ -21,9 +21,9 @@ class Quantity(NamedTuple):
     unit: str
     meaning: str
     example: str = ""
-    needed: bool = False
+    is_required: bool = False
     """Whether the user must give the quantity for every arm."""
-    signed: bool = False
+    may_be_nonpositive: bool = False
     """Whether zero and negative values of the quantity are allowed."""
 
 
@@ -37,12 +37,12 @@ QUANTITIES = {
     "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
     "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
     "young": Quantity("Pa", "Young's modulus of the arm at small strain", "100 kPa"),
-    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s", needed=True),
-    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa", signed=True),
-    "force": Quantity("N", "follower force at the tip", "0.16 N", signed=True),
+    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s", is_required=True),
+    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa", may_be_nonpositive=True),
+    "force": Quantity("N", "follower force at the tip", "0.16 N", may_be_nonpositive=True),
     "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
     "density_difference": Quantity(
-        "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", signed=True
+        "kg/m^3", "density of the arm minus density of the fluid", "-160 kg/m^3", may_be_nonpositive=True
     ),
     "poisson": Quantity("1", "Poisson's ratio of the arm"),
     "drag": Quantity("1", "drag estimate, by name"),
@@ -56,12 +56,12 @@ QUANTITIES = {
 """All quantities of an arm that a user may give, by name."""
 UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
 """(SI unit, example) of each quantity with a unit, by name."""
-RELATIVE_LOADS = {f"{load}_over_flutter": load for load in LOADS}
+LOAD_OF_RATIO = {f"{load}_over_flutter": load for load in LOADS}
 """Name of the load, "pressure" or "force", by name of the relative load: the load divided by the load at
 first flutter with the likeliest drag."""
-SECTION_SIDES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
+SECTION_SIZE_NAMES = ("radius", "inner_radius", "tip_radius"), ("width", "height")
 """(names of the quantities of a circular section, names of the quantities of a rectangular section)."""
-ARM_UNITS = {
+ARM_SCALES = {
     "tau2": Quantity("s", "unit of time, gamma2 L^4/k3"),
     "force_scale": Quantity("N", "unit of force, k3/L^2"),
     "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
@@ -69,28 +69,28 @@ ARM_UNITS = {
 """Units of time, force and pressure that an arm defines, by name of the property of `SlenderArm`."""
 SCALE_NAME = {load: f"{load}_scale" for load in LOADS}
 """Name of the property of `SlenderArm` that is the load at which F = 1, by name of the load."""
-ALL_QUANTITIES = QUANTITIES | ARM_UNITS
+ALL_QUANTITIES = QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
 
 
-def number_in_si(name: str, given: Given | None) -> float:
+def arm_quantity_in_si(name: str, given: GivenQuantity | None) -> float:
     """Value in SI of the quantity `name` in UNITS; nan for a missing quantity and for a load relative to
     flutter.
 
     Raises InputError, naming the quantity, for an invalid value.
     """
-    if given is None or (name in LOADS and share_of_flutter(given) is not None):
+    if given is None or (name in LOADS and load_over_flutter(given) is not None):
         return float("nan")
-    value = in_si(name, given, *UNITS[name])
-    if not (QUANTITIES[name].signed or value > 0):
+    value = quantity_in_si(name, given, *UNITS[name])
+    if not (QUANTITIES[name].may_be_nonpositive or value > 0):
         raise InputError(f"{quoted_quantity(name, given)} is not above 0")
     return value
 
 
-def quoted_quantity(name: str, given: Given) -> str:
+def quoted_quantity(name: str, given: GivenQuantity) -> str:
     """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
     user wrote it, a number with its SI unit.
     """
     if isinstance(given, str):
         return f"{name} = '{given}'"
-    return f"{name} = {in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"
+    return f"{name} = {quantity_in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

@@ -11,8 +11,8 @@ from ..material.laws import law_of
 from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
 from ..units import unit_of, value_in_unit
-from .drag import DRAGS, LEAST_SLENDERNESS, RANGE_OF_DRAG
-from .quantities import QUANTITIES, SECTION_SIDES, UNITS
+from .drag import DRAG_NAMES, DRAG_RANGE_NAME, LEAST_SLENDERNESS
+from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS
 from .section import BoreTooWide
 
 if TYPE_CHECKING:
@@ -45,13 +45,13 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
         except ValueError:  # an integer of thousands of digits
             text = "an integer too large to be shown"
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
-    if arm.drag == RANGE_OF_DRAG:
+    if arm.drag == DRAG_RANGE_NAME:
         raise InputError(
-            f"drag = {arm.drag!r} is an axis of sweeps; for one arm choose one of {', '.join(DRAGS)}; the "
-            "report states the range"
+            f"drag = {arm.drag!r} is an axis of sweeps; for one arm choose one of {', '.join(DRAG_NAMES)}; "
+            "the report states the range"
         )
-    if arm.drag not in DRAGS:
-        raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
+    if arm.drag not in DRAG_NAMES:
+        raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAG_NAMES)}")
     texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))
     for name, word, allowed in texts:
         if not isinstance(word, str):
@@ -72,14 +72,14 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
     load.
     """
     if arm.segments is not None:
-        _refuse_beside_segments(arm)
+        _refuse_wrong_segments(arm)
     else:
         for name in ("length", "young"):
             if getattr(arm, name) is None:
                 raise InputError(f"{name} is missing; write it as in '{QUANTITIES[name].example}'")
         _refuse_sections(arm)
     for name, quantity in QUANTITIES.items():
-        if quantity.needed and getattr(arm, name) is None:
+        if quantity.is_required and getattr(arm, name) is None:
             raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
     if arm.pressure is not None and arm.force is not None:
         raise InputError(
@@ -121,14 +121,14 @@ def _refuse_sections(arm: "SlenderArm") -> None:
         )
 
 
-def _refuse_beside_segments(arm: "SlenderArm") -> None:
+def _refuse_wrong_segments(arm: "SlenderArm") -> None:
     """Raises InputError if an arm with segments also has a cross-section, or a length that is not the sum of
     the segment lengths.
 
     Also raises InputError for a segment that is too short, or if neither a segment nor the arm has a Young's
     modulus.
     """
-    for name in (*SECTION_SIDES[0], *SECTION_SIDES[1]):
+    for name in (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
                 f"{arm.text_of(name)} and segments are both given; give one of them, because every segment "

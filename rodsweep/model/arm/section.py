@@ -13,7 +13,8 @@ class BoreTooWide(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A solid circular cross-section of radius a, in m."""
+    """A solid circular cross-section of radius a, in m. formula, shear_formula, face_formula: texts on area
+    and second moment, shear coefficient, and tip force under a pressure p, for reports."""
 
     radius: float
     formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
@@ -57,7 +58,8 @@ class Circle:
 
 @dataclass(frozen=True, slots=True)
 class Tube:
-    """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip."""
+    """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip.
+    formula, shear_formula, face_formula: as in `Circle`."""
 
     radius: float
     inner_radius: float
@@ -108,7 +110,8 @@ class Tube:
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane."""
+    """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane.
+    formula, shear_formula, face_formula: as in `Circle`."""
 
     width: float
     height: float

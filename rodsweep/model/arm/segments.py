@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ...errors import InputError
-from ..units import Given
-from .quantities import number_in_si, quoted_quantity
+from ..units import GivenQuantity
+from .quantities import arm_quantity_in_si, quoted_quantity
 from .section import BoreTooWide, Circle, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
 """Names of the quantities of a segment. The default of `young` is Young's modulus of the arm."""
 EXAMPLE_SEGMENT = "4 cm: radius 6 mm, young 80 kPa"
 """Text of a valid segment, for messages."""
-SEGMENT_QUANTITY = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
+SEGMENT_QUANTITY_PATTERN = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
 """Pattern of name and value of one quantity in the text of a segment, like "radius 6 mm"."""
 MAX_SEGMENTS = 100
 """Maximum number of segments of an arm; more segments are refused. Every segment needs at least one element
@@ -33,7 +33,7 @@ class ArmSegment(NamedTuple):
 class WrittenSegment:
     """Quantities of a segment by name, as the user wrote them."""
 
-    quantities: Mapping[str, Given]
+    quantities: Mapping[str, GivenQuantity]
 
     def __str__(self) -> str:
         """The segment as a text that `written_segment` accepts."""
@@ -88,7 +88,7 @@ def written_segment(number: int, given: Any) -> WrittenSegment:
     return WrittenSegment({name: found[name] for name in SEGMENT_KEYS if found.get(name) is not None})
 
 
-def _quantities_by_name(where: str, given: Any) -> Mapping[str, Given]:
+def _quantities_by_name(where: str, given: Any) -> Mapping[str, GivenQuantity]:
     """Quantities of a segment by name. given: a mapping or a text. Raises InputError, beginning with `where`,
     if invalid.
     """
@@ -99,9 +99,9 @@ def _quantities_by_name(where: str, given: Any) -> Mapping[str, Given]:
         raise InputError(
             f"{where}: {str(given)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
         )
-    found: dict[str, Given] = {"length": length.strip()}
+    found: dict[str, GivenQuantity] = {"length": length.strip()}
     for part in parts.split(","):
-        text_of = SEGMENT_QUANTITY.fullmatch(part)
+        text_of = SEGMENT_QUANTITY_PATTERN.fullmatch(part)
         if text_of is None:
             raise InputError(
                 f"{where}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
@@ -120,7 +120,7 @@ def _segment_in_si(number: int, written: WrittenSegment) -> ArmSegment:
     given = written.quantities
     where = f"segments, number {number}"
     try:
-        length, radius, inner, young = (number_in_si(name, given.get(name)) for name in SEGMENT_KEYS)
+        length, radius, inner, young = (arm_quantity_in_si(name, given.get(name)) for name in SEGMENT_KEYS)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     if "inner_radius" not in given:
@@ -131,8 +131,10 @@ def _segment_in_si(number: int, written: WrittenSegment) -> ArmSegment:
     return ArmSegment(length, Tube(radius, inner), young if "young" in given else None)
 
 
-def _value_with_unit(name: str, given: Given) -> str:
+def _value_with_unit(name: str, given: GivenQuantity) -> str:
     """Value of the quantity `name` as text with its unit."""
     from .quantities import UNITS
 
-    return given.strip() if isinstance(given, str) else f"{number_in_si(name, given)!r} {UNITS[name][0]}"
+    return (
+        given.strip() if isinstance(given, str) else f"{arm_quantity_in_si(name, given)!r} {UNITS[name][0]}"
+    )

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..material.profile import FACTOR_NAMES, RADIUS_POWERS, Profile
-from .drag import Drag, range_of_drag
+from .drag import Drag, drag_estimates
 from .section import Circle, Section, Tube
 
 BUCKLING_NODE_COUNT = 400
@@ -76,16 +76,16 @@ class Shape:
         """The largest drag radius along the arm, in m."""
         return max(each.section.drag_radius for each in self.stations)
 
-    def drags(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
-        """Drag estimates at a station, in the order of DRAGS. viscosity: in Pa s."""
+    def drags_at(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
+        """Drag estimates at a station, in the order of DRAG_NAMES. viscosity: in Pa s."""
         section = station.section
-        return range_of_drag(viscosity, self.length, section.drag_radius, section.half_height)
+        return drag_estimates(viscosity, self.length, section.drag_radius, section.half_height)
 
     def profile(self, poisson: float, drag: int) -> Profile | None:
         """Factors of stiffness and drag along the arm, relative to the base; None for a uniform arm.
 
         The profile of a cone contains only the factors that the parameter `taper` does not imply. poisson:
-        Poisson's ratio. drag: index of the drag estimate in DRAGS. Raises ValueError for a factor that
+        Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES. Raises ValueError for a factor that
         overflows or underflows.
         """
         if not self.varies:
@@ -109,16 +109,16 @@ class Shape:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
         `taper` implies them.
 
-        drag: index of the drag estimate in DRAGS.
+        drag: index of the drag estimate in DRAG_NAMES.
         """
         pieces = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(pieces + 1) / pieces)
         u = (1 - radii) / (1 - self.taper)
-        base = self.drags(self.base, 1.0)[drag]
+        base = self.drags_at(self.base, 1.0)[drag]
         rows = list[tuple[float, ...]]()
         for radius in (radii * self.base.section.drag_radius).tolist():
-            own = range_of_drag(1.0, self.length, radius, radius)[drag]
+            own = drag_estimates(1.0, self.length, radius, radius)[drag]
             factors = {"gamma1": own.axial / base.axial, "gamma2": own.across / base.across}
             rows.append(tuple(factors.get(name, 1.0) for name in FACTOR_NAMES))
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
@@ -126,7 +126,7 @@ class Shape:
     def _factors_at_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
         """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base.
 
-        poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
+        poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
         """
         own, base = (
             np.array(self._stiffnesses_and_drags(each, poisson, drag)) for each in (station, self.base)
@@ -138,10 +138,10 @@ class Shape:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
         viscosity.
 
-        poisson: Poisson's ratio. drag: index of the drag estimate in DRAGS.
+        poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
         """
         section = station.section
-        friction = self.drags(station, 1.0)[drag]
+        friction = self.drags_at(station, 1.0)[drag]
         stretch = station.young * section.area
         return (
             stretch,
@@ -152,7 +152,7 @@ class Shape:
             friction.rotational,
         )
 
-    def relative_weight(self, weight: float) -> float:
+    def weight_over_buckling_weight(self, weight: float) -> float:
         """Ratio of the weight of the upright arm to the weight at which the arm buckles.
 
         weight: weight per volume, in N/m^3. With the weight W(u) of the part beyond u, an arm of the buckling

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array
 
-SERIES_END = 1e-3
+MAX_SERIES_FREQUENCY = 1e-3
 """Below this frequency s of the flow, in eta k^2/rho, the mobility is computed from its series. At this
 frequency rounding errors of the closed formula are 1e-11 of the phase lag, the terms left out of the series
 less than 1e-12."""
@@ -36,7 +36,7 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
     series = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
     with np.errstate(invalid="ignore", divide="ignore"):  # nan where nothing moves; 1/z is not used at 0
         closed = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
-    return np.asarray(0.0 - np.angle(logarithm - np.where(z.imag < SERIES_END, series, closed)))
+    return np.asarray(0.0 - np.angle(logarithm - np.where(z.imag < MAX_SERIES_FREQUENCY, series, closed)))
 
 
 def frequency_of_phase_lag(phase: float, logarithm: float) -> float:

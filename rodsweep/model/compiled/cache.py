@@ -30,8 +30,8 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
 from ...watch import report
-from .digest import FunctionText, digest, kernel_of, type_text
-from .slice_assignment import use_fixed_message
+from .digest import FunctionText, kernel_digest, kernel_of, type_text
+from .slice_assignment import use_fixed_shape_message
 
 COMPILER_VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions of Python, numba, llvmlite and NumPy. They are part of the name of a cache file, because compiled
@@ -70,14 +70,14 @@ class KernelCache(_Cache):
             content = _read(directory / name)
             if content is not None:
                 return CompileResult._rebuild(target_context, *pickle.loads(content))
-        use_fixed_message()  # numba compiles the function next
+        use_fixed_shape_message()  # numba compiles the function next
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Writes the compiled function `data` for the signature `sig` to disk.
 
         Nothing is written if the code contains memory addresses, or if a global value that the code reads has
-        changed since the first use of the function.
+        changed since the first use of the function. If no directory is writable, a warning is issued.
         """
         name = self._cache_file_name(sig, data.codegen, {})
         changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)
@@ -100,7 +100,7 @@ class KernelCache(_Cache):
     def _cache_file_name(self, sig: Any, codegen: Any, parts: dict[FunctionType, FunctionText]) -> str:
         arguments, result = normalize_signature(sig)
         kinds = [type_text(kind) for kind in (*arguments, *([] if result is None else [result]))]
-        content = repr((COMPILER_VERSIONS, codegen.magic_tuple(), kinds, digest(self._kernel, parts)))
+        content = repr((COMPILER_VERSIONS, codegen.magic_tuple(), kinds, kernel_digest(self._kernel, parts)))
         function = self._kernel.function
         name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
         return f"{name}-{sha256(content.encode()).hexdigest()[:32]}.kernel"

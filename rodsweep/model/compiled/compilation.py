@@ -18,7 +18,7 @@ from .cache import KernelCache
 P = ParamSpec("P")
 R = TypeVar("R")
 
-PACKAGE = Path(__file__).parents[2]
+PACKAGE_DIRECTORY = Path(__file__).parents[2]
 """Directory of the package rodsweep."""
 
 
@@ -27,7 +27,7 @@ def cache_directories() -> list[Path]:
     set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
     if folder := os.environ.get("NUMBA_CACHE_DIR"):
         return [Path(folder) / "rodsweep"]
-    caches = [PACKAGE / "__pycache__"]
+    caches = [PACKAGE_DIRECTORY / "__pycache__"]
     if folder := os.environ.get("XDG_CACHE_HOME"):
         caches.append(Path(folder) / "rodsweep")
     else:

@@ -52,7 +52,7 @@ def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
     return Kernel(function, repr(sorted((name, _in_fixed_order(value)) for name, value in options.items())))
 
 
-def digest(kernel: Kernel, parts: TextCache) -> str:
+def kernel_digest(kernel: Kernel, parts: TextCache) -> str:
     """SHA-256 of a kernel and of all functions that it calls, directly or indirectly. parts: cache of the
     texts of functions, which is filled.
     """
@@ -86,7 +86,7 @@ def type_text(numba_type: Any) -> str:
 
 def _text_of_function(function: FunctionType, options: str) -> FunctionText:
     lines = [_qualified_name(function), options]
-    values = _ValueTexts(function)
+    values = _ValueTextConverter(function)
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
     lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cells))
     for code in _code_objects(function.__code__):
@@ -145,7 +145,7 @@ def _in_fixed_order(value: Any) -> Any:
     return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
 
 
-class _ValueTexts:
+class _ValueTextConverter:
     """Converter of the values that one function refers to into text that is equal in every process.
 
     function: the function. called_kernels: kernels found among the converted values.
@@ -165,7 +165,7 @@ class _ValueTexts:
             return f"{self._class_text(type(value))} [{', '.join(map(self.text, value))}]"
         if isinstance(value, type):
             return self._class_text(value)
-        return _array_text(value) or self._object_text(value)
+        return _array_or_type_text(value) or self._object_text(value)
 
     def _object_text(self, value: Any) -> str:
         if hasattr(value, "_defn"):  # an intrinsic of numba
@@ -173,9 +173,9 @@ class _ValueTexts:
         if isinstance(value, Dispatcher):
             self.called_kernels.append(kernel_of(value.py_func, value.targetoptions))
             return _qualified_name(value.py_func)
-        if isinstance(value, ModuleType) and not self._is_ours(value.__name__):
+        if isinstance(value, ModuleType) and not self._is_in_own_package(value.__name__):
             return value.__name__
-        if isinstance(value, FunctionType) and self._is_ours(value.__module__):
+        if isinstance(value, FunctionType) and self._is_in_own_package(value.__module__):
             self.called_kernels.append(Kernel(value, ""))
         if isinstance(value, FunctionType | BuiltinFunctionType):
             return _qualified_name(value)
@@ -187,18 +187,18 @@ class _ValueTexts:
         fields = getattr(kind, "_fields", None)
         if fields is not None:
             return f"{_qualified_name(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"
-        if self._is_ours(kind.__module__):
+        if self._is_in_own_package(kind.__module__):
             raise TypeError(f"{_qualified_name(self.function)}: {kind} is not a NamedTuple")
         return _qualified_name(kind)
 
-    def _is_ours(self, module: str) -> bool:
+    def _is_in_own_package(self, module: str) -> bool:
         return module.partition(".")[0] == self.function.__module__.partition(".")[0]
 
 
-def _array_text(value: Any) -> str | None:
+def _array_or_type_text(value: Any) -> str | None:
     """Text of an array, or of a type of NumPy or numba; None for other values."""
     if isinstance(value, np.ndarray | np.generic):
-        return f"{_array_text(value.dtype)} {np.shape(value)} {value.tobytes().hex()}"
+        return f"{_array_or_type_text(value.dtype)} {np.shape(value)} {value.tobytes().hex()}"
     if isinstance(value, np.dtype):
         return f"{value!r} {value.itemsize} {value.fields}"
     if isinstance(value, types.ExternalFunction):

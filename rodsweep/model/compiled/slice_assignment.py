@@ -21,7 +21,7 @@ def refuse_shape_mismatch(source: tuple[int, ...], target: tuple[int, ...]) -> N
 
 
 @cache
-def use_fixed_message() -> None:
+def use_fixed_shape_message() -> None:
     """Makes numba use the fixed message in all later compilations; this function imports the compiler.
 
     Releases of numba with a fixed message are not changed.
@@ -29,11 +29,11 @@ def use_fixed_message() -> None:
     from numba.np import arrayobj
 
     if hasattr(arrayobj, "raise_with_shape_context"):
-        overload(refuse_shape_mismatch)(_compiled_refusal)
+        overload(refuse_shape_mismatch)(_refusal_overload)
         arrayobj.raise_with_shape_context = refuse_shape_mismatch
 
 
-def _compiled_refusal(source: Any, target: Any) -> Callable[[Any, Any], None]:
+def _refusal_overload(source: Any, target: Any) -> Callable[[Any, Any], None]:
     def refusal(source: Any, target: Any) -> None:
         raise ValueError(SHAPE_MISMATCH_MESSAGE)
 

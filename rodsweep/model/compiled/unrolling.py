@@ -24,7 +24,7 @@ from .compilation import compiled_for_vectors
 P = ParamSpec("P")
 R = TypeVar("R")
 
-ALWAYS_KNOWN = {"range": range}
+ALWAYS_KNOWN_VALUES = {"range": range}
 """Names with known values during unrolling, in addition to the algebra."""
 
 
@@ -70,9 +70,9 @@ class UnrolledOverAlgebra(Generic[P, R]):
             elif name in self.function.__globals__:
                 namespace[name] = value
         tree.body = [
-            _UnrollingTransformer({first: g, **ALWAYS_KNOWN}, _SharedState(set(), others, {}, {})).visit(
-                definition
-            )
+            _UnrollingTransformer(
+                {first: g, **ALWAYS_KNOWN_VALUES}, _SharedState(set(), others, {}, {})
+            ).visit(definition)
         ]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
         written: Any = namespace[definition.name]
@@ -100,11 +100,11 @@ class _UnrollingTransformer(ast.NodeVisitor):
 
     def __init__(self, known: Mapping[str, Any], shared: _SharedState) -> None:
         self.known_values = known
-        self.shared = shared
+        self.shared_state = shared
 
     def visit(self, node: ast.AST) -> Any:
         reads = isinstance(node, ast.expr) and not isinstance(getattr(node, "ctx", None), ast.Store)
-        if reads and self._is_known(node) and isinstance(value := self._evaluate(node), int | float):
+        if reads and self._has_known_value(node) and isinstance(value := self._evaluate(node), int | float):
             return ast.copy_location(ast.Constant(value), node)
         return super().visit(node)
 
@@ -116,7 +116,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return ast.copy_location(type(node)(**fields), node)
 
     def visit_For(self, node: ast.For) -> Any:
-        if not self._is_known(node.iter):
+        if not self._has_known_value(node.iter):
             return self.generic_visit(node)
         leaves = ast.Break | ast.Continue | ast.Return
         if node.orelse or any(isinstance(part, leaves) for part in ast.walk(node)):
@@ -128,12 +128,12 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return [statement for turn in turns for statement in turn]
 
     def visit_If(self, node: ast.If) -> Any:
-        if not self._is_known(node.test):
+        if not self._has_known_value(node.test):
             return self.generic_visit(node)
         return self._visit_all(node.body if self._evaluate(node.test) else node.orelse)
 
     def visit_IfExp(self, node: ast.IfExp) -> Any:
-        if not self._is_known(node.test):
+        if not self._has_known_value(node.test):
             return self.generic_visit(node)
         return self.visit(node.body if self._evaluate(node.test) else node.orelse)
 
@@ -142,7 +142,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         value = node.value
         if not (isinstance(value, ast.ListComp) and isinstance(target, ast.Name)):
             return self.generic_visit(node)
-        self.shared.unrolled_lists.add(target.id)
+        self.shared_state.unrolled_lists.add(target.id)
         loop = value.generators[0]
         written = []
         for index, item in enumerate(self._evaluate(loop.iter)):
@@ -154,13 +154,13 @@ class _UnrollingTransformer(ast.NodeVisitor):
 
     def visit_Subscript(self, node: ast.Subscript) -> Any:
         inner = self.visit(node.value)
-        if isinstance(inner, ast.Name) and inner.id in self.shared.unrolled_lists:
+        if isinstance(inner, ast.Name) and inner.id in self.shared_state.unrolled_lists:
             return ast.copy_location(ast.Name(f"{inner.id}_{self._evaluate(node.slice)}", node.ctx), node)
         return ast.copy_location(ast.Subscript(inner, self.visit(node.slice), node.ctx), node)
 
     def visit_Call(self, node: ast.Call) -> Any:
         made = self.generic_visit(node)
-        if isinstance(made.func, ast.Name) and made.func.id in self.shared.unrolled_functions:
+        if isinstance(made.func, ast.Name) and made.func.id in self.shared_state.unrolled_functions:
             made.args = made.args[1:]
         return made
 
@@ -169,7 +169,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         value `item`.
         """
         return _UnrollingTransformer(
-            {**self.known_values, **_loop_variable_values(target, item)}, self.shared
+            {**self.known_values, **_loop_variable_values(target, item)}, self.shared_state
         )
 
     def _visit_all(self, parts: Iterable[Any]) -> list[Any]:
@@ -179,24 +179,26 @@ class _UnrollingTransformer(ast.NodeVisitor):
     def _visit_if_node(self, part: Any) -> Any:
         return self.visit(part) if isinstance(part, ast.AST) else part
 
-    def _is_known(self, node: ast.AST) -> bool:
+    def _has_known_value(self, node: ast.AST) -> bool:
         names = self._names_read_by(node)
         return bool(names) and names <= self.known_values.keys()
 
     def _names_read_by(self, node: ast.AST) -> frozenset[str]:
-        names = self.shared.names_read.get(node)
+        names = self.shared_state.names_read.get(node)
         if names is None:
             own = {node.id} if isinstance(node, ast.Name) else ()
             names = frozenset(own).union(*map(self._names_read_by, ast.iter_child_nodes(node)))
-            self.shared.names_read[node] = names
+            self.shared_state.names_read[node] = names
         return names
 
     def _evaluate(self, node: Any) -> Any:
         """Value of the expression `node`. Raises NameError if a name in the expression is not in
         `known_values`."""
-        code = self.shared.compiled_expressions.get(node)
+        code = self.shared_state.compiled_expressions.get(node)
         if code is None:
-            code = self.shared.compiled_expressions[node] = compile(ast.Expression(node), "<known>", "eval")
+            code = self.shared_state.compiled_expressions[node] = compile(
+                ast.Expression(node), "<known>", "eval"
+            )
         return eval(code, {"__builtins__": {}}, dict(self.known_values))
 
 

@@ -60,7 +60,7 @@ class Build:
         law_of(self.law, self.section)
 
     @cached_property
-    def standard(self) -> bool:
+    def is_uniform_and_linear(self) -> bool:
         """Whether the material is linear and constant along the arm."""
         return self.profile is None and self.constitutive_law is LINEAR
 
@@ -70,14 +70,14 @@ class Build:
         return law_of(self.law, self.section)
 
     @property
-    def text(self) -> str:
-        """The build as JSON text, the input of `from_text`."""
+    def json_text(self) -> str:
+        """The build as JSON text, the input of `from_json_text`."""
         profile = None if self.profile is None else [self.profile.u, self.profile.rows]
         return json.dumps([self.law, self.section, profile])
 
     @classmethod
-    def from_text(cls, text: str) -> "Build":
-        """The build from a JSON text of the property `text`."""
+    def from_json_text(cls, text: str) -> "Build":
+        """The build from a JSON text of the property `json_text`."""
         law, section, profile = json.loads(text)
         if profile is None:
             return cls(law, section)
@@ -90,12 +90,12 @@ class Build:
         return list(LAWS).index((self.law, self.section))
 
     @cached_property
-    def continuous(self) -> bool:
+    def is_continuous(self) -> bool:
         """Whether no coefficient jumps along the arm."""
-        return not self.jumps
+        return not self.jump_positions
 
     @cached_property
-    def jumps(self) -> tuple[float, ...]:
+    def jump_positions(self) -> tuple[float, ...]:
         """The u at which factors of the profile jump: the profile has two rows for such a u."""
         u = () if self.profile is None else self.profile.u
         return tuple(a for a, b in zip(u[:-1], u[1:], strict=True) if a == b)
@@ -111,18 +111,18 @@ class Build:
 
         taper: taper of the arm.
         """
-        return self.constitutive_law.largest_load * _smallest_factor(self.profile, taper, "k1")
+        return self.constitutive_law.crushing_load * _smallest_factor_along(self.profile, taper, "k1")
 
-    def relative_load(self, F: float, k1: float, taper: float) -> float:
+    def crushing_ratio(self, F: float, k1: float, taper: float) -> float:
         """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: at the
         base."""
         return F / (k1 * self.relative_crushing_force(taper))
 
-    def relative_least_drag(self, taper: float) -> float:
+    def relative_least_rotational_drag(self, taper: float) -> float:
         """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
         base.
         """
-        return _smallest_factor(self.profile, taper, "gamma3")
+        return _smallest_factor_along(self.profile, taper, "gamma3")
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
@@ -131,7 +131,7 @@ class Build:
         shares = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(shares).reshape(tapers.shape)
 
-    def local(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
+    def local_coefficients(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
         """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
 
         at_base: stiffnesses and drags at u = 0, and taper, by name. F and at_base contain numbers, or arrays
@@ -142,7 +142,7 @@ class Build:
         # No load acts along the arm, so the force in every section is F.
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
         c2 = 1 / (at_base["k2"] * factors["k2"])
-        c3 = 1 / (factors["k3"] * law.bending(nu))
+        c3 = 1 / (factors["k3"] * law.bending_factor(nu))
         gamma3 = at_base["gamma3"] * factors["gamma3"]
         return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
 
@@ -169,7 +169,7 @@ class Build:
         factors = self._factors(taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
-    def section_changes(
+    def section_derivatives(
         self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
         """Derivatives of the cross-sections `at` at points u, (points,), with respect to a parameter.
@@ -193,13 +193,14 @@ class Build:
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
-        """Stiffnesses and drags at points u, divided by their values at the base, by name; arrays of the
-        shape of u. taper: a number, or an array for n arms, (n, 1, ...).
+        """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the
+        shape of u. taper: a number, or an array for n arms, (n, 1, ...); factors that depend on the taper
+        then have the shape (n, *u.shape).
         """
         if self.profile is None:
             factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
         else:
-            factors = dict(zip(FACTOR_NAMES, self.profile.factors(u), strict=True))
+            factors = dict(zip(FACTOR_NAMES, self.profile.factors_at(u), strict=True))
         if isinstance(taper, np.ndarray) or taper != 1:
             radius = 1 - (1 - taper) * u
             square = radius * radius  # a power of NumPy takes as long as ten products
@@ -210,7 +211,7 @@ class Build:
 
 
 @lru_cache(maxsize=1024)
-def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
+def _smallest_factor_along(profile: Profile | None, taper: float, name: str) -> float:
     """Smallest k1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at the
     base.
     """
@@ -225,9 +226,9 @@ def _smallest_factor(profile: Profile | None, taper: float, name: str) -> float:
     ]
     inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
     points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
-    between = (1 - (1 - taper) * points) ** power * profile.factors(points)[column]
+    between = (1 - (1 - taper) * points) ** power * profile.factors_at(points)[column]
     return min(*rows, float(between.min()))
 
 
-STANDARD = Build()
+DEFAULT_BUILD = Build()
 """Build of a uniform arm of linear material."""

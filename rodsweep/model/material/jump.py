@@ -37,8 +37,8 @@ SHEAR_COLUMN = SIDE_COLUMNS.index("c2")
 MAX_ITERATIONS = 40
 """Maximum number of Newton iterations; without convergence the last iterate is used."""
 CONVERGED_STEP = 1e-9
-"""Newton's method stops when |step| <= CONVERGED * |unknown|, because the next step would be below rounding
-error."""
+"""Newton's method stops when |step| <= CONVERGED_STEP * |unknown|, because the next step would be below
+rounding error."""
 MIN_STRETCH_RATIO = 0.1
 """A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
 because the law is defined for h1 > 0 only."""

@@ -29,10 +29,10 @@ class Law:
     """A constitutive law, by its stretch energy W and bending factor B as functions of the stretch h1.
 
     All functions take and return floats or arrays. energy: W(h1). energy_over_square: W(h1)/(h1 - 1)^2.
-    stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_curvature: W''' and W''''. bending: B(h1).
-    bending_slope, bending_curvature: B' and B''. shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x,
-    without cancellation for small loads. largest_load: the load x that crushes the rod; inf if no force
-    crushes the rod.
+    stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W''' and W''''.
+    bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''. shortening: 1 -
+    nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads. crushing_load: the load x
+    that crushes the rod; inf if no force crushes the rod.
     """
 
     law: str
@@ -42,12 +42,12 @@ class Law:
     stress: Callable[[Values], Values]
     stiffness: Callable[[Values], Values]
     stiffness_slope: Callable[[Values], Values]
-    stiffness_curvature: Callable[[Values], Values]
-    bending: Callable[[Values], Values]
-    bending_slope: Callable[[Values], Values]
-    bending_curvature: Callable[[Values], Values]
+    stiffness_second_derivative: Callable[[Values], Values]
+    bending_factor: Callable[[Values], Values]
+    bending_factor_slope: Callable[[Values], Values]
+    bending_factor_second_derivative: Callable[[Values], Values]
     shortening: Callable[[Values], Values]
-    largest_load: float = np.inf
+    crushing_load: float = np.inf
 
 
 def _neo_hookean_shortening(x: Values) -> Values:
@@ -87,12 +87,12 @@ LINEAR = Law(
     stress=lambda h: h - 1,
     stiffness=_ones,
     stiffness_slope=_zeros,
-    stiffness_curvature=_zeros,
-    bending=_ones,
-    bending_slope=_zeros,
-    bending_curvature=_zeros,
+    stiffness_second_derivative=_zeros,
+    bending_factor=_ones,
+    bending_factor_slope=_zeros,
+    bending_factor_second_derivative=_zeros,
     shortening=lambda x: x,
-    largest_load=1.0,
+    crushing_load=1.0,
 )
 NEO_HOOKEAN = Law(
     law="neo_hookean",
@@ -102,10 +102,10 @@ NEO_HOOKEAN = Law(
     stress=lambda h: (h - 1 / h**2) / 3,
     stiffness=lambda h: (1 + 2 / h**3) / 3,
     stiffness_slope=lambda h: -2 / h**4,
-    stiffness_curvature=lambda h: 8 / h**5,
-    bending=_ones,
-    bending_slope=_zeros,
-    bending_curvature=_zeros,
+    stiffness_second_derivative=lambda h: 8 / h**5,
+    bending_factor=_ones,
+    bending_factor_slope=_zeros,
+    bending_factor_second_derivative=_zeros,
     shortening=_neo_hookean_shortening,
 )
 SWELLING = Law(
@@ -116,10 +116,10 @@ SWELLING = Law(
     stress=NEO_HOOKEAN.stress,
     stiffness=NEO_HOOKEAN.stiffness,
     stiffness_slope=NEO_HOOKEAN.stiffness_slope,
-    stiffness_curvature=NEO_HOOKEAN.stiffness_curvature,
-    bending=lambda h: (1 + 2 / h**3) / (3 * h),
-    bending_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
-    bending_curvature=lambda h: (2 / h**3 + 40 / h**6) / 3,
+    stiffness_second_derivative=NEO_HOOKEAN.stiffness_second_derivative,
+    bending_factor=lambda h: (1 + 2 / h**3) / (3 * h),
+    bending_factor_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
+    bending_factor_second_derivative=lambda h: (2 / h**3 + 40 / h**6) / 3,
     shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}

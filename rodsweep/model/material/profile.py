@@ -66,7 +66,7 @@ class Profile:
         return np.unique(self.u)
 
     @cached_property
-    def _pieces(self) -> Array:
+    def _cubic_coefficients(self) -> Array:
         """Coefficients of the cubic polynomials between neighbouring u, t^3 first, (4, factors, intervals).
 
         t increases from 0 to 1 along each interval.
@@ -86,13 +86,13 @@ class Profile:
             pieces.append(np.array([start + end - 2 * rise, 3 * rise - 2 * start - end, start, y[:-1]]))
         return np.ascontiguousarray(np.concatenate(pieces, axis=1).swapaxes(1, 2))
 
-    def factors(self, u: Array) -> Array:
+    def factors_at(self, u: Array) -> Array:
         """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No point may be a
         break."""
         breaks = self.breaks
         piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
         t = (u - breaks[piece]) / (breaks[piece + 1] - breaks[piece])
-        cubic, square, linear, constant = self._pieces[:, :, piece]
+        cubic, square, linear, constant = self._cubic_coefficients[:, :, piece]
         factors: Array = ((cubic * t + square) * t + linear) * t + constant
         return factors
 

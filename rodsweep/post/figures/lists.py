@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from ...model.arm.drag import DRAGS
-from ...model.arm.quantities import ALL_QUANTITIES, ARM_UNITS
+from ...model.arm.drag import DRAG_NAMES
+from ...model.arm.quantities import ALL_QUANTITIES, ARM_SCALES
 from ...model.units import with_si_prefix
 from ...results.file.view import View
 from ..summary.arm.arm import quantity_words
@@ -72,16 +72,16 @@ def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
     varies.
     """
-    own = {name: values for name, values in view.quantities.items() if name not in ARM_UNITS}
+    own = {name: values for name, values in view.quantities.items() if name not in ARM_SCALES}
     return [_name_and_value_texts(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
 
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
-    in DRAGS.
+    in DRAG_NAMES.
     """
     if name == "drag":
-        return quantity_words(name), [DRAGS[int(value)].replace("_", " ") for value in values]
+        return quantity_words(name), [DRAG_NAMES[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit
     if unit == "1":
         return quantity_words(name), [f"{value:.4g}" for value in values]

@@ -8,7 +8,7 @@ from matplotlib import rcParams
 from matplotlib.figure import Figure
 
 from ...errors import InputError
-from ...model.units import in_si
+from ...model.units import quantity_in_si
 from ...results.file.view import View
 from .arm.axes import add_si_scales
 from .arm.validity import hatch_invalid_points
@@ -86,7 +86,7 @@ def _inches(width: str) -> float:
         return WIDTHS[width]
     refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
     try:
-        inches = in_si("width", width, "m", "89 mm") / METRES_PER_INCH
+        inches = quantity_in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:
         raise InputError(refusal) from None
     if not MIN_WIDTH <= inches <= MAX_WIDTH:

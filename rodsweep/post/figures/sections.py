@@ -9,10 +9,10 @@ from ...config.arm.axes import PARAMETER_STORED_ALONG
 from ...config.document.refusals import similar_keys
 from ...config.values import short_repr
 from ...errors import InputError
-from ...model.arm.drag import DRAGS
+from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
-from ...model.units import in_si
+from ...model.units import quantity_in_si
 from ...results.file.view import View
 from .lists import OTHER_DIMENSIONS
 
@@ -37,15 +37,15 @@ def _number_in_si(name: str, value: float | str) -> float:
     """The value of the parameter or quantity `name` as a number; for a quantity, in SI units. Raises
     InputError for an invalid text.
     """
-    if name == "drag" and value in DRAGS:
-        return float(DRAGS.index(str(value)))
+    if name == "drag" and value in DRAG_NAMES:
+        return float(DRAG_NAMES.index(str(value)))
     try:
         return float(value)
     except ValueError:
         if name == "drag":
-            raise InputError(f"--at drag={value}: the drag must be one of {', '.join(DRAGS)}") from None
+            raise InputError(f"--at drag={value}: the drag must be one of {', '.join(DRAG_NAMES)}") from None
         if name in ALL_QUANTITIES:
-            return in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
+            return quantity_in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 

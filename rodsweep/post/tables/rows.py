@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config.arm.axes import PARAMETER_STORED_ALONG
-from ...model.arm.drag import DRAGS
+from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
@@ -115,7 +115,7 @@ def line_columns(view: View, rows: Rows) -> Iterator[Column]:
 def quantity_column(name: str, values: NDArray) -> Column:
     """Column of an arm's quantity `name`, with values of shape (rows,)."""
     column = coordinate_column(name, *ALL_QUANTITIES[name][:2], values)
-    return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
+    return replace(column, words=dict(enumerate(DRAG_NAMES))) if name == "drag" else column
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:

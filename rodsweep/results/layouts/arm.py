@@ -20,9 +20,9 @@ from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmSection
 from ...config.axes import Axes
 from ...config.tasks import makes_diagram
-from ...model.arm.drag import DRAGS
+from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.neglected import Validity
-from ...model.arm.quantities import ALL_QUANTITIES, LOADS, RELATIVE_LOADS, SCALE_NAME, UNITS
+from ...model.arm.quantities import ALL_QUANTITIES, LOAD_OF_RATIO, LOADS, SCALE_NAME, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
 from .variables import ANGULAR_UNIT, DIMENSIONS, FilledVariable, Layout, Variable, real, word
@@ -118,7 +118,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
     variable.
     """
-    as_force = any(RELATIVE_LOADS.get(name, name) == "force" for name in config["parameters"]["arm"])
+    as_force = any(LOAD_OF_RATIO.get(name, name) == "force" for name in config["parameters"]["arm"])
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
 
@@ -208,7 +208,7 @@ def _si_variable(arm: ArmSection, name: str, values: Any, dimensions: tuple[str,
     if name in UNITS and getattr(arm, name) is not None:
         variable = replace(variable, typed_unit=typed_unit(name, getattr(arm, name)))
     if name == "drag":
-        variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAGS)))
+        variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAG_NAMES)))
     return variable, np.asarray(values, variable.dtype)
 
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, names_except
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
 from .variables import (
     NEEDS_NEW_SOLVE,
@@ -150,7 +150,7 @@ def layout(config: dict[str, Any]) -> Layout:
         SECONDS,
         STATUS,
     )
-    parameters = names_except(parameter, NONLINEAR_PARAMETERS)
+    parameters = parameter_names_except(parameter, NONLINEAR_PARAMETERS)
     variables = with_certified_meaning(variables, config, "Hopf points")
     return Layout(
         variables, {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}, parameters

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, names_except
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
 from .thresholds import CROSSING_LIST_RULE, search_variables
 from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
@@ -78,5 +78,5 @@ def layout(config: dict[str, Any]) -> Layout:
     return Layout(
         variables,
         {HOPF_POINT_DIMENSION: config["criticality"]["crossings"]},
-        names_except("F", NONLINEAR_PARAMETERS),
+        parameter_names_except("F", NONLINEAR_PARAMETERS),
     )

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, names_except
+from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .rods import with_certified_meaning
@@ -102,7 +102,7 @@ def layout(config: dict[str, Any]) -> Layout:
         variables += cycle_variables(line)
         extents[CYCLE_SPECIAL] = MAX_CYCLE_SPECIAL
     variables = with_certified_meaning(variables, config, "crossings")
-    return Layout(variables, extents, names_except(line), needs_all_points=options["curves"])
+    return Layout(variables, extents, parameter_names_except(line), needs_all_points=options["curves"])
 
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:

@@ -3,7 +3,7 @@ well."""
 
 from typing import Any
 
-from ...model.parameters import PARAMETERS, names_except
+from ...model.parameters import PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
 from .variables import (
     ANGULAR_UNIT,
@@ -90,4 +90,4 @@ def layout(config: dict[str, Any]) -> Layout:
     variables = with_certified_meaning(
         THRESHOLD_VARIABLES + search_variables("F", "crossing_F"), config, "crossings"
     )
-    return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, names_except("F"))
+    return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, parameter_names_except("F"))

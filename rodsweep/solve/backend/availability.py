@@ -7,7 +7,7 @@ from ...errors import EnvironmentIncomplete, InputError, import_refusal
 from .debian import add_debian_modules, is_module_found
 
 
-def require_directory() -> None:
+def require_working_directory() -> None:
     """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc cannot start without a
     working directory."""
     try:
@@ -27,7 +27,7 @@ def require_solvers() -> None:
         raise InputError(
             "NUMBA_DISABLE_JIT is set; unset this variable, because PETSc calls only compiled formulas"
         )
-    require_directory()
+    require_working_directory()
     add_debian_modules()
     for name in ("petsc4py", "slepc4py"):
         if not is_module_found(name):

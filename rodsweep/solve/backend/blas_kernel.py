@@ -15,7 +15,7 @@ UNKNOWN_LIBRARY = "unknown"
 """Name reported for a BLAS library that states no name, for example the reference BLAS."""
 
 
-def blas() -> str:
+def blas_description() -> str:
     """One line with name, version and kernel of PETSc's BLAS library, and of NumPy's BLAS library if the two
     differ."""
     found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}

@@ -29,9 +29,11 @@ PETSC_FUNCTIONS = (
     "PetscObjectStateGet",
 )
 """Names of the PETSc functions that compiled code calls."""
-LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the libraries it is linked to
+PETSC_LIBRARY = ctypes.CDLL(
+    PETSc.__file__
+)  # a module's symbols include those of the libraries it is linked to
 for _name in PETSC_FUNCTIONS:
-    binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
+    binding.add_symbol(_name, ctypes.cast(getattr(PETSC_LIBRARY, _name), ctypes.c_void_p).value)
 
 POINTER = types.intp
 INT = types.int32 if PETSc.IntType == np.int32 else types.int64
@@ -62,6 +64,7 @@ def pointer(context: Any, address: Any) -> Any:
 
 @compiled
 def doubles_at(address: int, size: int) -> Any:
+    """Array of doubles at the memory address `address`, (size,)."""
     return numba.carray(pointer(address), (size,), np.float64)
 
 
@@ -74,6 +77,7 @@ def double_array_at(address: int, shape: Any) -> Any:
 
 @compiled
 def integers_at(address: int, size: int) -> Any:
+    """Array of 64-bit integers at the memory address `address`, (size,)."""
     return numba.carray(pointer(address), (size,), np.int64)
 
 
@@ -87,5 +91,5 @@ def record_at(address: int, dtype: Any) -> Any:
 def call_petsc(name: str, *arguments: int) -> None:
     """Calls the libpetsc function `name` with pointers `arguments`; raises RuntimeError if the returned error
     code is not 0."""
-    if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
+    if getattr(PETSC_LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"the PETSc function {name} failed")

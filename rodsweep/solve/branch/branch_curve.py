@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...model.floquet import min_unstable_multipliers
+from ...model.floquet import min_unstable_count
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
@@ -53,7 +53,7 @@ class BranchPoint:
     def min_unstable_multipliers(self) -> int:
         """Lower bound on the number of nontrivial multipliers outside the unit circle: 0 if the cycle is
         stable, -1 if its stability is unknown."""
-        return min_unstable_multipliers(self.unstable_count, self.multiplier, self.errors.multiplier_error)
+        return min_unstable_count(self.unstable_count, self.multiplier, self.errors.multiplier_error)
 
 
 def _multiplier_modulus_error(point: BranchCycle) -> float:

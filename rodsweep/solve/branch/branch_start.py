@@ -13,7 +13,7 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.unstable_modes import Crossing
+from ..changes.unstable_modes import Threshold
 from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
@@ -64,7 +64,7 @@ class HopfBranchStart:
     branch off. crossing: parameter value, frequency and errors of the Hopf point. rod: the rod at the Hopf
     point."""
 
-    crossing: Crossing
+    crossing: Threshold
     rod: Rod
     parameter_name: str
     parameter_coordinate: float
@@ -90,7 +90,7 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        turned = -1.0 if Path(self.rod, self.parameter_name).is_compliance else 1.0
+        turned = -1.0 if Path(self.rod, self.parameter_name).is_compliance_path else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
         squared = -turned * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
@@ -105,13 +105,13 @@ class HopfBranchStart:
         landau = self.coefficients.landau_error * abs(c) / abs(c.real)
         slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
         # Half, because a is a square root.
-        return (landau + slope_error + self.crossing.error / abs(self.crossing.at)) / 2
+        return (landau + slope_error + self.crossing.error / abs(self.crossing.value)) / 2
 
     @property
     def period_error(self) -> float:
         """Relative error of `period`: the relative change of the frequency when the parameter changes by its
         error at the Hopf point, plus the rounding error."""
-        parameter_error = self.crossing.error / abs(self.crossing.at) * abs(self.parameter_coordinate)
+        parameter_error = self.crossing.error / abs(self.crossing.value) * abs(self.parameter_coordinate)
         return (
             abs(self.growth_slope) * parameter_error / self.crossing.frequency
             + BRANCH_START_SETTINGS.frequency_rounding
@@ -120,24 +120,24 @@ class HopfBranchStart:
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,
         of the cycle whose largest tip y is `amplitude`, in L."""
-        c = self.normal_form.c
+        c = self.normal_form.landau
         # The growth rate of the cycle vanishes: Re slope dp + Re c a^2 = 0.
         change = -c.real * amplitude**2 / self.growth_slope.real
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_branch_start(path: Path, crossing: Crossing) -> HopfBranchStart:
+def hopf_branch_start(path: Path, crossing: Threshold) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable."""
     w = complex(0.0, crossing.frequency)
-    at = path.rod_at(path.coordinate(crossing.at))
-    _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.at))
+    at = path.rod_at(path.coordinate(crossing.value))
+    _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
     normal = accurate_normal_form(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return HopfBranchStart(
         crossing=crossing,
         rod=at,
         parameter_name=path.name,
-        parameter_coordinate=path.coordinate(crossing.at),
+        parameter_coordinate=path.coordinate(crossing.value),
         growth_slope=complex(slope),
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
@@ -148,7 +148,7 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     """The Hopf point as a special point, for the start or the end of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
-        at=hopf.crossing.at,
+        at=hopf.crossing.value,
         period=hopf.period,
         tip_y_max=0.0,
         error=hopf.crossing.error,

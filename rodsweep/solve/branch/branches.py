@@ -9,8 +9,8 @@ from functools import cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ...watch import solve_part
-from ..changes.along_path import Transitions, pair_crossings
-from ..changes.unstable_modes import Crossing
+from ..changes.along_path import ThresholdList, find_axis_crossings
+from ..changes.unstable_modes import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
@@ -78,7 +78,7 @@ class BranchesOfRod:
     status: BranchStatus
     message: str = ""
     seconds: float = 0.0
-    crossings: tuple[Crossing, ...] = ()
+    crossings: tuple[Threshold, ...] = ()
     unstable_at_start: int = -1
     proved: bool = False
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
@@ -114,18 +114,18 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
     if not low < high:
         why = "the force crushes the rod everywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
-    path = Path(rod.changed(**{request.along: low}), request.along)
-    found = pair_crossings(path, low, high, request.certify)
+    path = Path(rod.with_values(**{request.along: low}), request.along)
+    found = find_axis_crossings(path, low, high, request.certify)
     hopfs = []
     failures = []
-    for crossing in found.crossings:
+    for crossing in found.thresholds:
         try:
             hopfs.append(hopf_branch_start(path, crossing))
         except FAILURES as error:
-            failures.append(f"the Hopf point at {request.along} = {crossing.at:.12g}: {cause_of(error)}")
+            failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
     ends = (path.coordinate(low), path.coordinate(high))
     reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
-    if path.is_compliance:
+    if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
     limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
@@ -134,7 +134,7 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
     return BranchesOfRod(
         status=status,
         message=message,
-        crossings=found.crossings,
+        crossings=found.thresholds,
         unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
         proved=found.proved_to_the_end,
         curves=tuple(curves),
@@ -209,7 +209,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
 
 
 def _status_and_message(
-    found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+    found: ThresholdList, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
     and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on

@@ -99,7 +99,7 @@ def solve_coexistence(
     row = solve_row(rod, request)
     branches = row_branches(rod, request, special, workspace)
     cycles = stable_cycles_at(request.values, branches, request.certify)
-    forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
+    forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
     states = stable_states(row.rod_class, cycles)
@@ -110,7 +110,7 @@ def solve_coexistence(
         stable_states=states,
         special_points=special_points_of(branches),
         status=status,
-        message="; ".join(filter(None, [message, _undecided_values_text(request.name, undecided)])),
+        message="; ".join(filter(None, [message, _undecided_values_text(request.parameter_name, undecided)])),
         seconds=row.seconds + branches.seconds,
     )
 
@@ -121,7 +121,7 @@ def row_branches(
     """All branches of cycles that start at Hopf points of a row; special, workspace: as in
     `solve_coexistence`."""
     asked = BranchRequest(
-        along=request.name,
+        along=request.parameter_name,
         start=float(request.values[0]),
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,

@@ -19,7 +19,7 @@ from .arm.path import ArmPath, path_problem
 from .leading_eigenvalue import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
-from .unstable_modes import ChangeKind, Crossing, ModeCounter
+from .unstable_modes import ChangeKind, ModeCounter, Threshold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,8 +27,8 @@ class ThresholdSettings:
     """Settings of the search for all thresholds along a path."""
 
     anchor_shift: float = 1e-4
-    """If a pair that crosses the imaginary axis must lead, but another eigenvalue leads in the list, anchors
-    are added at this distance on both sides of the crossing, as a fraction of the path's length."""
+    """Anchors are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
+    must lead but does not lead in the list."""
     merge_distance: float = 1e-5
     """Undecided boxes of the covering are merged if the relative gap between them is at most this."""
 
@@ -37,25 +37,23 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Transitions:
-    """Result of a search along a path: all thresholds, in increasing order of the parameter, and whether the
-    list is proved complete."""
+class ThresholdList:
+    """All thresholds along a path, by increasing parameter, and whether the list is proved complete."""
 
-    crossings: tuple[Crossing, ...] = ()
+    thresholds: tuple[Threshold, ...] = ()
     searched_interval: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
     """Whether the searched interval is shorter than the requested interval; the reason is in `doubt_text`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
-    """Smallest interval that contains all possible further crossings; (nan, nan) without such crossings."""
+    """Smallest interval that contains all possible further crossings; (nan, nan) if there are none."""
     unstable_at_start: int = -1
     unstable_at_end: int = -1
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
     proved: bool
-    """Whether the covering is complete, all counts agree, and no eigenvalue lies to the right of a leading
-    eigenvalue."""
-    box_count: int = 0
+    """Whether covering and list are complete, all counts agree, and each leading eigenvalue leads."""
+    evaluation_count: int = 0
     """Number of evaluations of the determinant D in the covering."""
     solve_count: int = 0
     """Number of solved eigenvalue problems."""
@@ -71,20 +69,20 @@ class Transitions:
 @dataclass(frozen=True, slots=True)
 class AxisCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
-    crossings. search_end: end of the search. box_count: number of evaluations of D in the covering."""
+    crossings. search_end: end of the search. evaluation_count: number of evaluations of D in the covering."""
 
     path: Path
-    crossings: list[Crossing]
+    crossings: list[Threshold]
     gaps: list[tuple[float, float]]
     search_end: SearchEnd
-    box_count: int = 0
+    evaluation_count: int = 0
 
     def restricted_to(self, reach: SearchEnd) -> "AxisCrossings":
         """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
         end."""
         if reach.p == self.search_end.p:
             return self
-        crossings = [c for c in self.crossings if self.path.coordinate(c.at) <= reach.p]
+        crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= reach.p]
         gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= reach.p]
         return replace(self, crossings=crossings, gaps=gaps, search_end=reach)
 
@@ -93,12 +91,12 @@ class AxisCrossings:
         if not self.search_end.reason:
             return start, stop
         end = self.path.parameter.value(self.search_end.p)
-        return (end, stop) if self.path.is_compliance else (start, end)
+        return (end, stop) if self.path.is_compliance_path else (start, end)
 
 
-def transitions(
+def find_thresholds(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
-) -> Transitions:
+) -> ThresholdList:
     """All thresholds along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
@@ -112,14 +110,14 @@ def transitions(
     edges = problem.interval_edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
     for _ in range(2):
-        changes, reach = tracer.changes([*(p for p in edges if p < found.search_end.p), found.search_end.p])
+        changes, reach = tracer.exchanges([*(p for p in edges if p < found.search_end.p), found.search_end.p])
         found = found.restricted_to(reach) if reach.reason else found
         ends = found.searched_interval(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
         oscillates = tracer.anchor(path.coordinate(ends[0])).oscillates
-        ordered = sorted(changes + found.crossings, key=lambda c: c.at)
+        ordered = sorted(changes + found.crossings, key=lambda c: c.value)
         crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
         missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
         if not missed:
@@ -130,37 +128,39 @@ def transitions(
         counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
     if certify and not tracer.leaders_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
-    counted = _counted(counts, unstable, crossings, at_end)
-    counted = _with_searched(counted, found, (start, stop))
+    counted = _with_counts(counts, unstable, crossings, at_end)
+    counted = _with_interval(counted, found, (start, stop))
     return replace(counted, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
-def pair_crossings(
+def find_axis_crossings(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
-) -> Transitions:
+) -> ThresholdList:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
-    exchanges of the leading eigenvalue; takes half the time of `transitions`.
+    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`.
 
     `proved` then means that the covering is complete and every count agrees. certify, most: as in
-    `transitions`, as are the conditions under which the search ends early or raises Unsolvable.
+    `find_thresholds`, which also says when the search ends early or raises Unsolvable.
     """
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, most)
     counts = ModeCounter(problem, found.gaps, certify)
     ends = found.searched_interval(start, stop)
-    ordered = sorted(found.crossings, key=lambda c: c.at)
+    ordered = sorted(found.crossings, key=lambda c: c.value)
     unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
     crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
-    return _with_searched(_counted(counts, unstable, crossings, at_end), found, (start, stop))
+    return _with_interval(_with_counts(counts, unstable, crossings, at_end), found, (start, stop))
 
 
-def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...], at_end: int) -> Transitions:
-    """`Transitions` of the thresholds `crossings`, whose unstable modes are counted. counts: the gaps and
-    doubts of the search. unstable, at_end: numbers of unstable modes at the two ends."""
+def _with_counts(
+    counts: ModeCounter, unstable: int, crossings: tuple[Threshold, ...], at_end: int
+) -> ThresholdList:
+    """`ThresholdList` of the thresholds `crossings`. counts: gaps and doubts of the search. unstable,
+    at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
-    return Transitions(
-        crossings=crossings,
+    return ThresholdList(
+        thresholds=crossings,
         open_range=_hull_of_gaps(counts.gaps),
         unstable_at_start=unstable,
         unstable_at_end=at_end,
@@ -169,7 +169,7 @@ def _counted(counts: ModeCounter, unstable: int, crossings: tuple[Crossing, ...]
     )
 
 
-def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[float, float]) -> Transitions:
+def _with_interval(counted: ThresholdList, found: AxisCrossings, asked: tuple[float, float]) -> ThresholdList:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched_interval(*asked)
     reason = found.search_end.reason
@@ -179,14 +179,14 @@ def _with_searched(counted: Transitions, found: AxisCrossings, asked: tuple[floa
         counted,
         searched_interval=searched,
         ended_early=bool(reason),
-        box_count=found.box_count,
+        evaluation_count=found.evaluation_count,
         doubt_text="; ".join(filter(None, (early, counted.doubt_text))),
     )
 
 
 def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
-    """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, which
-    `certify` proves. most: number of crossings after which the search of a nonuniform arm ends."""
+    """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, proved
+    if `certify`. most: number of crossings after which the search of a nonuniform arm ends."""
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
@@ -213,7 +213,7 @@ def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 
 
 def _pairs_missed_as_leaders(
-    path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
+    path: Path, crossings: tuple[Threshold, ...], oscillates: bool, unstable: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
     oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
@@ -223,20 +223,20 @@ def _pairs_missed_as_leaders(
             oscillates = crossing.kind.pair_leads_after
         else:
             if min(unstable, crossing.unstable_after) == 0 and not oscillates:
-                missed.append(path.coordinate(crossing.at))
+                missed.append(path.coordinate(crossing.value))
             unstable = crossing.unstable_after
     return missed
 
 
-def _hopf_crossing(path: Path, zero: LocatedZero) -> Crossing:
+def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
     # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
     growing = (-there.D_p / there.D_w).real > 0
-    kind = ChangeKind.hopf if growing != path.is_compliance else ChangeKind.hopf_reverse
+    kind = ChangeKind.hopf if growing != path.is_compliance_path else ChangeKind.hopf_reverse
     at, error = path.value(zero.p, zero.error_of_p)
-    return Crossing(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
+    return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
 
 def _undecided_intervals(path: Path, left: list[Box]) -> list[tuple[float, float]]:

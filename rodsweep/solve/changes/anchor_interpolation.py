@@ -30,7 +30,7 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
     return lowest, at
 
 
-def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
+def next_anchor_position(left: Anchor, right: Anchor) -> tuple[float, bool]:
     """Returns (share, hides). share: position of an additional anchor as a fraction of the interval from
     `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading eigenvalue.
     hides: whether two exchanges may lie between the anchors.
@@ -61,9 +61,9 @@ def next_anchor(left: Anchor, right: Anchor) -> tuple[float, bool]:
     return 0.0, False
 
 
-def exclude_exchange(left: Anchor, right: Anchor, hides: bool) -> bool:
+def excludes_exchange(left: Anchor, right: Anchor, hides: bool) -> bool:
     """Whether the slopes at two close anchors exclude an exchange of the leading eigenvalue, although
-    `next_anchor` asks for an anchor between them and returns `hides`.
+    `next_anchor_position` asks for an anchor between them and returns `hides`.
 
     The leading eigenvalue must be real at both anchors, or a pair at both anchors.
     """
@@ -95,7 +95,7 @@ def two_pairs_exchange_lead(left: Anchor, right: Anchor) -> bool:
     )
 
 
-def only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
+def has_only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
     """Whether the slopes exclude further exchanges between two anchors with a double eigenvalue between them.
     The leading eigenvalue is real at one anchor, and a pair at the other."""
     squares = left.squared_pair_difference(), right.squared_pair_difference()
@@ -108,7 +108,7 @@ def only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
     )
 
 
-def only_overtaking(left: Anchor, right: Anchor) -> bool:
+def has_only_overtaking(left: Anchor, right: Anchor) -> bool:
     """Whether the slopes show that, between two anchors, a real eigenvalue and a pair exchange the lead once
     and no other eigenvalue takes the lead. False if the first eigenvalues at an anchor are not one real
     eigenvalue and one pair."""

@@ -14,7 +14,7 @@ class AnchorSettings:
     min_known_modes: int = 4
     """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
     more than the number of unstable modes are computed."""
-    place_accuracy: float = 1e-6
+    arm_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
     D."""
     interpolation_tolerance: float = 0.25

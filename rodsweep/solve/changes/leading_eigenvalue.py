@@ -19,12 +19,17 @@ import numpy as np
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
-from .anchor_interpolation import exclude_exchange, next_anchor, only_double_eigenvalue, only_overtaking
+from .anchor_interpolation import (
+    excludes_exchange,
+    has_only_double_eigenvalue,
+    has_only_overtaking,
+    next_anchor_position,
+)
 from .anchors import Anchor
 from .exchange import double_eigenvalue_between, overtaking_between
 from .path_problem import PathProblem
 from .search_range import SearchedIntervals, SearchEnd
-from .unstable_modes import ChangeKind, Crossing
+from .unstable_modes import ChangeKind, Threshold
 
 ANCHOR_MODE_COUNT = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
@@ -86,10 +91,10 @@ class LeaderExchangeSearch:
         """The anchor at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
         cannot be computed."""
         if p not in self.anchors:
-            self.anchors[p] = self._solve(p)
+            self.anchors[p] = self._solve_anchor(p)
         return self.anchors[p]
 
-    def _solve(self, p: float) -> Anchor:
+    def _solve_anchor(self, p: float) -> Anchor:
         request = SpectrumRequest(ANCHOR_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
@@ -106,22 +111,22 @@ class LeaderExchangeSearch:
             distances = np.abs(found.eigenvalues - polished)
             if distances[i] <= min(near, distances.min()):
                 w[i] = polished
-        return Anchor(p, w, slope, *self.problem.relaxation(p))
+        return Anchor(p, w, slope, *self.problem.relaxation_time_and_slope(p))
 
-    def changes(self, edges: list[float]) -> tuple[list[Crossing], SearchEnd]:
+    def exchanges(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
         """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
         first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
-        found: list[Crossing] = []
+        found: list[Threshold] = []
         intervals = SearchedIntervals(edges)
         self.anchor(edges[0])
         for a, b in intervals:
             try:
-                found += self._search(a, b, intervals)
+                found += self._search_interval(a, b, intervals)
             except Unsolvable as why:
                 intervals.end_within((a, b), str(why))
         return found, intervals.end
 
-    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> list[Crossing]:
+    def _search_interval(self, a: float, b: float, intervals: SearchedIntervals) -> list[Threshold]:
         """The exchange between the anchors at a and b, in a list; an empty list without an exchange, or if
         the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends the
         proof if it is too short; raises Unsolvable."""
@@ -129,13 +134,13 @@ class LeaderExchangeSearch:
         right = self.anchor(b)
         share = 0.5
         if left.oscillates == right.oscillates:
-            share, hides = next_anchor(left, right)
+            share, hides = next_anchor_position(left, right)
             settings = LEADING_EIGENVALUE_SETTINGS
             smallest = settings.smallest_hiding_interval if hides else settings.smallest_interval
             if len(self.anchors) > settings.max_anchors:
                 smallest = settings.close_anchors
             close = b - a <= settings.close_anchors * intervals.length
-            if share == 0.0 or (close and exclude_exchange(left, right, hides)):
+            if share == 0.0 or (close and excludes_exchange(left, right, hides)):
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
@@ -144,7 +149,7 @@ class LeaderExchangeSearch:
         else:
             change = self._exchange_between(left, right)
             if change is not None:
-                return self._alone_or_divided(change, left, right, intervals)
+                return self._exchange_if_alone(change, left, right, intervals)
             if b - a <= LEADING_EIGENVALUE_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
@@ -155,31 +160,31 @@ class LeaderExchangeSearch:
         intervals.add_parts((a, middle), (middle, b))
         return []
 
-    def _alone_or_divided(
-        self, change: Crossing, left: Anchor, right: Anchor, intervals: SearchedIntervals
-    ) -> list[Crossing]:
+    def _exchange_if_alone(
+        self, change: Threshold, left: Anchor, right: Anchor, intervals: SearchedIntervals
+    ) -> list[Threshold]:
         """The exchange `change` between two anchors, in a list, if no further exchange lies between them;
         else an empty list, after the division of the interval next to the exchange. An interval too short to
         be divided ends the proof."""
-        alone = only_double_eigenvalue if change.frequency == 0 else only_overtaking
+        alone = has_only_double_eigenvalue if change.frequency == 0 else has_only_overtaking
         if alone(left, right):
             return [change]
         length = right.p - left.p
         if length <= LEADING_EIGENVALUE_SETTINGS.smallest_hiding_interval * intervals.length:
             self.leaders_proved = False
             return [change]
-        p = self.path.coordinate(change.at)
+        p = self.path.coordinate(change.value)
         beside = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
         places = sorted({left.p, max(left.p, p - beside), min(right.p, p + beside), right.p})
         intervals.add_parts(*pairwise(places))
         return []
 
-    def _exchange_between(self, left: Anchor, right: Anchor) -> Crossing | None:
+    def _exchange_between(self, left: Anchor, right: Anchor) -> Threshold | None:
         """The exchange between an anchor with a leading pair and an anchor with a real leading eigenvalue.
         None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
-        if right.oscillates != self.path.is_compliance:
+        if right.oscillates != self.path.is_compliance_path:
             double = ChangeKind.onset
             single = ChangeKind.pair_leads
         else:
@@ -193,11 +198,11 @@ class LeaderExchangeSearch:
             behind = max(left.w[meeting].real, right.w[meeting].real)
             if behind >= found.growth_rate:
                 continue
-            count = self.problem.count((found.growth_rate + behind) / 2, found.p)
+            count = self.problem.count_right_of((found.growth_rate + behind) / 2, found.p)
             # A different count means that other eigenvalues lead; an undecided count leaves the exchange
             # unproved.
             if count.number in (meeting, None):
                 self.leaders_proved = self.leaders_proved and count.number == meeting
                 at, error = self.path.value(found.p, found.error_of_p)
-                return Crossing(at, kind, found.frequency, found.growth_rate, error)
+                return Threshold(at, kind, found.frequency, found.growth_rate, error)
         return None

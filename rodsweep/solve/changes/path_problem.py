@@ -42,17 +42,17 @@ class PathProblem(ABC):
         nan if no double eigenvalue is found."""
 
     @abstractmethod
-    def count(self, line: float, p: float) -> EigenvalueCount:
+    def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         """Number of eigenvalues with Re w > `line` of the rod at p."""
 
-    def known_count_amid(self, low: float, high: float) -> int | None:
+    def known_count_near_middle(self, low: float, high: float) -> int | None:
         """Number of unstable modes already proved at a path variable near the middle between `low` and
         `high`; None if no such number is known.
         """
         return None
 
     @abstractmethod
-    def relaxation(self, p: float) -> tuple[float, float]:
+    def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         """Returns (relaxation time of the rod at p, derivative of this time with respect to p); the time is
         smooth in p."""
 
@@ -71,10 +71,10 @@ class UniformPath(PathProblem):
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
         return double_newton(x, p, self.path.origin, self.path.direction, reach)
 
-    def count(self, line: float, p: float) -> EigenvalueCount:
+    def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         return count_right_of(line, self.path.rod_at(p))
 
-    def relaxation(self, p: float) -> tuple[float, float]:
+    def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         here = coefficients_at(p, self.path.origin, self.path.direction)
         rate = self.path.direction
         # Along a path the eigenvalues may grow without bound; divided by 1/time they stay moderate.

@@ -39,42 +39,42 @@ class SearchedIntervals:
     """
 
     def __init__(self, edges: list[float]):
-        self.first = edges[0]
+        self.start_p = edges[0]
         self.length = edges[-1] - edges[0]
         self.end = SearchEnd(edges[-1])
-        self._left = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
-        self._unsolvable = edges[-1]
+        self._queue = list(zip(edges[:-1], edges[1:], strict=True))[::-1]
+        self._unsearched_end = edges[-1]
         self._halvings = 0
 
     def __iter__(self) -> Iterator[tuple[float, float]]:
         """Yields the intervals of the queue; raises Unsolvable if no interval could be searched."""
         while True:
             # The left part of an interval whose search failed can often be searched.
-            if not self._left and self.end.reason and self._halvings < SEARCH_RANGE_SETTINGS.last_halvings:
+            if not self._queue and self.end.reason and self._halvings < SEARCH_RANGE_SETTINGS.last_halvings:
                 self._halvings += 1
-                middle = (self.end.p + self._unsolvable) / 2
-                self._left.append((self.end.p, middle))
+                middle = (self.end.p + self._unsearched_end) / 2
+                self._queue.append((self.end.p, middle))
                 self.end = SearchEnd(middle, self.end.reason)
-            if not self._left:
+            if not self._queue:
                 break
-            yield self._left.pop()
-        if self.end.reason and self.end.p <= self.first:
+            yield self._queue.pop()
+        if self.end.reason and self.end.p <= self.start_p:
             raise Unsolvable(self.end.reason)
 
     def add_parts(self, *intervals: tuple[float, float]) -> None:
         """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
-        self._left += intervals[::-1]
+        self._queue += intervals[::-1]
 
     def stop_at(self, p: float, reason: str) -> None:
         """Ends the search at path variable `p`, up to which the search is complete. reason: why the search
         ends."""
-        self._left.clear()
+        self._queue.clear()
         self._halvings = SEARCH_RANGE_SETTINGS.last_halvings
         self.end = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:
         """Ends the search at the start of the present `interval`, whose search failed; `__iter__` may still
         yield its left half. reason: why the search failed."""
-        self._left.clear()
-        self._unsolvable = interval[1]
+        self._queue.clear()
+        self._unsearched_end = interval[1]
         self.end = SearchEnd(interval[0], reason)

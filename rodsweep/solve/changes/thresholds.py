@@ -9,8 +9,8 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point import outcome_or_failure
 from ..status import PointStatus
-from .along_path import Transitions, transitions
-from .unstable_modes import ChangeKind, Crossing, end_below_crushing
+from .along_path import ThresholdList, find_thresholds
+from .unstable_modes import ChangeKind, Threshold, end_below_crushing
 
 
 class ThresholdStatus(PointStatus):
@@ -54,7 +54,7 @@ class ThresholdsRequest:
     F_max: float
     accuracy: float
     certify: bool
-    crossings: int
+    max_thresholds: int
     """Maximum number of thresholds in the list."""
 
 
@@ -63,15 +63,15 @@ class Thresholds:
     """Result of a search: all thresholds along a path up to the parameter value `end`, with a status."""
 
     status: ThresholdStatus
-    transitions: Transitions
+    search_result: ThresholdList
     end: float
     seconds: float = 0.0
     message: str = ""
 
     @property
-    def crossings(self) -> tuple[Crossing, ...]:
+    def thresholds(self) -> tuple[Threshold, ...]:
         """All thresholds, in increasing order of the parameter."""
-        return self.transitions.crossings
+        return self.search_result.thresholds
 
 
 def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
@@ -80,8 +80,8 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
-        found = transitions(Path(rod, "F"), 0.0, end, request.certify, request.crossings)
-        return thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
+        found = find_thresholds(Path(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
+        return thresholds_with_status(found, request.accuracy, request.certify, request.max_thresholds)
 
     return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, end, cause))
 
@@ -89,11 +89,11 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
     value at the end of the search. message: reason for a failure."""
-    found = Transitions(proved=status == ThresholdStatus.ok)
-    return Thresholds(status=status, transitions=found, end=end, message=message)
+    found = ThresholdList(proved=status == ThresholdStatus.ok)
+    return Thresholds(status=status, search_result=found, end=end, message=message)
 
 
-def thresholds_with_status(found: Transitions, accuracy: float, certify: bool, most: int) -> Thresholds:
+def thresholds_with_status(found: ThresholdList, accuracy: float, certify: bool, most: int) -> Thresholds:
     """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
     requested. most: maximum number of thresholds in the list."""
     status = ThresholdStatus.ok
@@ -101,14 +101,14 @@ def thresholds_with_status(found: Transitions, accuracy: float, certify: bool, m
         status = ThresholdStatus.ended_early
     elif not math.isnan(found.open_range[0]):
         status = ThresholdStatus.window_open
-    elif len(found.crossings) > most:
+    elif len(found.thresholds) > most:
         status = ThresholdStatus.list_full
-    elif any(c.error > accuracy * abs(c.at) for c in found.crossings):
+    elif any(c.error > accuracy * abs(c.value) for c in found.thresholds):
         status = ThresholdStatus.accuracy_not_reached
     elif certify and not found.proved:
         status = ThresholdStatus.not_certified
     return Thresholds(
-        status=status, transitions=found, end=found.searched_interval[1], message=found.doubt_text
+        status=status, search_result=found, end=found.searched_interval[1], message=found.doubt_text
     )
 
 
@@ -118,8 +118,8 @@ def warm_up() -> None:
     solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 
-def filament_hopf() -> float:
+def filament_flutter_force() -> float:
     """Critical force Fc, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De
     Canio et al. 2017)."""
-    found = transitions(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
-    return next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
+    found = find_thresholds(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
+    return next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)

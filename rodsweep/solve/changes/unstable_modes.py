@@ -73,15 +73,15 @@ class ChangeKind(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Crossing:
-    """One threshold along a path, at parameter value `at` with error `error`; the eigenvalue is growth_rate +
-    i frequency, in 1/tau2.
+class Threshold:
+    """One threshold along a path. value, error: value of the parameter and its absolute error. growth_rate,
+    frequency: real and imaginary part of the eigenvalue, in 1/tau2.
 
     unstable_after: number of unstable modes just after the threshold, -1 if unknown. frequency_error: error
     of the frequency of a pair that crosses the imaginary axis; nan at an exchange of the leading eigenvalue.
     """
 
-    at: float
+    value: float
     kind: ChangeKind
     frequency: float
     growth_rate: float
@@ -106,13 +106,15 @@ class ModeCounter:
 
     def count_at(self, value: float) -> int:
         """Number of unstable modes at the parameter value `value`, by the winding number; -1 if undecided."""
-        number = self.problem.count(0.0, self.path.coordinate(value)).number
+        number = self.problem.count_right_of(0.0, self.path.coordinate(value)).number
         return -1 if number is None else number
 
     def count_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, known already or by
         the winding number; -1 if the count is undecided at all positions tried."""
-        known = self.problem.known_count_amid(*sorted((self.path.coordinate(a), self.path.coordinate(b))))
+        known = self.problem.known_count_near_middle(
+            *sorted((self.path.coordinate(a), self.path.coordinate(b)))
+        )
         if known is not None:
             return known
         for share in UNSTABLE_MODE_COUNT_SETTINGS.count_positions:
@@ -121,29 +123,29 @@ class ModeCounter:
                 return number
         return -1
 
-    def count_at_start(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
+    def count_at_start(self, start: float, stop: float, hopfs: list[Threshold]) -> int:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
         crossings `hopfs`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
-        until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
+        until = min([stop, *(c.value for c in hopfs), *(a for a, _ in self.gaps)])
         return number if number >= 0 else self.count_between(start, until)
 
     def crossings_with_counts(
-        self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
-    ) -> tuple[tuple[Crossing, ...], int]:
+        self, ordered: list[Threshold], ends: tuple[float, float], unstable: int
+    ) -> tuple[tuple[Threshold, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
         the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
         unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` are those of
         this call only."""
         self.doubts = []
-        out: list[Crossing] = []
+        out: list[Threshold] = []
         start = ends[0]
         for crossing in ordered:
             kind = crossing.kind
             if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
-                unstable = self._count_before(start, crossing.at, unstable)
-                start = crossing.at
+                unstable = self._count_before(start, crossing.value, unstable)
+                start = crossing.value
                 if unstable >= 0:
                     unstable += 2 if kind == ChangeKind.hopf else -2
                 if kind == ChangeKind.hopf_reverse and unstable == 0:

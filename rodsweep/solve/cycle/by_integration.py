@@ -20,7 +20,7 @@ from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
-from ..motion.integrator import RunLimit, Trajectory, forget_integrators, integrator, relax_fast_components
+from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integrator, relax_fast_components
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
@@ -51,7 +51,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
     """Outcome of a rod's motion from its leading mode, by time integration; a failure becomes a status."""
 
     def failed(cause: str) -> Cycle:
-        forget_integrators()  # after an error inside PETSc its objects are unusable
+        destroy_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
     return outcome_or_failure(lambda: _MarchedMotion(rod, request).cycle(), failed)
@@ -224,7 +224,7 @@ class _MarchedMotion:
         coordinates = {
             name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
         }
-        self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
+        self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._new_beam()
         z = relax_fast_components(self.beam, settled.state, self.leading_mode.period)
         more = errors_of_two_integrations(path, self._measured_path(self._integrate_until_settled(z)), 0.0)

@@ -198,7 +198,7 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
     normal = _normal_form(form, w)
     if not normal.is_supercritical:
         raise Unsolvable("the nearby Hopf point is subcritical")
-    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_force_distance * rate / -normal.c.real:
+    if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_force_distance * rate / -normal.landau.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
     if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance * abs(w)).number != 2:
         raise Unsolvable("a second pair of modes may be unstable, so the normal form is not valid")

@@ -17,8 +17,8 @@ import numpy as np
 
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..motion.fixed_tip import equilibrium_at_tip
-from ..motion.integrator import forget_integrators
+from ..motion.fixed_tip import bent_state_with_tip_at
+from ..motion.integrator import destroy_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable, outcome_or_failure
 from .accuracy.cycle_verdict import RefinedCycle
@@ -73,7 +73,7 @@ def solve_cycle(
     memory = workspace or NewtonWorkspace()
 
     def failed(cause: str) -> Cycle:
-        forget_integrators()  # after an error inside PETSc its objects are unusable
+        destroy_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
@@ -219,7 +219,7 @@ def _outcome_of_motion(
     of the neighbour's cycle; a quasiperiodic motion is recognised."""
     beam = transient.beam
     if request.tip is not None:
-        start = equilibrium_at_tip(beam, *request.tip)
+        start = bent_state_with_tip_at(beam, *request.tip)
     elif neighbour is None:
         start = request.amplitude * transient.leading_mode.z.real
     else:

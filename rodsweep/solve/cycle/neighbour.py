@@ -103,7 +103,7 @@ class Neighbour:
         return {
             "rod": np.array(list(orbit.form.rod.values.values())),
             # Checkpoints hold arrays only, so a text is stored as its bytes.
-            "build": np.frombuffer(orbit.form.rod.build.text.encode(), np.uint8),
+            "build": np.frombuffer(orbit.form.rod.build.json_text.encode(), np.uint8),
             "symmetric": np.array(orbit.is_symmetric),
             "mesh": mesh_of(orbit).as_array,
             "orbit": orbit.values,
@@ -120,7 +120,7 @@ class Neighbour:
         mesh = OrbitMesh.from_array(arrays["mesh"])
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
-        rod = Rod(**parameters, build=Build.from_text(bytes(arrays["build"]).decode()))
+        rod = Rod(**parameters, build=Build.from_json_text(bytes(arrays["build"]).decode()))
         symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
         form = StressForm(rod, mesh.space_mesh)
         orbit = Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"])

@@ -68,7 +68,7 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
-    share = abs(normal.c.real) * amplitude**2 / -w.real
+    share = abs(normal.landau.real) * amplitude**2 / -w.real
     if share >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
         return ""
     return f"the motion decays: at the start the cubic term is {share:.0e} of the linear growth rate"

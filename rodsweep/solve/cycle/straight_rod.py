@@ -109,7 +109,7 @@ def eigenvalues_to_follow(rod: Rod, found: StraightRodStability) -> Complex:
     rod, if their search succeeds; else the leading eigenvalue of `found` alone. found: stability of `rod`."""
     if len(found.followed_eigenvalues):
         return found.followed_eigenvalues
-    if not rod.uniform:
+    if not rod.is_uniform:
         request = SpectrumRequest(
             STRAIGHT_ROD_SETTINGS.followed_eigenvalue_count, STRAIGHT_ROD_SETTINGS.accuracy, True
         )

@@ -25,8 +25,8 @@ from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCu
 
 
 class BautinEnd(IntEnum):
-    """Reason why a curve ends. none: the point is not an end. range_end: end of the third parameter's range.
-    plane_edge: end of the range of another parameter. not_found: no point was found beyond the end."""
+    """Reason why a curve ends. none: no end. range_end: end of the third parameter's range. plane_edge: end
+    of another range. not_found: no further point. list_full: too many points. closed: at its first point."""
 
     none = 0
     range_end = 1
@@ -57,10 +57,10 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Points of a curve in order, and the reasons for its ends at the first and at the last point."""
+    """Points of a curve in order, and the reasons for its two ends."""
 
     points: tuple[BautinCurvePoint, ...]
-    ends: tuple[BautinEnd, BautinEnd]
+    end_reasons: tuple[BautinEnd, BautinEnd]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class BautinSpace:
         fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
-        plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
+        plane = Plane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
         accuracy = min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
@@ -120,14 +120,14 @@ class BautinSpace:
             # Step lengths are shares of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
-            there, on_edge = self._within_ranges(here, length * tangent)
+            there, on_edge = self._point_in_ranges(here, length * tangent)
         except ValueError as why:
             raise Unsolvable(f"the step leaves the allowed range of the parameters: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
-    def _within_ranges(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
+    def _point_in_ranges(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
         """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
 
         No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
@@ -150,12 +150,12 @@ class BautinSpace:
     def located_zero(
         self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
-        """The point `outer` itself: `_within_ranges` has already shortened the step to the end of a range."""
+        """The point `outer` itself: `_point_in_ranges` has shortened the step to the end of a range."""
         return outer
 
     def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
-        """Whether the curve has more than `BAUTIN.min_loop_points` points, and the first point of the curve
-        lies between its last point and `there`."""
+        """Whether the curve has more than `BAUTIN_SETTINGS.min_loop_points` points, and the first point of
+        the curve lies between its last point and `there`."""
         first = behind[0].v
         last = behind[-1].v
         step = float(np.linalg.norm(there.v - behind[-1].v))
@@ -215,8 +215,8 @@ def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurv
 
 
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` in the direction `space.side` of the third parameter, including points at its
-    requested values; reason for the end of the curve)."""
+    """(points from `start` in the direction `space.direction` of the third parameter, including points
+    at its requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + space.direction * BAUTIN_STEPS.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(space, start, BAUTIN_STEPS, _report_point_count)

@@ -17,7 +17,7 @@ from ...discretization.straight.elements import TRANSVERSE
 from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.unstable_modes import Crossing
+from ..changes.unstable_modes import Threshold
 from .normal_form import (
     NORMAL_FORM_SETTINGS,
     NormalForm,
@@ -31,7 +31,7 @@ from .normal_form import (
 class HopfCoefficientSettings:
     """Settings for the coefficients of a Hopf point and their errors, and for the cache of searches."""
 
-    more_orders: int = 4
+    order_increase: int = 4
     """Increase of the element order from the first mesh to the second, which reduces the error of c by a
     factor of 10 to 10^4."""
     max_refinements: int = 4
@@ -98,7 +98,7 @@ class HopfCoefficients:
         return max(self.landau_error, self.growth_slope_error)
 
 
-def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoefficients:
+def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoefficients:
     """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
     Unsolvable.
 
@@ -110,7 +110,7 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     start = elements_for_coefficient(
         rod,
         w,
-        min(accuracy / NORMAL_FORM_SETTINGS.accuracy_share, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
+        min(accuracy / NORMAL_FORM_SETTINGS.accuracy_ratio, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
     )
     fine = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy)
     change = math.inf
@@ -120,28 +120,28 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
         more = (
             elements_with_third_more_unknowns(here)
             if number
-            else Elements(here.edges, here.order + HOPF_COEFFICIENT_SETTINGS.more_orders)
+            else Elements(here.edges, here.order + HOPF_COEFFICIENT_SETTINGS.order_increase)
         )
         coarse = fine
         fine = normal_form_on(more, rod, w, accuracy)
-        change = abs(fine.c - coarse.c) / abs(fine.c)
+        change = abs(fine.landau - coarse.landau) / abs(fine.landau)
         rounding = _landau_rounding_error(fine)
         if change <= max(accuracy, rounding):
             break
     # The slope of the root of D has no error of a mesh.
     slope, bend = _eigenvalue_derivatives(rod, w)
-    if rod.standard:
-        off = abs(fine.slope - slope) / abs(slope)
+    if rod.is_uniform_and_linear:
+        off = abs(fine.eigenvalue_slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
-        slope = fine.slope
-        off = abs(fine.slope - coarse.slope) / abs(slope)
+        slope = fine.eigenvalue_slope
+        off = abs(fine.eigenvalue_slope - coarse.eigenvalue_slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
     unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
     moved = HOPF_COEFFICIENT_SETTINGS.max_force_sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + moved
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
     return _coefficients_with_errors(
-        replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
+        replace(fine, eigenvalue_slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
     )
 
 
@@ -150,8 +150,8 @@ def _coefficients_with_errors(
 ) -> HopfCoefficients:
     """The coefficients of `normal` with relative errors, from three relative errors: `landau_error` of c,
     `slope_error` of dw/dF, and `force_error` of F; also the mesh."""
-    c = normal.c
-    slope = normal.slope
+    c = normal.landau
+    slope = normal.eigenvalue_slope
     slope_off = slope_error * abs(slope)
     c_off = landau_error * abs(c)
     ratio = c.imag / c.real

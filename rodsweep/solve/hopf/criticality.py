@@ -10,8 +10,8 @@ from functools import cache, lru_cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..changes.along_path import Transitions, pair_crossings
-from ..changes.unstable_modes import Crossing, end_below_crushing
+from ..changes.along_path import ThresholdList, find_axis_crossings
+from ..changes.unstable_modes import Threshold, end_below_crushing
 from ..point import FAILURES, cause_of, outcome_or_failure
 from ..status import PointStatus
 from .coefficient_errors import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
@@ -65,27 +65,27 @@ class CriticalityRequest:
     F_max: float
     accuracy: float
     certify: bool
-    crossings: int
+    max_hopf_points: int
     """Maximum number of Hopf points with coefficients."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `end`. transitions: result of the search for Hopf
+    """Result for one rod: all Hopf points up to the force `end`. search_result: result of the search for Hopf
     points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
     seconds: computing time."""
 
     status: CriticalityStatus
-    transitions: Transitions
+    search_result: ThresholdList
     coefficients: tuple[HopfCoefficients, ...]
     end: float
     seconds: float = 0.0
     message: str = ""
 
     @property
-    def crossings(self) -> tuple[Crossing, ...]:
+    def hopf_points(self) -> tuple[Threshold, ...]:
         """All Hopf points, with or without coefficients, by increasing force."""
-        return self.transitions.crossings
+        return self.search_result.thresholds
 
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
@@ -96,15 +96,15 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 
     def search() -> Criticality:
         # Without gamma1 and the force: rods that differ only in these two share the search.
-        path = Path(replace(rod.linear, F=0.0), "F")
-        found = _hopf_points(path, end, request.certify, request.crossings)
+        path = Path(replace(rod.without_nonlinear_parameters, F=0.0), "F")
+        found = _hopf_points(path, end, request.certify, request.max_hopf_points)
         coefficients = tuple(
-            _coefficients(rod, hopf, request) for hopf in found.crossings[: request.crossings]
+            _coefficients(rod, hopf, request) for hopf in found.thresholds[: request.max_hopf_points]
         )
         status, message = _status_and_message(found, coefficients, request)
         return Criticality(
             status=status,
-            transitions=found,
+            search_result=found,
             coefficients=coefficients,
             end=found.searched_interval[1],
             message=message,
@@ -120,23 +120,23 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, most: int) -> Transitions:
-    return pair_crossings(path, 0.0, end, certify, most)
+def _hopf_points(path: Path, end: float, certify: bool, most: int) -> ThresholdList:
+    return find_axis_crossings(path, 0.0, end, certify, most)
 
 
-def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
+def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> HopfCoefficients:
     """Coefficients of the Hopf point `hopf`; if the computation fails they are NaN, with the cause as
     message."""
     try:
-        return hopf_coefficients(replace(rod, F=hopf.at), hopf, request.accuracy)
+        return hopf_coefficients(replace(rod, F=hopf.value), hopf, request.accuracy)
     except FAILURES as error:
-        return HopfCoefficients(message=f"Hopf point at F = {hopf.at:.12g}: {cause_of(error)}")
+        return HopfCoefficients(message=f"Hopf point at F = {hopf.value:.12g}: {cause_of(error)}")
 
 
 def _empty_criticality(end: float, cause: str) -> Criticality:
     return Criticality(
         status=CriticalityStatus.failed,
-        transitions=Transitions(proved=False),
+        search_result=ThresholdList(proved=False),
         coefficients=(),
         end=end,
         message=cause,
@@ -144,13 +144,13 @@ def _empty_criticality(end: float, cause: str) -> Criticality:
 
 
 def _status_and_message(
-    found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
+    found: ThresholdList, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
     problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.are_known]
-    worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(
+    worse = any(c.error > request.accuracy * abs(c.value) for c in found.thresholds) or any(
         c.largest_error > request.accuracy for c in known
     )
     # From the most to the least serious.
@@ -158,7 +158,7 @@ def _status_and_message(
         CriticalityStatus.ended_early: found.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
         CriticalityStatus.window_open: not math.isnan(found.open_range[0]),
-        CriticalityStatus.list_full: len(found.crossings) > request.crossings,
+        CriticalityStatus.list_full: len(found.thresholds) > request.max_hopf_points,
         CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known),
         CriticalityStatus.accuracy_not_reached: worse,
         CriticalityStatus.not_certified: request.certify and not found.proved,

@@ -19,7 +19,7 @@ from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
 from ..changes.arm.path import path_problem
 from ..changes.diagram.boundary_curves import BoundaryCurve
-from ..changes.unstable_modes import ChangeKind, Crossing
+from ..changes.unstable_modes import ChangeKind, Threshold
 from ..point import FAILURES, Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
@@ -51,11 +51,11 @@ class GeneralisedHopfPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
     values, errors: values and absolute errors of both parameters of the plane. frequency in 1/tau2,
-    growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the last stored
-    point of the curve before this point.
+    growth_slope = dw/dF in L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). preceding_index: index of the
+    last stored point of the curve before this point.
     """
 
-    after: int
+    preceding_index: int
     values: tuple[float, float]
     errors: tuple[float, float]
     frequency: float
@@ -152,7 +152,7 @@ class HopfCurve:
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
         error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
-        hopf = Crossing(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
+        hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
         return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
 
     def generalised_hopf_between(self, first: int, last: int) -> GeneralisedHopfPoint | None:
@@ -209,7 +209,7 @@ class HopfCurve:
             for axis, value, off in zip(axes, values, way[:2], strict=True)
         ]
         return GeneralisedHopfPoint(
-            after=after,
+            preceding_index=after,
             values=(values[0], values[1]),
             errors=(errors[0], errors[1]),
             frequency=math.exp(float(there.v[2])),

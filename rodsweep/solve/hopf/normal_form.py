@@ -45,7 +45,7 @@ class NormalFormSettings:
     two iterations with this shift reach rounding error."""
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
-    accuracy_share: float = 0.1
+    accuracy_ratio: float = 0.1
     """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
     error of c may be five times the error of the eigenvalue."""
     largest_order: int = 20
@@ -59,11 +59,11 @@ class NormalFormSettings:
 NORMAL_FORM_SETTINGS = NormalFormSettings()
 ITERATIONS_PER_SHIFT = 2
 """Number of inverse iterations with one shift. After two iterations the error of the mode is about the square
-of `NORMAL_FORM_SETTINGS.found`, below rounding error; after one iteration the error of the mode would exceed
-the stated error of c."""
+of `NORMAL_FORM_SETTINGS.converged_distance`, below rounding error; after one iteration the error of the mode
+would exceed the stated error of c."""
 
 
-HARMONIC_WAVES = 2
+HARMONIC_WAVE_NUMBER_RATIO = 2
 """Wave number of h20 and h11, which determine c, divided by the wave number of q."""
 
 
@@ -77,8 +77,8 @@ class NormalForm:
 
     form: MixedForm
     w: complex
-    slope: complex
-    c: complex
+    eigenvalue_slope: complex
+    landau: complex
     q: Complex
     p: Complex
     h20: Complex
@@ -93,20 +93,20 @@ class NormalForm:
     def is_supercritical(self) -> bool:
         """Whether Re c < 0: the nonlinearity then limits the growth, and cycles are stable if no further mode
         grows."""
-        return self.c.real < 0
+        return self.landau.real < 0
 
     @property
     def amplitude_coefficient(self) -> float:
         """Amplitude coefficient a, in L, of a Hopf point at the force F: the cycle at a nearby force F' has a
         largest tip y of |a| sqrt(|F' - F|/|F|). a < 0 if the cycles exist at F' < F, otherwise a > 0."""
-        squared = -self.slope.real / self.c.real
+        squared = -self.eigenvalue_slope.real / self.landau.real
         return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
 
     @property
     def frequency_slope(self) -> float:
         """Frequency slope b of a Hopf point at the force F: the cycle at a nearby force F' has the frequency
         Im w + b (F' - F), in 1/tau2."""
-        return self.slope.imag - self.c.imag * self.slope.real / self.c.real
+        return self.eigenvalue_slope.imag - self.landau.imag * self.eigenvalue_slope.real / self.landau.real
 
     def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
@@ -114,9 +114,9 @@ class NormalForm:
         The eigenvalue at F is approximated by w + slope (F - self.F). If the square is negative, no cycle
         exists.
         """
-        w = self.w + self.slope * (F - self.F)
-        squared = -w.real / self.c.real
-        return squared, w.imag + self.c.imag * squared
+        w = self.w + self.eigenvalue_slope * (F - self.F)
+        squared = -w.real / self.landau.real
+        return squared, w.imag + self.landau.imag * squared
 
     def cycle_states(self, amplitude: float, phases: Array) -> Array:
         """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
@@ -141,7 +141,9 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     if form.law.is_nonlinear:
         c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
     slope = np.vdot(p, form.times_force_derivative_of_A(q))
-    return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
+    return NormalForm(
+        form=form, w=w, eigenvalue_slope=complex(slope), landau=complex(c), q=q, p=p, h20=h20, h11=h11
+    )
 
 
 def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
@@ -155,9 +157,9 @@ def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
 def elements_for_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
     """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
     mesh rule for eigenvalues."""
-    accuracy *= NORMAL_FORM_SETTINGS.accuracy_share
-    waves = HARMONIC_WAVES * wave_number(rod, w)
-    if not rod.standard:
+    accuracy *= NORMAL_FORM_SETTINGS.accuracy_ratio
+    waves = HARMONIC_WAVE_NUMBER_RATIO * wave_number(rod, w)
+    if not rod.is_uniform_and_linear:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     resolution = resolution_for(waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
     return with_odd_order(Elements(equal_edges(resolution.element_count), resolution.order))
@@ -185,10 +187,12 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
-    `accuracy` and `NORMAL_FORM_SETTINGS.found`, or if the mesh has too many nodes.
+    `accuracy` and `NORMAL_FORM_SETTINGS.converged_distance`, or if the mesh has too many nodes.
     """
     nodes = elements.node_count
-    limit = NORMAL_FORM_SETTINGS.max_nodes if rod.standard else NORMAL_FORM_SETTINGS.max_arm_nodes
+    limit = (
+        NORMAL_FORM_SETTINGS.max_nodes if rod.is_uniform_and_linear else NORMAL_FORM_SETTINGS.max_arm_nodes
+    )
     if nodes > limit:
         raise Unsolvable(
             f"the normal form at F = {rod.F:g} needs {nodes} mesh nodes, more than the {limit} allowed"
@@ -222,7 +226,7 @@ def _eigenvalue_and_modes(
             q = q / np.abs(q).max()
             p = p / np.abs(p).max()
         Mq = elements.times_M(q)
-        w = complex(np.vdot(p, elements.apply_A(q)) / np.vdot(p, Mq))
+        w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
         if abs(w - shift) <= NORMAL_FORM_SETTINGS.converged_distance * abs(w):
             break
     else:

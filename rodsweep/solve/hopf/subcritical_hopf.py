@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..changes.along_path import pair_crossings
+from ..changes.along_path import find_axis_crossings
 from ..changes.unstable_modes import end_below_crushing
 from .coefficient_errors import hopf_coefficients
 
@@ -56,14 +56,14 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
     if not 0 < low < high:
         return None
-    crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
-    above = [one for one in crossings if one.at > rod.F]
-    below = [one for one in crossings if one.at <= rod.F]
+    crossings = find_axis_crossings(Path(rod, "F"), low, high, certify=False).thresholds
+    above = [one for one in crossings if one.value > rod.F]
+    below = [one for one in crossings if one.value <= rod.F]
     nearest = above[:1] + below[-1:]
-    for hopf in sorted(nearest, key=lambda one: abs(one.at - rod.F)):
-        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
-        y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
+    for hopf in sorted(nearest, key=lambda one: abs(one.value - rod.F)):
+        found = hopf_coefficients(replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
+        y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
         # A positive criticality means subcritical.
         if found.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
-            return SubcriticalHopf(hopf.at, y)
+            return SubcriticalHopf(hopf.value, y)
     return None

@@ -25,7 +25,7 @@ from .inverse_iteration import ModeVectors, mode_vectors
 class ModeMeshSettings:
     """Settings of the meshes on which modes and condition numbers are computed."""
 
-    more_orders: int = 4
+    order_increase: int = 4
     """Increase of the element order from the first mesh to the second, which reduces the error of the modes
     by a factor of 100."""
     max_meshes: int = 4
@@ -42,34 +42,34 @@ class ModeMeshSettings:
 MODE_MESH_SETTINGS = ModeMeshSettings()
 
 
-def vector_accuracy(accuracy: float) -> float:
+def mesh_accuracy_for_modes(accuracy: float) -> float:
     """Relative accuracy of eigenvalues for which the first mesh is chosen if the modes need the relative
     accuracy `accuracy`."""
     return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.finest_accuracy)
 
 
-def converged_vectors(
+def converged_modes(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> ModeVectors | None:
     """Modes of `eigenvalues`, (modes,), at `points` in [0, 1], (n,), from the mesh with the smallest error
     estimate. wave: wave number that the mesh must resolve. accuracy: requested relative accuracy, at which
     the refinement ends. None if even the second mesh has more than `ModeMeshSettings.max_unknowns`
     unknowns."""
-    mesh = mesh_for(rod, wave, vector_accuracy(accuracy))
+    mesh = mesh_for(rod, wave, mesh_accuracy_for_modes(accuracy))
     gaps = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
     best: ModeVectors | None = None
     least = inf
     for _ in range(MODE_MESH_SETTINGS.max_meshes):
         if best is None:
-            mesh = replace(mesh, order=mesh.order + MODE_MESH_SETTINGS.more_orders)
+            mesh = replace(mesh, order=mesh.order + MODE_MESH_SETTINGS.order_increase)
         else:
             mesh = finer_mesh(rod, mesh)
         if mesh.unknowns > MODE_MESH_SETTINGS.max_unknowns:
             break
         fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _with_errors_from_coarse(coarse, fine, gaps)
-        error = max(result.errors().values())
+        error = max(result.errors_by_name().values())
         # If a finer mesh does not halve the error, rounding errors dominate.
         improved = error < least / 2
         if best is None or error < least:
@@ -86,7 +86,11 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, gaps: Array
     the errors of the condition numbers. gaps: distance from each eigenvalue to the nearest other eigenvalue,
     (modes,)."""
     error = np.zeros(len(fine.condition))
-    pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))
+    pairs = (
+        (coarse.right_modes, fine.right_modes),
+        (coarse.deformation, fine.deformation),
+        (coarse.left_modes, fine.left_modes),
+    )
     for old, new in pairs:
         size = np.abs(new).max(axis=2)
         change = np.abs(new - old).max(axis=2)
@@ -106,7 +110,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, gaps: Array
 def eigenvalue_separation(rod: Rod, w: complex) -> float:
     """Estimated distance from the eigenvalue w to the nearest other eigenvalue, 2 |D'/D''|, D: determinant;
     accurate if the distance is small."""
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)
     value = determinant.value(w)

@@ -36,16 +36,16 @@ MODE_ITERATION_SETTINGS = ModeIterationSettings()
 class ModeVectors:
     """Right and left modes computed on one mesh, evaluated at given points of the rod, with errors.
 
-    right, deformation and left are complex, (2, modes, points), NaN if the tip does not move.
+    resolution: the mesh. The fields of modes are complex, (2, modes, points), NaN if the tip does not move.
     """
 
     resolution: Resolution
-    right: Complex
+    right_modes: Complex
     """Right modes (Y, Theta) with Y(1) = 1, in L and rad for a tip deflection L."""
     deformation: Complex
     """Shear and curvature (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 is exactly 0 in
     an unshearable rod. At a jump of a stiffness: the value behind the jump."""
-    left: Complex
+    left_modes: Complex
     """Left modes (Y+, Theta+) with Y+(1) = 1, in L and rad for a tip deflection L."""
     pairing: Complex
     """(psi_n, xi_n) in the Gamma inner product, complex, (modes,)."""
@@ -63,7 +63,7 @@ class ModeVectors:
     """Relative error of `condition`, (modes,). `condition_error` and `mode_error` are NaN until two meshes
     are compared."""
 
-    def errors(self) -> dict[str, float]:
+    def errors_by_name(self) -> dict[str, float]:
         """Largest relative errors over all modes, by name ("modes", "condition numbers"); inf if unknown."""
         errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
@@ -81,9 +81,9 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
         placeholder_vectors(
             Resolution(form.mesh.element_count, form.mesh.order), len(eigenvalues), len(points)
         ),
-        right=np.stack([(evaluation @ field).T for field in form.fields(X)]),
+        right_modes=np.stack([(evaluation @ field).T for field in form.displacements(X)]),
         deformation=form.strains(X, points),
-        left=np.stack([(evaluation @ field).T for field in form.fields(Z.conj())]),
+        left_modes=np.stack([(evaluation @ field).T for field in form.displacements(Z.conj())]),
         pairing=pairing,
         condition=norms[0] * norms[1] / np.abs(pairing),
         rounding=rounding,
@@ -97,9 +97,9 @@ def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> Mode
     numbers = np.full(modes, np.nan)
     return ModeVectors(
         resolution=resolution,
-        right=shape,
+        right_modes=shape,
         deformation=shape,
-        left=shape,
+        left_modes=shape,
         pairing=numbers + 0j,
         condition=numbers,
         rounding=numbers,
@@ -129,7 +129,7 @@ def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Compl
     # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
-    right, left = (V * factors_to_unit_tip(*form.fields(V)) for V in (X, Z))
+    right, left = (V * factors_to_unit_tip(*form.displacements(V)) for V in (X, Z))
     return right, left, rounding
 
 

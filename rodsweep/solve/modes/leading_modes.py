@@ -24,7 +24,7 @@ from ...model.rod import Rod
 from ..point import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
-from .convergence import converged_vectors
+from .convergence import converged_modes
 from .inverse_iteration import ModeVectors, placeholder_vectors
 from .transient_growth import Growth, growth_of
 
@@ -46,13 +46,13 @@ LEADING_MODE_SETTINGS = LeadingModeSettings()
 @dataclass(frozen=True, slots=True)
 class ModesRequest:
     """Request for the leading modes. modes: number of modes. accuracy: relative accuracy of eigenvalues,
-    modes, condition numbers and growth. nodes: number of Lobatto nodes at which the modes are stored.
+    modes, condition numbers and growth. node_count: number of Lobatto nodes at which the modes are stored.
     certify: whether the list of eigenvalues must be proved complete."""
 
     modes: int
     accuracy: float
-    nodes: int
-    growth: bool
+    node_count: int
+    computes_growth: bool
     """Whether to compute the numerical abscissa and the transient growth."""
     certify: bool = True
 
@@ -76,10 +76,12 @@ class Modes:
 
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     """The leading `request.modes` modes of a rod; a failure is returned as a status, never raised."""
-    if rod.uniform and not rod.standard:
+    if rod.is_uniform and not rod.is_uniform_and_linear:
         return _modes_by_equivalent_rod(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = placeholder_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
+    vectors = placeholder_vectors(
+        Resolution(spectrum.elements, spectrum.order), request.modes, request.node_count
+    )
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,
@@ -122,8 +124,8 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     resolves the modes, or if the largest error exceeds the accuracy."""
     spectrum = outcome.spectrum
     wave = max(wave_number(rod, complex(w)) for w in spectrum.eigenvalues)
-    points = lobatto_points(request.nodes)
-    vectors = converged_vectors(rod, spectrum.eigenvalues, points, wave, request.accuracy)
+    points = lobatto_points(request.node_count)
+    vectors = converged_modes(rod, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
         return replace(
             outcome,
@@ -131,8 +133,8 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
             message="no mesh small enough for dense matrices resolves the modes",
         )
     result = replace(outcome, vectors=vectors)
-    errors = vectors.errors()
-    if request.growth:
+    errors = vectors.errors_by_name()
+    if request.computes_growth:
         rate = float(abs(spectrum.eigenvalues[0]))
         mesh = mesh_for(rod, max(wave, LEADING_MODE_SETTINGS.growth_wave_number), request.accuracy)
         grows = (
@@ -143,7 +145,7 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         if grows or spectrum.unstable_count > 0:
             stable = False
         growth = growth_of(rod, mesh, request.accuracy, stable, rate)
-        errors |= growth.errors(rate)
+        errors |= growth.errors_by_name(rate)
         result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))
     culprit, error = max(errors.items(), key=lambda item: item[1])
     if error <= request.accuracy:

@@ -43,7 +43,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     form = dense_form(rod, pencil)
     A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
     B = form.B
-    bound, _ = eigenvalue_box(rod) if rod.standard else hull_of(rod).box()
+    bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
     # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
     shift = bound + 1 if bound < inf else rod.F**2 + 1
     for _ in range(NUMERICAL_ABSCISSA_SETTINGS.max_shifts):

@@ -51,8 +51,10 @@ def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
 class Propagator:
     """exp(L t) from the spectral decomposition of G = L^-1 on one mesh, for any number k of leading modes.
 
-    w: finite eigenvalues of the mesh, by descending real part. Eigenvalues that the mesh does not resolve are
-    not eigenvalues of the rod, but together they represent the remaining spectrum.
+    w: finite eigenvalues of the mesh, by descending real part. right, left: right and left eigenvectors of G
+    as columns. generator, overlap: L_k and Z^T Q of `use_leading_modes`, (k, k); (0, 0) before its first
+    call. Eigenvalues that the mesh does not resolve are not eigenvalues of the rod, but together they
+    represent the remaining spectrum.
     """
 
     def __init__(self, G: Array):

@@ -29,15 +29,15 @@ class GrowthSettings:
 
     min_modes: int = 8
     """Initial number of leading modes that represent exp(L t)."""
-    more_modes: float = 0.5
+    mode_increase_ratio: float = 0.5
     """Relative increase of the number of modes if more modes are needed."""
-    truncation_margin: float = 4.0
-    """The omitted modes contribute at most exp(-`truncation_margin`) times the accuracy."""
-    search_share: float = 0.25
+    truncation_exponent: float = 4.0
+    """The omitted modes contribute at most exp(-`truncation_exponent`) times the accuracy."""
+    search_tolerance_ratio: float = 0.25
     """Tolerance of `largest_propagator_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
     """Smallest tolerance of `largest_propagator_norm`: rounding error of the norm."""
-    first_more_orders: int = 4
+    first_order_increase: int = 4
     """Increase of the element order from the first mesh to the second."""
     order_factor: float = 1.4
     """Element order of a further mesh, divided by the order of the mesh before; boundary layers at the tip
@@ -69,7 +69,7 @@ class Growth:
     abscissa_error: float = nan
     """Absolute error of `numerical_abscissa`."""
 
-    def errors(self, rate: float) -> dict[str, float]:
+    def errors_by_name(self, rate: float) -> dict[str, float]:
         """Relative errors of the growth and of the numerical abscissa, by name. The error of the abscissa is
         divided by the larger of |abscissa| and `rate`, in 1/tau2."""
         scale = max(abs(self.numerical_abscissa), rate)
@@ -100,7 +100,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
     coarse = None
     for step in range(GROWTH_SETTINGS.max_meshes):
         order = (
-            mesh.order + GROWTH_SETTINGS.first_more_orders
+            mesh.order + GROWTH_SETTINGS.first_order_increase
             if step == 0
             else ceil(GROWTH_SETTINGS.order_factor * mesh.order)
         )
@@ -122,7 +122,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
             found = transient_growth(coarse, fine, abscissa + change, accuracy)
             coarse = fine
         result = replace(found, numerical_abscissa=abscissa, abscissa_error=change)
-        error = max(inf if isnan(error) else error for error in result.errors(rate).values())
+        error = max(inf if isnan(error) else error for error in result.errors_by_name(rate).values())
         improved = error < least / 2
         if error < least or step == 0:
             best = result
@@ -144,8 +144,8 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN or the mesh has an eigenvalue with Re w >= 0."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
         return UNKNOWN_GROWTH
-    patience = log(1 / accuracy) + GROWTH_SETTINGS.truncation_margin
-    tolerance = max(GROWTH_SETTINGS.search_share * accuracy, GROWTH_SETTINGS.min_search_tolerance)
+    patience = log(1 / accuracy) + GROWTH_SETTINGS.truncation_exponent
+    tolerance = max(GROWTH_SETTINGS.search_tolerance_ratio * accuracy, GROWTH_SETTINGS.min_search_tolerance)
     best = (1.0, 0.0)
     ceiling = 1.0
     tail = stop = 0.0
@@ -165,12 +165,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         before = exp(min(abscissa * first, NORM_MAXIMUM_SETTINGS.max_exponent))
         if before <= best[0] * (1 + tolerance) or k == len(fine.w):
             break
-        k = min(int((1 + GROWTH_SETTINGS.more_modes) * k), len(fine.w))
+        k = min(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
-        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.more_modes) * k))
+        coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k))
         times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
         hidden += max(abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)

@@ -1,8 +1,9 @@
 """Equations of the rod as C functions that PETSc calls without Python.
 
 numba compiles the functions (`cfunc`) and ctypes registers them in libpetsc: through Python, a Newton
-iteration of 5 us would take 200 us. PETSc passes each function one pointer, to the record `context.CONTEXT`.
-The memory of this record belongs to a `CallbackWorkspace`, which must outlive the TS.
+iteration of 5 us would take 200 us. PETSc passes each function one pointer, to a record of type
+`context.CONTEXT_DTYPE`. The memory of this record belongs to a `CallbackWorkspace`, which must outlive the
+TS.
 
 The equation is dz/dt - f(z) = 0, fully implicit. An additive splitting is slower: even if the full Jacobian
 of the step is implicit and only the remainder explicit, k1 Pi^2 forces 500 to 1500 steps per period.
@@ -161,9 +162,11 @@ class CallbackWorkspace:
         error: Newton's method stops when the estimated error of a stage is at most this. floor: if the Newton
         steps stagnate below this size, the stagnation is attributed to rounding errors.
         """
-        self._rod = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
-        self._set_context_fields({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set_context_fields({"components": len(self._rod["tip_stress"]), "law": beam.nodal_rod.law})
+        self._rod_arrays = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
+        self._set_context_fields({name: array.ctypes.data for name, array in self._rod_arrays.items()})
+        self._set_context_fields(
+            {"components": len(self._rod_arrays["tip_stress"]), "law": beam.nodal_rod.law}
+        )
         self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknowns**0.5
@@ -194,11 +197,11 @@ class CallbackWorkspace:
         call_petsc("TSSetApplicationContext", ts.handle, context)
         call_petsc("TSSetPreStep", ts.handle, begin_step.address)
         if snes.getType() == "shell":
-            self._solve_stages_of(ts, snes, matrix)
+            self._register_stage_solver(ts, snes, matrix)
         else:
             call_petsc("SNESSetConvergenceTest", snes.handle, test_newton_convergence.address, context, 0)
 
-    def _solve_stages_of(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
+    def _register_stage_solver(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
         objects = ts, matrix, ksp, *self._vectors

@@ -34,10 +34,11 @@ ROD_ARRAY_FIELDS = (
 """Fields of `CONTEXT_DTYPE` with the addresses of the integrated rod's arrays. `roots`: square roots of the
 compliances. `crushed`: value of z1 with h1 = 0 at each node but the tip, (nodes,)."""
 WORKSPACE_ARRAY_FIELDS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Fields of `CONTEXT_DTYPE` with the addresses of a `Workspace`'s arrays: the last Jacobian, (unknowns,
-unknowns); the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,), and states,
-(2 MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of each stage,
-(MAX_STAGES, MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,) each."""
+"""Fields of `CONTEXT_DTYPE` with the addresses of a `CallbackWorkspace`'s arrays: the last Jacobian,
+(unknowns, unknowns); the state at which a step's matrix is evaluated, (unknowns,); times, (2 MAX_STAGES,),
+and states, (2 MAX_STAGES, unknowns), of the stages of this step and of the last step; extrapolation points of
+each stage, (MAX_STAGES, MAX_STAGE_POINTS); the constant of a stage's equation and the rates f, (unknowns,)
+each."""
 PETSC_HANDLE_FIELDS = ("ts", "matrix", "ksp", "residual", "correction")
 """Fields of `CONTEXT_DTYPE` with the handles of PETSc objects."""
 CONTEXT_DTYPE = np.dtype(
@@ -104,6 +105,7 @@ def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:
 
 @compiled
 def rod_of(c: Any) -> NodalRod:
+    """The integrated rod, as views of the arrays whose addresses are in the context record `c`."""
     d = c.components
     m = c.nodes
     rest = double_array_at(c.rest_strain, (d, m))
@@ -120,6 +122,7 @@ def rod_of(c: Any) -> NodalRod:
 
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
+    """The matrices of the mesh, as views of the arrays whose addresses are in the context record `c`."""
     all_nodes = (c.nodes, c.nodes)
     D = double_array_at(c.D, all_nodes)
     D_transposed = double_array_at(c.D_transposed, all_nodes)
@@ -130,14 +133,17 @@ def matrices_of(c: Any) -> NodeMatrices:
 
 @compiled
 def sqrt_compliance_of(c: Any) -> Any:
+    """Square roots of the compliances, (components, nodes); c: context record."""
     return double_array_at(c.roots, (c.components, c.nodes))
 
 
 @compiled
 def times_of(c: Any) -> Any:
+    """Times of the stages of this step and of the last step, (2 MAX_STAGES,); c: context record."""
     return doubles_at(c.times, 2 * MAX_STAGES)
 
 
 @compiled
 def states_of(c: Any) -> Any:
+    """The stages of this step and of the last step, (2 MAX_STAGES, unknowns); c: context record."""
     return double_array_at(c.states, (2 * MAX_STAGES, c.unknowns))

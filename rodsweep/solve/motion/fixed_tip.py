@@ -48,7 +48,7 @@ class FixedTipSettings:
 FIXED_TIP_SETTINGS = FixedTipSettings()
 
 
-def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
+def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
 
     A target beyond `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails
@@ -56,7 +56,7 @@ def equilibrium_at_tip(beam: Beam, x: float, y: float) -> Array:
     bending = _BentRod(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.positions)
+    Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.node_positions)
     first = bending.tip_position(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
@@ -88,7 +88,7 @@ class _BentRod:
         self.length = float(self.h1 @ beam.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
-        self.angles = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
+        self.angle_matrix = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
         """Matrix from Pi to theta, both at all nodes; at a jump of the material the mean of both values of Pi
         is used."""
 
@@ -116,7 +116,7 @@ class _BentRod:
             misplaced = target - self.tip_position(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
-            if not np.abs(self.angles @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
+            if not np.abs(self.angle_matrix @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
@@ -127,7 +127,7 @@ class _BentRod:
     def _derivatives(self, Pi: Array, force: Array) -> tuple[Array, Array]:
         """Returns (d(x, y)/dPi, d^2(f . (x, y))/dPi^2), (2, nodes + 1) and (nodes + 1, nodes + 1), by
         quadrature. (x, y): the tip. Pi: curvatures at all nodes, (nodes + 1,). force: f, (2,)."""
-        A = self.angles
+        A = self.angle_matrix
         w = self.mesh.quadrature
         c = np.cos(A @ Pi)
         s = np.sin(A @ Pi)

@@ -33,7 +33,7 @@ class IntegratorSettings:
     stage_rounding: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
-    first_step_share: float = 1e-3
+    first_step_ratio: float = 1e-3
     """Default first time step, as a fraction of the run's duration."""
     max_steps: int = 100_000
     """Default maximum number of time steps of a run."""
@@ -42,9 +42,9 @@ class IntegratorSettings:
     max_failed_stages: int = 1_000_000
     """PETSc ends the run after more than this number of stages at which Newton's method fails; each failure
     shortens the step."""
-    relaxation_share: float = 1e-3
+    relaxation_duration_ratio: float = 1e-3
     """Duration of the run in `relax_fast_components`, as a fraction of the period."""
-    relaxation_steps: float = 1e5
+    relaxation_steps_per_period: float = 1e5
     """Period divided by the first time step in `relax_fast_components`; the fast components decay within ten
     steps."""
     relaxation_tolerance: float = 1e-3
@@ -65,7 +65,8 @@ RELAXATION = TimeScheme(
 
 class RunEnding(IntEnum):
     """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
-    `RunLimit.is_reached`. too_many_steps: `RunLimit.max_steps`."""
+    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps: `RunLimit.max_steps`. failed: an
+    error or a failed step of PETSc, or a state that is not finite."""
 
     reached = 0
     stopped = 1
@@ -87,8 +88,8 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class RunLimit:
-    """Conditions that end a run early: a step ends at a state z for which `reached(z)` is true, or
-    `max_steps` steps are made."""
+    """Conditions that end a run early: a step ends at a state z for which `is_reached(z)` is true, or
+    `max_steps` steps are made. is_reached: None without such a condition."""
 
     is_reached: Callable[[Array], bool] | None = None
     max_steps: int = INTEGRATOR_SETTINGS.max_steps
@@ -167,7 +168,7 @@ class Integrator:
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
         ts.setMaxSteps(limit.max_steps)
-        ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_share * duration)
+        ts.setTimeStep(step or INTEGRATOR_SETTINGS.first_step_ratio * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         if limit.is_reached is None:
@@ -221,7 +222,7 @@ def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
     return _integrators.get(key)
 
 
-def forget_integrators() -> None:
+def destroy_integrators() -> None:
     """Destroys all pooled integrators, after an error or a change of PETSc options."""
     _integrators.destroy_all()
 
@@ -234,7 +235,7 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     k1, k2 and 1/gamma3. The explicit first stage of ARKIMEX does not damp these components at any step
     length; backward Euler damps these components within ten steps. If the run fails, z itself is returned.
     """
-    duration = INTEGRATOR_SETTINGS.relaxation_share * period
-    step = period / INTEGRATOR_SETTINGS.relaxation_steps
+    duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
+    step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
     run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
     return run.states[-1] if run.ending == RunEnding.reached else z

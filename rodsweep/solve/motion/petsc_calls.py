@@ -10,9 +10,9 @@ from llvmlite import binding
 from numba import types
 from numba.core import typing
 
-from ..backend.c_functions import INT, LIBRARY, POINTER
+from ..backend.c_functions import INT, PETSC_LIBRARY, POINTER
 
-ENUM = types.int32
+PETSC_ENUM = types.int32
 
 
 def _int_function(name: str, *arguments: Any) -> Any:
@@ -23,7 +23,7 @@ def _int_function(name: str, *arguments: Any) -> Any:
 
 
 def _compiled_symbol(name: str, signature: Any) -> Any:
-    binding.add_symbol(name, ctypes.cast(getattr(LIBRARY, name), ctypes.c_void_p).value)
+    binding.add_symbol(name, ctypes.cast(getattr(PETSC_LIBRARY, name), ctypes.c_void_p).value)
     return types.ExternalFunction(name, signature)
 
 
@@ -37,13 +37,13 @@ step_of = _int_function("TSGetTimeStep", POINTER, POINTER)
 solution_of = _int_function("TSGetSolution", POINTER, POINTER)
 context_of_ts = _int_function("TSGetApplicationContext", POINTER, POINTER)
 
-set_ts_reason = _int_function("TSSetConvergedReason", POINTER, ENUM)
+set_ts_reason = _int_function("TSSetConvergedReason", POINTER, PETSC_ENUM)
 
 context_of_snes = _int_function("SNESShellGetContext", POINTER, POINTER)
 stage_residual = _int_function("SNESTSFormFunction", POINTER, POINTER, POINTER, POINTER)
 stage_matrix = _int_function("SNESTSFormJacobian", POINTER, POINTER, POINTER, POINTER, POINTER)
 right_side_of = _int_function("SNESGetRhs", POINTER, POINTER)
-set_reason = _int_function("SNESSetConvergedReason", POINTER, ENUM)
+set_reason = _int_function("SNESSetConvergedReason", POINTER, PETSC_ENUM)
 set_iterations = _int_function("SNESSetIterationNumber", POINTER, INT)
 
 solve_linear = _int_function("KSPSolve", POINTER, POINTER, POINTER)

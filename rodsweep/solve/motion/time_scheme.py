@@ -56,7 +56,8 @@ class TimeScheme:
     prefix: str = CYCLE_PREFIX
 
     def petsc_options(self, family: str) -> dict[str, str]:
-        """PETSc options of this scheme, without prefix, for the TS type `family`."""
+        """PETSc options of this scheme, without prefix. family: TS type in use, which a user may have set in
+        place of `self.family`; options of another family leave out `variant`."""
         kind = {"bdf": "order"}.get(family, "type")
         own = {"ts_type": self.family}
         if family == self.family and self.variant:

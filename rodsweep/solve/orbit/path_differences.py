@@ -39,6 +39,6 @@ def rod_difference(one: Orbit, other: Orbit) -> float:
 def _rod_coordinates(rod: Rod) -> Array:
     """Coefficients of the equations of a uniform linear rod, or coordinates of all parameters of any other
     rod, (n,)."""
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return np.array([*rod.coefficients, rod.axial_drag])
     return np.array([rod.coordinate(name) for name in PARAMETERS])

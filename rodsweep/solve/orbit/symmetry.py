@@ -27,7 +27,7 @@ class Symmetry:
     def apply(self, x: Values, layout: StateLayout) -> Values:
         """The states S x for the states x, (..., unknowns)."""
         S = layout.stresses(x)
-        V = np.zeros((layout.components, *x.shape[:-1], layout.nodes + 1), x.dtype)
+        V = np.zeros((layout.components, *x.shape[:-1], layout.node_count + 1), x.dtype)
         V[list(layout.unknown_velocities)] = layout.velocities(x)
         return layout.state(
             np.tensordot(self.component_matrix, S, 1), np.tensordot(self.component_matrix, V, 1)

@@ -99,7 +99,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
 def _analysis_matrix_on_element(order: int) -> Array:
     """Matrix, (p + 1, p + 1): a row of values at the nodes of an element of order p times this matrix is the
     row of Legendre coefficients."""
-    return np.ascontiguousarray(legendre_analysis_matrix(2 * uniform_mesh(1, order).positions - 1).T)
+    return np.ascontiguousarray(legendre_analysis_matrix(2 * uniform_mesh(1, order).node_positions - 1).T)
 
 
 @compiled_for_vectors

@@ -34,15 +34,15 @@ class ArmSolver(ShiftInvertSolver):
         self.B.assemble()
         values = found.A.copy()
         values[self.is_diagonal_entry] -= shift * found.B
-        if self.dense:
+        if self.is_dense:
             flat = self.A.getDenseArray().T.reshape(-1)  # stored by columns
             flat[:] = 0.0
             flat[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalue_count(rod, self.nodes), shift)
+        return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift)
 
-    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+    def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was
         solved last, (unknowns, k)."""
         return fields_of_vectors(vectors, self.matrices.displacement_factors)

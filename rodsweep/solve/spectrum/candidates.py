@@ -94,7 +94,7 @@ class CountComparison:
         return self.is_clear and self.count.number == self.found_count
 
 
-def candidates_on(
+def candidates_on_mesh(
     problem: TransverseProblem, mesh: AnyMesh, requested: int, vectors: bool, tight: bool
 ) -> Candidates:
     """The eigenvalues of a mesh nearest to the shift of `problem`, refined to roots of D; spurious

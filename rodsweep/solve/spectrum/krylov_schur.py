@@ -39,10 +39,10 @@ class UniformSolver(ShiftInvertSolver):
     def __init__(self, resolution: Resolution):
         self.pencil: Pencil = assemble_pencil(resolution.element_count, resolution.order)
         super().__init__(self.pencil, self.pencil.nodal_masses)
-        if self.dense:
+        if self.is_dense:
             self.dense_terms = self.pencil.dense_terms()
-        self.gamma3 = -1.0
-        self.inertia: Array = np.ones(self.pencil.unknowns)
+        self.loaded_gamma3 = -1.0
+        self.mass_diagonal: Array = np.ones(self.pencil.unknowns)
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
         rod, deflection_ratio = _equivalent_filament(rod)
@@ -52,22 +52,22 @@ class UniformSolver(ShiftInvertSolver):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
-        if rod.rotational_drag != self.gamma3:
-            self.gamma3 = rod.rotational_drag
-            self.inertia = self.pencil.mass_diagonal(rod)
-            self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], self.inertia)
+        if rod.rotational_drag != self.loaded_gamma3:
+            self.loaded_gamma3 = rod.rotational_drag
+            self.mass_diagonal = self.pencil.mass_diagonal(rod)
+            self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], self.mass_diagonal)
             self.B.assemble()
-        if self.dense:
+        if self.is_dense:
             _write_shifted_matrix(
-                self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.inertia
+                self.A.getDenseArray().T, coefficients, self.dense_terms, shift * self.mass_diagonal
             )
         else:
             values = coefficients @ self.pencil.term_entries
-            values[self.is_diagonal_entry] -= shift * self.inertia
+            values[self.is_diagonal_entry] -= shift * self.mass_diagonal
             self.A.setValuesCSR(self.indptr, self.indices, values)
-        return LoadedPencil(finite_eigenvalue_count(rod, self.nodes), shift, deflection_ratio)
+        return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift, deflection_ratio)
 
-    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+    def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
         (unknowns, k)."""
         return fields_of_vectors(vectors, self.pencil.displacement_factors(rod))

@@ -50,7 +50,7 @@ class TransverseProblem(ABC):
     shift: float
     has_bound: bool
     is_count_slow: ClassVar[bool]
-    spare_eigenvalues: int = 0
+    additional_eigenvalues: int = 0
     """Number of eigenvalues requested from the first mesh in addition to the modes, for a proof without a
     count."""
 
@@ -105,13 +105,13 @@ class UniformProblem(TransverseProblem):
 
     def __init__(self, rod: Rod):
         self.rod = rod
-        growth, self._wave = most_amplified_wave(rod)
+        growth, self._wave_number = most_amplified_wave(rod)
         self.shift = KRYLOV_SETTINGS.shift_above_growth * growth
-        self._amplification = sqrt(squared_amplification(rod))
-        self.has_bound = isfinite(self._amplification)
+        self._amplification_bound = sqrt(squared_amplification(rod))
+        self.has_bound = isfinite(self._amplification_bound)
 
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
-        return resolution_for(expected_wave_number(modes, self._wave), accuracy)
+        return resolution_for(expected_wave_number(modes, self._wave_number), accuracy)
 
     def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
@@ -121,7 +121,7 @@ class UniformProblem(TransverseProblem):
 
     def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`."""
-        return refined_roots(raw, self.rod.coefficients, self._amplification, most_waves)
+        return refined_roots(raw, self.rod.coefficients, self._amplification_bound, most_waves)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
@@ -137,11 +137,13 @@ class ArmProblem(TransverseProblem):
 
     def __init__(self, rod: Rod, to_prove: int = 0):
         self.rod = rod
-        self._to_prove = to_prove
+        self._modes_to_prove = to_prove
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
-        self.spare_eigenvalues = COMPLETENESS_SETTINGS.spare_eigenvalues if to_prove and self.has_bound else 0
+        self.additional_eigenvalues = (
+            COMPLETENESS_SETTINGS.additional_eigenvalues if to_prove and self.has_bound else 0
+        )
         growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
 
@@ -165,12 +167,12 @@ class ArmProblem(TransverseProblem):
         |w| at which the proof needs D; 0 if unknown.
         """
         in_proof = np.isfinite(raw)
-        if not self._to_prove or not self.has_bound or in_proof.sum() < self._to_prove:
+        if not self._modes_to_prove or not self.has_bound or in_proof.sum() < self._modes_to_prove:
             return in_proof, 0.0
         finite = np.flatnonzero(in_proof)
         order = finite[np.lexsort((-raw.imag[finite], -raw.real[finite]))]
-        line = min(float(raw[order[self._to_prove - 1]].real), 0.0)
-        number, size = cheapest_proof(line, self._hull, raw[order], self._to_prove)
+        line = min(float(raw[order[self._modes_to_prove - 1]].real), 0.0)
+        number, size = cheapest_proof(line, self._hull, raw[order], self._modes_to_prove)
         if not number:
             return in_proof, largest_w_of_count(line, self._determinant, self._hull)
         in_proof[order[number:]] = False
@@ -190,4 +192,4 @@ class ArmProblem(TransverseProblem):
 
 def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:
     """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
-    return UniformProblem(rod) if rod.standard else ArmProblem(rod, to_prove)
+    return UniformProblem(rod) if rod.is_uniform_and_linear else ArmProblem(rod, to_prove)

@@ -13,10 +13,10 @@ from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accu
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import outcome_or_failure
-from .candidates import Candidates, CountComparison, candidates_on, compare_with_count
+from .candidates import Candidates, CountComparison, candidates_on_mesh, compare_with_count
 from .problem import TransverseProblem, transverse_problem
 from .search_settings import SEARCH_SETTINGS
-from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, vectors_on_nodes
+from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
 
 __all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
@@ -29,7 +29,8 @@ class CheckedCandidates:
     candidates: Candidates
     comparison: CountComparison | None
     error_over_limit: float
-    """Largest ratio of an error to the allowed error; `SEARCH.max_error_over_limit` ends the search."""
+    """Largest ratio of an error to the allowed error; a ratio of at most
+    `SEARCH_SETTINGS.max_error_over_limit` ends the search."""
 
     @property
     def sort_key(self) -> tuple[bool, float]:
@@ -45,7 +46,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
         destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
-    if rod.uniform and not rod.standard:
+    if rod.is_uniform and not rod.is_uniform_and_linear:
         return _spectrum_by_equivalent_rod(rod, request)
     return outcome_or_failure(lambda: Search(rod, request).outcome(), failed)
 
@@ -66,19 +67,20 @@ def warm_up() -> None:
 
 class Search:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
-
-    requested: number of eigenvalues in the first request; by default, the modes plus `spare_eigenvalues`.
+    requested: number of eigenvalues in the first request; default: modes plus `additional_eigenvalues`.
     """
 
     def __init__(self, rod: Rod, request: SpectrumRequest, requested: int | None = None):
         self.problem = transverse_problem(rod, request.modes if request.certify else 0)
         self.request = request
         self.modes = request.modes
-        self.with_vectors = request.vector_nodes > 0
+        self.needs_vectors = request.vector_node_count > 0
         bounded = self.problem.has_bound
-        self.accuracy = mesh_accuracy(request.accuracy, self.with_vectors) if bounded else request.accuracy
+        self.accuracy = mesh_accuracy(request.accuracy, self.needs_vectors) if bounded else request.accuracy
         self.mesh = self.problem.mesh_for(request.modes, self.accuracy)
-        self.requested = request.modes + self.problem.spare_eigenvalues if requested is None else requested
+        self.requested_count = (
+            request.modes + self.problem.additional_eigenvalues if requested is None else requested
+        )
         self.best: CheckedCandidates | None = None
         self.stalled_refinements = self.failure_count = 0
         self.disagreement: CountComparison | None = None
@@ -95,9 +97,11 @@ class Search:
             too_fine = self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns
             if too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
                 break
-            tight = self.with_vectors or turn > 0
-            found = candidates_on(self.problem, self.mesh, self.requested, self.with_vectors, tight)
-            judged = self.checked_or_retry(found)
+            tight = self.needs_vectors or turn > 0
+            found = candidates_on_mesh(
+                self.problem, self.mesh, self.requested_count, self.needs_vectors, tight
+            )
+            judged = self.check_candidates(found)
             if judged is None:
                 continue
             self.update_best(judged)
@@ -110,7 +114,7 @@ class Search:
             self.mesh = self.problem.next_mesh_for(found.mesh, waves, self.accuracy)
         return self.best_spectrum()
 
-    def checked_or_retry(self, found: Candidates) -> CheckedCandidates | None:
+    def check_candidates(self, found: Candidates) -> CheckedCandidates | None:
         """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
         more eigenvalues were chosen for the next attempt."""
         if len(found.roots.w) < self.modes:
@@ -119,7 +123,7 @@ class Search:
             self.failure_reason = found.failure or self.failure_reason
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
             if len(found.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
-                self.requested += self.modes
+                self.requested_count += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
         if self.needs_eigenvalues_beyond_axis(found):
@@ -138,47 +142,43 @@ class Search:
         return CheckedCandidates(found, comparison, self.error_over_limit(found, comparison))
 
     def error_over_limit(self, found: Candidates, comparison: CountComparison | None) -> float:
-        """The largest ratio of an error of the candidates to the allowed error.
-
-        Eigenvectors, and eigenvalues without a proof, also need a mesh whose eigenvalues are close to the
-        roots of D.
+        """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
+        without a proof, also need a mesh whose eigenvalues are close to the roots of D.
         """
         error = found.worst_error(self.modes) / self.request.accuracy
-        if comparison is not None and comparison.agrees and not self.with_vectors:
+        if comparison is not None and comparison.agrees and not self.needs_vectors:
             return error
         settings = SEARCH_SETTINGS
         allowed = settings.largest_displacement if self.problem.has_bound else settings.unbounded_displacement
         coarseness = float(found.roots.displacement[: self.modes].max())
-        return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
+        return max(error, coarseness / (self.request.accuracy if self.needs_vectors else allowed))
 
     def request_missing_eigenvalues(self, number: int, here: int) -> None:
         """Requests more eigenvalues or a finer mesh, because a count gives `number` eigenvalues to the right
-        of the line, of which `here` were found.
-        """
+        of the line, of which `here` were found."""
         if number <= here:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
         more = number + SEARCH_SETTINGS.spare_modes
-        if more <= self.requested:  # missing eigenvalues are far from the shift or unresolved
-            more = self.requested + number - here + SEARCH_SETTINGS.spare_modes
+        if more <= self.requested_count:  # missing eigenvalues are far from the shift or unresolved
+            more = self.requested_count + number - here + SEARCH_SETTINGS.spare_modes
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_eigenvalues(more)
 
     def needs_eigenvalues_beyond_axis(self, found: Candidates) -> bool:
-        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed for a count or, up to
-        SEARCH.max_unproved_modes, for a list without a proof."""
+        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed: for a count if one
+        can succeed, else while fewer than `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
     def request_beyond_axis(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
-        decaying modes; refines the mesh if fewer eigenvalues were found than requested.
-        """
+        decaying modes; refines the mesh if fewer eigenvalues were found than requested."""
         self.is_leader_unresolved = True
-        if number < self.requested:
+        if number < self.requested_count:
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_eigenvalues(max(self.requested, 2 * number + SEARCH_SETTINGS.spare_modes))
+        self.request_eigenvalues(max(self.requested_count, 2 * number + SEARCH_SETTINGS.spare_modes))
 
     def request_eigenvalues(self, requested: int) -> None:
         """Requests `requested` eigenvalues, and refines the mesh until it has enough unknowns for them."""
@@ -187,7 +187,7 @@ class Search:
             and self.mesh.unknowns <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.requested = requested
+        self.requested_count = requested
 
     def update_best(self, judged: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
@@ -245,6 +245,6 @@ def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request:
         certified=proved and not undecided,
         elements=best.candidates.mesh.element_count,
         order=best.candidates.mesh.order,
-        vectors=vectors_on_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),
+        vectors=modes_at_lobatto_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),
         message=message,
     )

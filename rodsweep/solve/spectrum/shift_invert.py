@@ -84,7 +84,7 @@ class PencilPattern(Protocol):
         """Column of each nonzero entry, (nnz,)."""
 
     @property
-    def positions(self) -> Array:
+    def node_positions(self) -> Array:
         """Material coordinate u of all nodes, including the clamp, (nodes + 1,)."""
 
     @property
@@ -111,21 +111,21 @@ class LoadedPencil(NamedTuple):
 
 class ShiftInvertSolver(ABC):
     """Krylov-Schur solver for pencils of one sparsity pattern; `solve` may be called any number of times.
-
-    mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector.
+    mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's matrices
+    A - shift B and B of the rod in `loaded_pencil`. eps: SLEPc's solver.
     """
 
     def __init__(self, pattern: PencilPattern, mass: Array):
-        self.nodes = pattern.node_count
+        self.node_count = pattern.node_count
         n = pattern.unknowns
         package = sparse_package()
-        self.dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
+        self.is_dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
         self.is_diagonal_entry = pattern.rows == pattern.columns
         self.indptr = np.searchsorted(pattern.rows, np.arange(n + 1)).astype(PETSc.IntType)
         self.indices = pattern.columns.astype(PETSc.IntType)
         self.A = PETSc.Mat()
         self.B = PETSc.Mat()
-        if self.dense:
+        if self.is_dense:
             self.A.createDense([n, n], comm=PETSc.COMM_SELF).setUp()
         else:
             values = np.ones(len(self.indices))
@@ -135,7 +135,7 @@ class ShiftInvertSolver(ABC):
             [n, n], csr=(self.row_starts, self.row_starts[:-1], np.ones(n)), comm=PETSc.COMM_SELF
         )
         first = np.zeros(n)
-        distance = (1 - pattern.positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.first_vector_width
+        distance = (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.first_vector_width
         first[: pattern.node_count] = np.exp(-(distance**2)) * np.sqrt(mass)
         first[pattern.node_count : 2 * pattern.node_count] = (
             KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.node_count]
@@ -143,8 +143,8 @@ class ShiftInvertSolver(ABC):
         self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.tolerance_option = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
-        self.eps = self._solver("petsc" if self.dense else package)
-        self.loaded = LoadedPencil(0, 0.0)
+        self.eps = self._solver("petsc" if self.is_dense else package)
+        self.loaded_pencil = LoadedPencil(0, 0.0)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
@@ -170,7 +170,7 @@ class ShiftInvertSolver(ABC):
         shift: in 1/tau2."""
 
     @abstractmethod
-    def fields(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
+    def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
         (unknowns, k). rod: the rod that was solved."""
 
@@ -182,10 +182,10 @@ class ShiftInvertSolver(ABC):
         the few digits that Newton's method on D needs. Raises PETSc.Error.
         """
         report()
-        self.loaded = self.load(rod, shift)
+        self.loaded_pencil = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        most = self.loaded.finite_eigenvalues
+        most = self.loaded_pencil.finite_eigenvalues
         requested = min(requested, most - 1)  # a conjugate pair may add one
         spare = KRYLOV_SETTINGS.tight_spare_vectors if tight else KRYLOV_SETTINGS.loose_spare_vectors
         tolerance = KRYLOV_SETTINGS.tight_tolerance if tight else KRYLOV_SETTINGS.loose_tolerance
@@ -197,7 +197,7 @@ class ShiftInvertSolver(ABC):
         self.eps.solve()
         found = self.eps.getConverged()
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
-        return (w + self.loaded.shift) / self.loaded.deflection_ratio**2
+        return (w + self.loaded_pencil.shift) / self.loaded_pencil.deflection_ratio**2
 
     def vectors(self, found: int) -> Complex:
         """Eigenvectors of the first `found` eigenvalues of the last `solve`, (unknowns, found)."""
@@ -206,7 +206,7 @@ class ShiftInvertSolver(ABC):
         for i in range(found):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
-        X[: self.nodes] *= self.loaded.deflection_ratio
+        X[: self.node_count] *= self.loaded_pencil.deflection_ratio
         real.destroy()
         imag.destroy()
         return X
@@ -222,7 +222,7 @@ class ShiftInvertSolver(ABC):
         krylov = self.eps.getDimensions()[1] + 1
         matrices = (
             KRYLOV_SETTINGS.stored_dense_matrices * n * n
-            if self.dense
+            if self.is_dense
             else KRYLOV_SETTINGS.stored_numbers_per_entry * len(self.indices)
         )
         return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)

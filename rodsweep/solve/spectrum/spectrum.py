@@ -26,7 +26,7 @@ class SpectrumRequest:
     """Relative accuracy of every eigenvalue, and of every eigenmode if requested."""
     certify: bool
     """Whether it must be proved that no eigenvalue is missing."""
-    vector_nodes: int = 0
+    vector_node_count: int = 0
     """Number of Lobatto nodes at which eigenmodes (Y, Theta) are stored; 0 for no eigenmodes."""
 
 
@@ -73,7 +73,8 @@ class Spectrum:
     seconds: NumberPerRod = 0.0
     """Wall-clock time of the solve in seconds; for several rods, the mean time per rod."""
     vectors: Complex | None = None
-    """Eigenmodes (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; None if not requested."""
+    """Eigenmodes (Y, Theta), complex, (2, modes, vector_node_count), scaled to Y(1) = 1; None if not
+    requested."""
     message: NumberPerRod = ""
     """Cause of a failure, or the reason why a proof failed; empty otherwise."""
 
@@ -102,10 +103,11 @@ class FollowedPoints:
     is_accepted: NDArray[np.bool_]
 
 
-def vectors_on_nodes(
+def modes_at_lobatto_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: Complex | None
 ) -> Complex | None:
-    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_nodes); None if `found` is None.
+    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_node_count); None if `found` is
+    None.
 
     found: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1 and is
     NaN.
@@ -113,8 +115,8 @@ def vectors_on_nodes(
     if found is None:
         return None
     solver = problem.solver(mesh)
-    y, theta = solver.fields(found[:, : request.modes], problem.rod)
-    matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_nodes))
+    y, theta = solver.displacements(found[:, : request.modes], problem.rod)
+    matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_node_count))
     scale = factors_to_unit_tip(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
@@ -124,15 +126,19 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
 
     w, error: of any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
     """
-    rounding = SPECTRUM_ERROR_SETTINGS.rounding if rod.standard else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
+    rounding = (
+        SPECTRUM_ERROR_SETTINGS.rounding
+        if rod.is_uniform_and_linear
+        else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
+    )
     return error + rounding * ROUND_OFF * np.abs(w)
 
 
 def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome of a failed solve: all eigenvalues, errors and eigenmodes are NaN."""
     empty = np.full(request.modes, np.nan)
-    shape = (2, request.modes, request.vector_nodes)
-    vectors = np.full(shape, np.nan + 0j) if request.vector_nodes else None
+    shape = (2, request.modes, request.vector_node_count)
+    vectors = np.full(shape, np.nan + 0j) if request.vector_node_count else None
     return Spectrum(
         status=status, eigenvalues=empty + 0j, error_estimate=empty, vectors=vectors, message=message
     )

@@ -19,7 +19,7 @@ from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point import Unsolvable, outcome_or_failure
 from .problem import TransverseProblem, transverse_problem
-from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, vectors_on_nodes
+from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
 
 
@@ -62,13 +62,13 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
         destroy_pooled_solvers()
         return failed_spectrum(SpectrumStatus.failed, request, cause)
 
-    return outcome_or_failure(lambda: _solve_or_raise(rod, request), failed)
+    return outcome_or_failure(lambda: _spectrum_or_raise(rod, request), failed)
 
 
-def _solve_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
+def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     problem = transverse_problem(rod)
     modes = request.modes
-    aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
+    aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy
     mesh: AnyMesh = problem.mesh_for(modes, aim)
     before = _leading_eigenvalues(problem, mesh, modes)
     best: Spectrum | None = None
@@ -83,7 +83,7 @@ def _solve_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
                 request,
                 mesh,
                 found,
-                _errors_between_meshes(found.w, before.w, _rounding_rate(problem)),
+                _errors_between_meshes(found.w, before.w, _eigenvalue_rounding_scale(problem)),
             )
             if here.status == SpectrumStatus.ok:
                 return here
@@ -97,7 +97,7 @@ def _solve_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     return replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
 
 
-def _rounding_rate(problem: TransverseProblem) -> float:
+def _eigenvalue_rounding_scale(problem: TransverseProblem) -> float:
     """Sum of |shift| and F^2, in 1/tau2: rounding errors of eigenvalues are proportional to this rate."""
     return abs(problem.shift) + problem.rod.F**2
 
@@ -127,7 +127,7 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) 
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         complete = len(leading) == len(before) == modes
-        by_rounding = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _rounding_rate(problem)
+        by_rounding = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
         if complete and np.allclose(
             leading, before, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=by_rounding
         ):
@@ -147,9 +147,9 @@ def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of the sorted eigenvalues w, (k,), from the unsorted eigenvalues `coarser`, (l,), of a
     coarser mesh.
 
-    scale: result of `_rounding_rate`. Two meshes may agree on one eigenvalue by chance. The relative error of
-    an eigenvalue is therefore the largest of three differences: of the eigenvalue and of its two neighbours.
-    Near a double eigenvalue the stated rounding errors are larger than elsewhere.
+    scale: result of `_eigenvalue_rounding_scale`. Two meshes may agree on one eigenvalue by chance. The
+    relative error of an eigenvalue is therefore the largest of three differences: of the eigenvalue and of
+    its two neighbours. Near a double eigenvalue the stated rounding errors are larger than elsewhere.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)
@@ -172,7 +172,7 @@ def _spectrum_of_mesh(
     modes = request.modes
     enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
-    if request.vector_nodes and enough:
+    if request.vector_node_count and enough:
         vectors = problem.solver(mesh).vectors(len(w))[:, found.indices]
     unstable = int((w.real > 0).sum())
     decide = slice(max(modes, unstable + 1))  # later eigenvalues decay faster
@@ -184,5 +184,5 @@ def _spectrum_of_mesh(
         unstable_count=unstable if known else -1,
         elements=mesh.element_count,
         order=mesh.order,
-        vectors=vectors_on_nodes(problem, request, mesh, vectors),
+        vectors=modes_at_lobatto_nodes(problem, request, mesh, vectors),
     )

@@ -12,10 +12,10 @@ from ...arrays import Array
 from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import ARM_UNITS, RELATIVE_LOADS, SCALE_NAME
+from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
-from ...model.material.build import STANDARD, Build
-from ...model.parameters import NONLINEAR_PARAMETERS, names_except
+from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from .flutter_forces import FlutterForce
 from .points import Points
 
@@ -33,7 +33,7 @@ def grid_of_arms(
     beside: Mapping[str, Array],
     names: tuple[str, ...],
     flutter: FlutterSearch,
-    build: Build = STANDARD,
+    build: Build = DEFAULT_BUILD,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
     values.
@@ -46,20 +46,20 @@ def grid_of_arms(
     loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
     crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    own = (*names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
+    own = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
     table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own}
-    units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_UNITS}
+    units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
     coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
-    if section.load_key in RELATIVE_LOADS:
+    if section.load_key in LOAD_OF_RATIO:
         coverage = _with_flutter_codes(coverage, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
-        if section.load_key in RELATIVE_LOADS:
+        if section.load_key in LOAD_OF_RATIO:
             units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
-    builds = tuple(arm.build if arm else STANDARD for arm in arms) if section.is_nonuniform else ()
+    builds = tuple(arm.build if arm else DEFAULT_BUILD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
         shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
@@ -101,7 +101,7 @@ def _unit_load_forces(
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
-    beside = [None] if tapers is None or section.load_key not in RELATIVE_LOADS else tapers.ravel().tolist()
+    beside = [None] if tapers is None or section.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
     forces = np.empty((len(arms), 1, len(beside)), object)
     for i, arm in enumerate(arms):
         found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
@@ -119,7 +119,7 @@ def _unit_load_force(
     """
     if arm is None or not section.load:
         return NO_FORCE
-    if section.load_key in RELATIVE_LOADS:
+    if section.load_key in LOAD_OF_RATIO:
         return flutter(arm, taper)
     return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
 

@@ -14,7 +14,7 @@ from ...config.arm.axes import UncoveredArm
 from ...config.arm.section import ArmSection
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
-from ...model.arm.quantities import RELATIVE_LOADS
+from ...model.arm.quantities import LOAD_OF_RATIO
 from ...model.material.build import Build
 from ...model.rod import Rod
 
@@ -48,7 +48,7 @@ def rods_needing_flutter_force(
     build: constitutive law and profile from the config section `material`, None if the section is not given.
     Raises InputError for an invalid arm.
     """
-    if section is None or section.load_key not in RELATIVE_LOADS:
+    if section is None or section.load_key not in LOAD_OF_RATIO:
         return []
     from ...verdict.relative import plane_rods
 

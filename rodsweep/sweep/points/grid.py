@@ -13,7 +13,7 @@ from ...config.arm.axes import CRUSHED, MAX_ARM_GRID_POINTS, SLENDER
 from ...config.schema import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
@@ -107,7 +107,7 @@ def require_in_range(
 
 
 def refuse_invalid_axes(
-    axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = STANDARD
+    axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = DEFAULT_BUILD
 ) -> None:
     """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
 

@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...config.axes import joined_names
 from ...config.values import cell_number, short_repr
 from ...errors import InputError
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from .points import NEUTRAL_VALUES
@@ -22,7 +22,7 @@ LONGEST_LINE = 10_000
 memory."""
 
 
-def read_points(path: Path, names: tuple[str, ...], build: Build = STANDARD) -> tuple[Array, ...]:
+def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD) -> tuple[Array, ...]:
     """Columns, (points,) each, of a CSV file that lists points, in the order of the parameters `names`.
 
     The header has the same names in any order. Raises InputError for an unreadable file, a wrong header, a

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.axes import SLENDER, parameter_of_axis
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
@@ -40,7 +40,7 @@ class Points:
     or a list."""
     units: dict[str, Array] = field(default_factory=dict)
     """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
-    build: Build = STANDARD
+    build: Build = DEFAULT_BUILD
     """Constitutive law and profile of all rods, unless `builds` is given."""
     builds: tuple[Build, ...] = ()
     """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the

@@ -21,7 +21,7 @@ from ...config.arm.axes import NON_LOAD_KEYS, SLENDER
 from ...config.arm.section import ArmSection
 from ...config.schema import Config
 from ...model.arm.arm import SlenderArm
-from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, least_drag, neglected_effects, worst_validity
+from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
 from ...model.material.laws import LINEAR
 from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import CLASSES
@@ -178,14 +178,14 @@ class ArmValidity:
     def _validity_variables(
         self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]
     ) -> dict[str, Any]:
-        drag = arm.chosen_drag if "drag" in self.points.arm_axes else least_drag(arm)
+        drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force_of_points(arm, motion, index)
         effects = neglected_effects(
             arm, rate, self._equivalent_base_force(F, index), drag=drag, amplitude=motion.amplitude
         )
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
-        excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
+        excess = np.array([effect.value_over_limit for effect in counted])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
         points = excess.reshape(len(counted), *np.shape(index), -1)  # the last axis: all motions of a point
         largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)

@@ -115,9 +115,9 @@ class DiagramCurves:
         limit = {}
         if names == CRUSHING_PARAMETERS and self.task.config.standard:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
-            from ...solve.changes.thresholds import filament_hopf
+            from ...solve.changes.thresholds import filament_flutter_force
 
-            Fc = filament_hopf()
+            Fc = filament_flutter_force()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
         variables = curve_record(found, names, **limit)
         criticalities = self._criticality(plane, found) if options.criticality or options.cycles else []
@@ -162,7 +162,7 @@ class DiagramCurves:
         """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
         every row, (rows,).
         """
-        from ...solve.changes.diagram.boundaries import curves_through, seed_of
+        from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
         at, kind, frequency, rate = map(view.by_point, names)
@@ -173,7 +173,7 @@ class DiagramCurves:
             for i in np.flatnonzero(np.isfinite(rows))
             for j in np.flatnonzero(kind[i])
         ]
-        found = curves_through(plane, [seed for seed in seeds if seed is not None])
+        found = boundary_curves_through(plane, [seed for seed in seeds if seed is not None])
         # If a list is full, its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
         return replace(
@@ -198,7 +198,7 @@ class DiagramCurves:
         accuracy = self.task.config.accuracy
         return [
             curve_criticality(plane, curve, accuracy)
-            if curve.hopf
+            if curve.consists_of_hopf_points
             else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
             for curve in found.curves
         ]

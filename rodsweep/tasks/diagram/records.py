@@ -44,11 +44,11 @@ def curve_record(
     folds = []
     for number, curve in enumerate(found.curves, 1):
         each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
-        for *numbers, reasons in zip(*each, _end_reasons(curve.ends, len(curve.values)), strict=True):
+        for *numbers, reasons in zip(*each, _end_reasons(curve.end_reasons, len(curve.values)), strict=True):
             named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
-            points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
+            points.append((SimpleNamespace(number=number, kind=curve.consists_of_hopf_points, **named),))
         folds += [
-            _object_and_point(fold, plane, curve=number, kind=curve.hopf, of=fold.axis)
+            _object_and_point(fold, plane, curve=number, kind=curve.consists_of_hopf_points, of=fold.axis)
             for fold in curve.folds
         ]
     declared = curve_variables(*plane)
@@ -70,7 +70,9 @@ def criticality_record(
     start = 0
     for number, curve in enumerate(criticalities, 1):
         for point in curve.points:
-            rows.append(_object_and_point(point, plane, curve=number, curve_point=start + point.after + 1))
+            rows.append(
+                _object_and_point(point, plane, curve=number, curve_point=start + point.preceding_index + 1)
+            )
         start += len(curve.criticality)
     declared = criticality_variables(*plane)
     values = _values_along_dimension(declared, "bautin", "bautin_", rows) | {
@@ -90,7 +92,9 @@ def bautin_curve_record(
     rows = [
         _object_and_point(point, (*plane, third), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
-        for point, reasons in zip(curve.points, _end_reasons(curve.ends, len(curve.points)), strict=True)
+        for point, reasons in zip(
+            curve.points, _end_reasons(curve.end_reasons, len(curve.points)), strict=True
+        )
     ]
     declared = bautin_curve_variables(*plane, third)
     return _filled_variables(

@@ -112,7 +112,7 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
         fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
         here = w[number]
-        rods = rod.coefficients, rod.direction("F")
+        rods = rod.coefficients, rod.coefficient_derivative("F")
         far = FAR_FORCES * (F[-1] - F[0])
         tried = (
             locate_onset(rods, rod, (F[i], F[j]), here[i], here[j])

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.material.build import STANDARD, Build
+from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.rod import Rod
 from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_point_variables
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.along_path import Transitions
-    from ...solve.changes.unstable_modes import Crossing
+    from ...solve.changes.along_path import ThresholdList
+    from ...solve.changes.unstable_modes import Threshold
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,15 +33,15 @@ class HopfLine:
     """The fixed parameters of the straight rod."""
     start: float
     stop: float
-    build: Build = STANDARD
+    build: Build = DEFAULT_BUILD
     """Constitutive law and profile of all rods on the line."""
 
-    def hopf_points(self) -> "Transitions | None":
+    def hopf_points(self) -> "ThresholdList | None":
         """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
         all rods on such a line are crushed, or if the search fails.
         """
         from ...determinant.parameter_path import Path
-        from ...solve.changes.along_path import pair_crossings
+        from ...solve.changes.along_path import find_axis_crossings
         from ...solve.changes.unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
         from ...solve.point import FAILURES
 
@@ -64,7 +64,9 @@ class HopfLine:
             return None
         at_start: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
         try:
-            return pair_crossings(Path(Rod(**at_start, build=self.build), self.varied_parameter), start, stop)
+            return find_axis_crossings(
+                Path(Rod(**at_start, build=self.build), self.varied_parameter), start, stop
+            )
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
 
@@ -116,14 +118,14 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 
 
 def hopf_variables(
-    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[Transitions | None]"
+    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdList | None]"
 ) -> tuple[FilledVariable, ...]:
     """Hopf points of all lines, one line after another, as variables of a file.
 
     names: parameters of the file. found: result of the search on each line.
     """
     known = [(line, each) for line, each in zip(lines, found, strict=True) if each is not None]
-    rows = [_hopf_point_values(line, crossing) for line, each in known for crossing in each.crossings]
+    rows = [_hopf_point_values(line, crossing) for line, each in known for crossing in each.thresholds]
     proved = sum(each.proved_to_the_end for _, each in known)
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
@@ -132,13 +134,13 @@ def hopf_variables(
     )
 
 
-def _hopf_point_values(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
+def _hopf_point_values(line: HopfLine, crossing: "Threshold") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
-    rod = line.fixed_parameters | {line.varied_parameter: crossing.at}
+    rod = line.fixed_parameters | {line.varied_parameter: crossing.value}
     return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
         "hopf_along": HOPF_ALONG.index(line.varied_parameter),
         "hopf_kind": int(crossing.kind),
-        "hopf_error": crossing.error / abs(crossing.at),
+        "hopf_error": crossing.error / abs(crossing.value),
         "hopf_frequency": crossing.frequency,
         "hopf_frequency_error": crossing.frequency_error,
         "hopf_unstable_after": crossing.unstable_after,

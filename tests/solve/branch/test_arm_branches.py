@@ -24,7 +24,7 @@ def test_the_deflection_of_a_shape_does_not_depend_on_the_mesh(order, names):
     """Where m3 jumps, branches of rubber arms stopped as soon as its mean limited their accuracy."""
     rod = Rod(F=20.0, k1=300.0, k2=150.0, gamma3=0.02, taper=0.7, build=Build(*names, STEP))
     form = StressForm(rod, mesh_with_edges((0.0, JUMP, 1.0), order))
-    u = form.mesh.positions
+    u = form.mesh.node_positions
     before, behind = 2 - u, 1.5 * (1 - u)
     m3 = np.where(u < JUMP, before, behind)
     bent = form.mesh.lengths * [before[order], behind[order] / SOFTER]

@@ -23,7 +23,7 @@ from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd
-from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -52,7 +52,7 @@ def only(curve, kind):
 def first_branch(rod, stop, accuracy=1e-7):
     """The branch from the first Hopf point alone."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = pair_crossings(Path(straight, "F"), 0.0, stop).crossings[0]
+    crossing = find_axis_crossings(Path(straight, "F"), 0.0, stop).thresholds[0]
     hopf = hopf_branch_start(Path(rod, "F"), crossing)
     return follow_branch(
         0, BranchLimits([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace())
@@ -276,7 +276,7 @@ def test_search_that_fails_is_a_status(monkeypatch):
     def failing(*_):
         raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
 
-    monkeypatch.setattr(branches, "pair_crossings", failing)
+    monkeypatch.setattr(branches, "find_axis_crossings", failing)
     found = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-7, True, 500, 50))
     assert found.status == BranchStatus.failed
     assert found.message == "no a-priori bound on the eigenvalues applies to this rod"
@@ -323,7 +323,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     monkeypatch.setattr(branch_start, "BRANCH_START_SETTINGS", beginning)
     monkeypatch.setattr(branch_start, "first_measured_cycle", lambda first, *others: first.orbit)
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
-    (crossing,) = pair_crossings(path, 159.0, 161.0, False).crossings
+    (crossing,) = find_axis_crossings(path, 159.0, 161.0, False).thresholds
     orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
     assert float(orbit.form.tip_coordinates(orbit.start_state)[1]) == pytest.approx(smallest, rel=1e-3)
 
@@ -333,7 +333,7 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
 def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_range(start, stop):
     """Their first cycles, and the errors beyond F = 174, were lost in rounding errors of Newton's steps."""
     rod = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
-    crossing = pair_crossings(Path(rod, "F"), start, start + 5).crossings[0]
+    crossing = find_axis_crossings(Path(rod, "F"), start, start + 5).thresholds[0]
     ends = ((0.0, stop), (EndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
     curve = follow_branch(0, BranchLimits([hopf_branch_start(Path(rod, "F"), crossing)], *ends))
     assert curve.complete

@@ -21,7 +21,7 @@ from rodsweep.solve.branch.mesh_choice import is_measurement_due, solve_on_suffi
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.points import special_points_between
-from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -68,7 +68,7 @@ def branch_of_auto(program, rod, setting, place):
 def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = pair_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
+    crossing = find_axis_crossings(Path(straight, "F"), 0.0, rod.F).thresholds[0]
     here, special = (
         first_cycle(hopf_branch_start(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()),
         None,

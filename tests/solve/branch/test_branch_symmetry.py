@@ -33,7 +33,7 @@ from rodsweep.solve.branch.symmetry import (
     first_asymmetric_cycle,
     symmetry_breakings_in,
 )
-from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.branch import branch_values
@@ -47,7 +47,7 @@ def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
     path = Path(straight, "F")
-    hopf = hopf_branch_start(path, pair_crossings(path, 0.0, 5.0).crossings[0])
+    hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
         yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())

@@ -90,9 +90,9 @@ def test_further_stages_replace_time_intervals_on_the_first_mesh_of_a_special_po
     )
     branch = BranchCalibration(known, np.full(2, 1e-8), 1.0)
     mesh = first_mesh(branch, 1e-9)
-    assert mesh.stages == 5
-    assert mesh.intervals < 2 * known.mesh.intervals
-    assert branch.cheapest_mesh_for_parameter(2e-10).intervals > 2 * known.mesh.intervals
+    assert mesh.stage_count == 5
+    assert mesh.interval_count < 2 * known.mesh.interval_count
+    assert branch.cheapest_mesh_for_parameter(2e-10).interval_count > 2 * known.mesh.interval_count
 
 
 def test_unit_of_work_is_the_documented_number_of_multiplications():
@@ -115,4 +115,4 @@ def test_torus_point_of_a_narrow_cone_needs_no_mesh_of_gigabytes(monkeypatch):
     assert found.status == BranchStatus.ok
     assert torus.at == pytest.approx(14.5390404204, abs=torus.error + 1e-9)
     assert torus.error < 1e-9 * torus.at
-    assert max(mesh.intervals for mesh in meshes) < 80, "114 in the first mesh, 137 in the second before"
+    assert max(mesh.interval_count for mesh in meshes) < 80, "114 in the first mesh, 137 in the second before"

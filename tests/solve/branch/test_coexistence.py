@@ -132,7 +132,7 @@ def test_a_list_of_special_points_that_is_full_is_told():
 
 def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
-    row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
+    row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
@@ -156,7 +156,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
 
 
 def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
-    row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
+    row = solve_coexistence(FIG_2C.with_values(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special_points if point.kind == SpecialKind.fold]
     scale = ArcLengthScale.at_orbit(fold.orbit, "F", 0.0)
     own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())

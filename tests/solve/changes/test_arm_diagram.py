@@ -11,7 +11,7 @@ from rodsweep.errors import InputError
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
@@ -28,12 +28,12 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     """The curve from the first change of a kind on the middle row of a plane."""
     first, second = axes
     middle = Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, build=build)
-    found = transitions(Path(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
-    change = next(c for c in found.crossings if c.kind == kind)
+    found = find_thresholds(Path(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
+    change = next(c for c in found.thresholds if c.kind == kind)
     plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
     sign = 0.0 if kind == ChangeKind.hopf else -1.0
     return trace_boundary(
-        sign, plane, (first.coordinate(change.at), 0.5), change.frequency or change.growth_rate
+        sign, plane, (first.coordinate(change.value), 0.5), change.frequency or change.growth_rate
     )
 
 
@@ -65,8 +65,8 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     k1, error = fold.values[1], 1e-6
 
     def hopfs(stiffness):
-        found = transitions(Path(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0)
-        return [c.at for c in found.crossings if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
+        found = find_thresholds(Path(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0)
+        return [c.value for c in found.thresholds if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
 
     assert hopfs(k1 * (1 - error)) == []
     low, high = hopfs(k1 * (1 + error))
@@ -80,14 +80,14 @@ def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     numbers = []
     for side in (-1e-5, 1e-5):
         rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, build=SWELLING)
-        found = transitions(Path(rod, "F"), 0.0, 560.0)
-        numbers.append(sum(c.kind in (ChangeKind.hopf, ChangeKind.restabilization) for c in found.crossings))
+        found = find_thresholds(Path(rod, "F"), 0.0, 560.0)
+        numbers.append(sum(c.kind in (ChangeKind.hopf, ChangeKind.restabilization) for c in found.thresholds))
     assert numbers == [2, 0]
 
 
 def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
     def row(name, values, rod):
-        request = RowRequest(name, np.array(values), accuracy=1e-10, certify=True, crossings=16)
+        request = RowRequest(name, np.array(values), accuracy=1e-10, certify=True, max_thresholds=16)
         return solve_row(rod, request)
 
     rubber = row("F", [10.0, 100.0, 500.0, 550.0], Rod(F=0.0, k1=500.0, **ROD, build=SWELLING))
@@ -184,7 +184,7 @@ def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
 def test_rows_begin_and_end_at_the_limits_of_the_model(name, values):
     """Slopes by a compliance or a drag next to 0, and next to the force that crushes the tip."""
     rod = {"F": 40.0, "k1": 1e4, **ROD, "taper": 0.5} | {name: values[0]}
-    request = RowRequest(name, np.array(values), accuracy=1e-9, certify=True, crossings=16)
+    request = RowRequest(name, np.array(values), accuracy=1e-9, certify=True, max_thresholds=16)
     row = solve_row(Rod(**rod), request)
     assert row.status == ThresholdStatus.ok
     for value, unstable in zip(values, row.unstable_count, strict=True):

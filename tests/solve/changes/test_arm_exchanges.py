@@ -41,8 +41,8 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
     """The forces are from a bisection of dense eigenvalues of another code on two meshes."""
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
-    (taken,) = [c for c in found.crossings if c.kind == ChangeKind.real_leads]
-    assert taken.at == pytest.approx(F, abs=1e-9)
+    (taken,) = [c for c in found.thresholds if c.kind == ChangeKind.real_leads]
+    assert taken.value == pytest.approx(F, abs=1e-9)
     assert taken.error < 1e-9
 
 
@@ -62,7 +62,7 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
 def test_three_exchanges_between_two_anchors_are_all_found(rod, F_max):
     found = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
-    kinds = [c.kind for c in found.crossings[:3]]
+    kinds = [c.kind for c in found.thresholds[:3]]
     assert kinds == [ChangeKind.onset, ChangeKind.real_again, ChangeKind.pair_leads]
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
@@ -71,16 +71,16 @@ def test_a_double_eigenvalue_behind_the_leading_pair_is_no_onset():
     rod = cone(20971.78966444228, 401.0547088144865, 4.178687351590938e-05, 0.1542518309504673)
     found = solve_thresholds(rod, ThresholdsRequest(39.13599469496463, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
-    assert found.crossings[0].kind == ChangeKind.pair_leads
+    assert found.thresholds[0].kind == ChangeKind.pair_leads
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 
 def assert_leaders_are_those_of_spectra(rod, found, forces):
     """At each force the list tells the kind of the leading eigenvalue and the number of unstable modes."""
     for F in forces:
-        before = [c for c in found.crossings if c.at <= F]
+        before = [c for c in found.thresholds if c.value <= F]
         pair = [c.kind.pair_leads_after for c in before if c.kind.changes_leader][-1:]
-        spectrum = solve_spectrum(rod.changed(F=F), SpectrumRequest(2, 1e-8, True))
+        spectrum = solve_spectrum(rod.with_values(F=F), SpectrumRequest(2, 1e-8, True))
         assert spectrum.certified
         assert (spectrum.eigenvalues[0].imag != 0) == (pair == [True])
         assert spectrum.unstable_count == (before[-1].unstable_after if before else 0)
@@ -89,7 +89,7 @@ def assert_leaders_are_those_of_spectra(rod, found, forces):
 def forces_between(found):
     """Forces close to the ends of each interval between thresholds, and within it: of the first intervals,
     or of all intervals for `make survey`."""
-    ends = [0.0, *(c.at for c in found.crossings), found.end]
+    ends = [0.0, *(c.value for c in found.thresholds), found.end]
     ends = ends if RODS else ends[:5]
     return [
         a + share * (b - a)
@@ -119,7 +119,7 @@ def forces_between(found):
 def test_lists_of_cones_with_crowded_eigenvalues_are_proved_and_right(rod):
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
-    assert found.transitions.proved
+    assert found.search_result.proved
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 
@@ -183,7 +183,7 @@ def test_two_close_eigenvalues_are_not_followed_as_one():
     assert found.status == ThresholdStatus.ok
     followed = FollowedArms(Path(NEARLY_CRUSHED, "F"), np.linspace(100.0, 121.0, 24), 4)
     for F in (116.98506875, 116.98512780, 116.98542655):
-        alone = solve_spectrum(NEARLY_CRUSHED.changed(F=F), SpectrumRequest(4, 1e-6, certify=True))
+        alone = solve_spectrum(NEARLY_CRUSHED.with_values(F=F), SpectrumRequest(4, 1e-6, certify=True))
         spectrum = followed.spectrum(F, 4)
         if spectrum is not None:
             assert spectrum.eigenvalues == pytest.approx(alone.eigenvalues, rel=1e-10)

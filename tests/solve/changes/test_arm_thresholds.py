@@ -15,7 +15,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
@@ -27,7 +27,7 @@ ACROSS = (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization)
 
 
 def across_the_axis(found):
-    return [(crossing.kind, crossing.at) for crossing in found.crossings if crossing.kind in ACROSS]
+    return [(crossing.kind, crossing.value) for crossing in found.thresholds if crossing.kind in ACROSS]
 
 
 @pytest.mark.parametrize(
@@ -68,9 +68,9 @@ def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
     )
     uniform = solve_thresholds(Rod(**values), request)
     profiled = solve_thresholds(Rod(**values, build=Build(profile=ONES)), request)
-    assert [c.kind for c in profiled.crossings] == [c.kind for c in uniform.crossings]
+    assert [c.kind for c in profiled.thresholds] == [c.kind for c in uniform.thresholds]
     for name in ("at", "frequency", "growth_rate"):
-        ours, theirs = ([getattr(c, name) for c in found.crossings] for found in (profiled, uniform))
+        ours, theirs = ([getattr(c, name) for c in found.thresholds] for found in (profiled, uniform))
         np.testing.assert_allclose(ours, theirs, rtol=1e-11, atol=1e-9)
 
 
@@ -78,12 +78,12 @@ def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
 def test_no_crossing_is_missed_between_the_forces_of_a_dense_scan(seed):
     rng = np.random.default_rng(seed)
     rod = random_arm(rng, pulled=0.0)
-    found = solve_thresholds(rod.changed(F=0.0), ThresholdsRequest(3 * rod.F, 1e-9, True, 32))
+    found = solve_thresholds(rod.with_values(F=0.0), ThresholdsRequest(3 * rod.F, 1e-9, True, 32))
     assert found.status == ThresholdStatus.ok, (rod, rod.build, found.message)
-    crossings = [c for c in found.crossings if c.kind in ACROSS]
+    crossings = [c for c in found.thresholds if c.kind in ACROSS]
     for F in np.linspace(0.03, 0.999, 12) * found.end:
-        expected = [c.unstable_after for c in crossings if c.at < F]
-        unstable = int((eigenvalues(rod.changed(F=float(F))).real > 0).sum())
+        expected = [c.unstable_after for c in crossings if c.value < F]
+        unstable = int((eigenvalues(rod.with_values(F=float(F))).real > 0).sum())
         assert unstable == (expected[-1] if expected else 0), (rod, rod.build, F)
 
 
@@ -110,26 +110,28 @@ def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_som
     found = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
     assert found.status == ThresholdStatus.ended_early
     assert 30.0 < found.end < 60.0
-    assert not isfinite(hull.hull_of(STEPPED.changed(F=found.end + 60 / 12)).a)
+    assert not isfinite(hull.hull_of(STEPPED.with_values(F=found.end + 60 / 12)).a)
     assert f"ends at F = {found.end:.12g}: " in found.message
     assert "no a-priori bound" in found.message
-    assert found.transitions.proved
-    assert not found.transitions.proved_to_the_end
+    assert found.search_result.proved
+    assert not found.search_result.proved_to_the_end
     monkeypatch.undo()
     whole = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
     assert whole.status == ThresholdStatus.ok
-    expected = [c for c in whole.crossings if c.at < found.end]
+    expected = [c for c in whole.thresholds if c.value < found.end]
     assert (
-        [c.kind for c in found.crossings] == [c.kind for c in expected] == [ChangeKind.onset, ChangeKind.hopf]
+        [c.kind for c in found.thresholds]
+        == [c.kind for c in expected]
+        == [ChangeKind.onset, ChangeKind.hopf]
     )
-    np.testing.assert_allclose([c.at for c in found.crossings], [c.at for c in expected], rtol=1e-11)
-    assert found.transitions.unstable_at_end == 2
+    np.testing.assert_allclose([c.value for c in found.thresholds], [c.value for c in expected], rtol=1e-11)
+    assert found.search_result.unstable_at_end == 2
 
 
 def test_a_search_that_cannot_begin_has_failed(monkeypatch):
     monkeypatch.setattr(hull, "HULL_SETTINGS", replace(hull.HULL_SETTINGS, min_remainder=1.0))
     found = solve_thresholds(STEPPED, ThresholdsRequest(60.0, 1e-10, True, 16))
-    assert (found.status, found.crossings) == (ThresholdStatus.failed, ())
+    assert (found.status, found.thresholds) == (ThresholdStatus.failed, ())
     assert "no a-priori bound" in found.message
 
 
@@ -143,7 +145,7 @@ def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_som
 
 def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force):
     """Along k2 the path variable is the compliance: a bound is known for stiff arms only."""
-    found = transitions(Path(STEPPED.changed(F=30.0), "k2"), 1e3, 1e5)
+    found = find_thresholds(Path(STEPPED.with_values(F=30.0), "k2"), 1e3, 1e5)
     assert found.ended_early
     assert 1e3 < found.searched_interval[0] < 1e5
     assert found.searched_interval[1] == 1e5
@@ -169,10 +171,10 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
     found = solve_thresholds(rod, ThresholdsRequest(60.0, 1e-10, True, 2))
     assert (whole.status, whole.end) == (ThresholdStatus.ok, 60.0)
     assert found.status == ThresholdStatus.ended_early
-    assert found.crossings[2].at < found.end < 60.0
+    assert found.thresholds[2].value < found.end < 60.0
     assert "more than 2 crossings" in found.message
-    known = [crossing.at for crossing in whole.crossings if crossing.at <= found.end]
-    np.testing.assert_allclose([crossing.at for crossing in found.crossings], known, rtol=1e-11)
+    known = [crossing.value for crossing in whole.thresholds if crossing.value <= found.end]
+    np.testing.assert_allclose([crossing.value for crossing in found.thresholds], known, rtol=1e-11)
 
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
@@ -184,7 +186,7 @@ def test_each_load_of_a_search_is_counted_once(monkeypatch):
         return whole(path, hulls, p, modes, here)
 
     monkeypatch.setattr(followed_arms, "confirmed_count_at", count)
-    rod = STEPPED.changed(k2=100.0)
+    rod = STEPPED.with_values(k2=100.0)
     found = solve_thresholds(rod, ThresholdsRequest(80.0, 1e-8, True, 16))
     assert found.status == ThresholdStatus.ok
     assert len(counted) > 5
@@ -198,11 +200,11 @@ def test_errors_of_double_eigenvalues_hold_in_the_last_digit():
     rows = tuple(row for row in factors for _ in range(2))
     build = Build("neo_hookean", "swelling", Profile((0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 1.0), rows))
     rod = Rod(F=0.0, k1=5800.0, k2=29.0, gamma3=0.17, build=build)
-    found = solve_thresholds(rod, ThresholdsRequest(130.0, 1e-10, True, 16)).crossings
+    found = solve_thresholds(rod, ThresholdsRequest(130.0, 1e-10, True, 16)).thresholds
     double = [crossing for crossing in found if crossing.kind in (ChangeKind.onset, ChangeKind.real_again)]
     exact = "11.144982346022727144", "79.813236894182175485", "125.31246511120310814"
     for crossing, at in zip(double, exact, strict=True):
-        assert abs(Decimal(crossing.at) - Decimal(at)) <= Decimal(crossing.error) <= 1e-12 * crossing.at
+        assert abs(Decimal(crossing.value) - Decimal(at)) <= Decimal(crossing.error) <= 1e-12 * crossing.value
 
 
 @pytest.mark.parametrize("multiple", [1.0, 1.5, 2.0, 3.0, 8.0])
@@ -211,9 +213,11 @@ def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(m
     range ends at the Hopf point itself, the modes are counted just beyond."""
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     (first,) = across_the_axis(
-        solve_thresholds(rod, ThresholdsRequest(20.0, 1e-10, certify=True, crossings=32))
+        solve_thresholds(rod, ThresholdsRequest(20.0, 1e-10, certify=True, max_thresholds=32))
     )
-    found = solve_thresholds(rod, ThresholdsRequest(multiple * first[1], 1e-10, certify=True, crossings=32))
+    found = solve_thresholds(
+        rod, ThresholdsRequest(multiple * first[1], 1e-10, certify=True, max_thresholds=32)
+    )
     assert found.status == ThresholdStatus.ok
     assert across_the_axis(found)[0] == (first[0], pytest.approx(first[1], rel=1e-11))
 
@@ -221,12 +225,12 @@ def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(m
 def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
     """Neither a crossing just beyond the end belongs to the search, nor is one just before the end lost."""
     path = Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
-    at = transitions(path, 0.0, 20.0).crossings[-1].at
+    at = find_thresholds(path, 0.0, 20.0).thresholds[-1].value
     for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
-        found = transitions(path, 0.0, end)
+        found = find_thresholds(path, 0.0, end)
         assert found.proved_to_the_end, found.doubt_text
         assert len(across_the_axis(found)) == number
         assert found.searched_interval == (0.0, end)
-    from_there = transitions(path, at * (1 - 1e-7), 20.0)
+    from_there = find_thresholds(path, at * (1 - 1e-7), 20.0)
     assert len(across_the_axis(from_there)) == 1
     assert from_there.proved_to_the_end

@@ -11,7 +11,7 @@ from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram import boundary_curves
-from rodsweep.solve.changes.diagram.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEnd
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
@@ -37,7 +37,7 @@ def rows(plane_axes, rod, count):
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
         seeds += [
-            seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings
+            seed_of((c.value, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
         ]
     return found, seeds
 
@@ -51,11 +51,11 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     row = solve_row(
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
-    hopf = next(c for c in row.thresholds.crossings if c.kind == ChangeKind.hopf)
+    hopf = next(c for c in row.thresholds.thresholds if c.kind == ChangeKind.hopf)
     curve = trace_boundary(
         0.0,
         plane,
-        (plane.axes[0].coordinate(hopf.at), plane.axes[1].coordinate(300.0)),
+        (plane.axes[0].coordinate(hopf.value), plane.axes[1].coordinate(300.0)),
         hopf.frequency,
     )
     (fold,) = [f for f in curve.folds if f.axis == 1]
@@ -87,10 +87,10 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     axes = (PlaneAxis("F", 0.0, 99.0), PlaneAxis("k1", 100.0, 1000.0, logarithmic=True))
     rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
     _, seeds = rows(axes, rod, 12)
-    curves = curves_through(Plane(rod, axes), seeds)
+    curves = boundary_curves_through(Plane(rod, axes), seeds)
     assert curves.untraced_count == 0
     assert curves.largest_seed_distance < 1e-11
-    assert sum(c.hopf for c in curves.curves) == 1
+    assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
     for curve in curves.curves:
         inside = (np.diff(curve.scaled[:, :2], axis=0) ** 2).sum(axis=1)
         assert np.sqrt(inside).max() < 0.05
@@ -101,7 +101,7 @@ def test_a_plane_of_two_material_parameters():
     axes = (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True))
     rod = Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3)
     found, seeds = rows(axes, rod, 6)
-    curves = curves_through(Plane(rod, axes), seeds)
+    curves = boundary_curves_through(Plane(rod, axes), seeds)
     assert seeds
     assert (curves.untraced_count, curves.largest_seed_distance < 1e-11) == (0, True)
     values = np.linspace(20.0, 1e5, 41)
@@ -130,18 +130,18 @@ ENDS = [
 @pytest.mark.parametrize(("axes", "rod", "ends"), ENDS)
 def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     _, seeds = rows(axes, rod, 3)
-    curves = curves_through(Plane(rod, axes), seeds).curves
-    assert {curve.ends for curve in curves} == ends
+    curves = boundary_curves_through(Plane(rod, axes), seeds).curves
+    assert {curve.end_reasons for curve in curves} == ends
     for curve in curves:
         for (x, y, _), (F, other), end in zip(
-            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.ends, strict=True
+            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
         ):
             beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
             assert beside_an_edge if end == BoundaryEnd.edge else pytest.approx(other, rel=1e-7) == F
     few = replace(boundary_curves.BOUNDARY_STEPS, max_solutions=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
-    curve = curves_through(Plane(rod, axes), seeds[:1]).curves[0]
-    assert BoundaryEnd.list_full in curve.ends
+    curve = boundary_curves_through(Plane(rod, axes), seeds[:1]).curves[0]
+    assert BoundaryEnd.list_full in curve.end_reasons
     assert len(curve.values) < 10
 
 
@@ -211,7 +211,7 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
     axes = (PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0))
     rod = Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)
     _, seeds = rows(axes, rod, 3)
-    curves = curves_through(Plane(rod, axes), seeds)
+    curves = boundary_curves_through(Plane(rod, axes), seeds)
     assert {seed.values[1] for seed in seeds} == {0.0, 0.5, 1.0}
     assert (curves.untraced_count, curves.largest_seed_distance < 1e-11) == (0, True)
 
@@ -227,9 +227,9 @@ def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     for value in k1:
         row = solve_row(replace(rod, k1=value), RowRequest("F", np.linspace(0.0, top, 13), 1e-9, True, 50))
         seeds += [
-            seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.crossings
+            seed_of((c.value, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
         ]
-    curves = curves_through(Plane(rod, axes), seeds).curves
+    curves = boundary_curves_through(Plane(rod, axes), seeds).curves
     found = [fold for curve in curves for fold in curve.folds]
     assert len(found) == folds
     assert len({(f.axis, round(f.values[0], 3), round(f.values[1], 3)) for f in found}) == folds

@@ -11,7 +11,7 @@ from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
-from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
@@ -32,15 +32,15 @@ def thresholds(k1, k2, gamma3, F_max=200.0, accuracy=1e-11):
 def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
     found = thresholds(*(float(rod[name]) for name in ("k1", "k2", "gamma3", "F_end")))
     assert found.status == ThresholdStatus.ok, found.message
-    assert found.transitions.proved
-    assert [SAME_KIND.get(c.kind.name, c.kind.name) for c in found.crossings] == [
+    assert found.search_result.proved
+    assert [SAME_KIND.get(c.kind.name, c.kind.name) for c in found.thresholds] == [
         e["kind"] for e in rod["events"]
     ]
-    assert found.transitions.unstable_at_end == rod["unstable_at_end"]
-    for crossing, event in zip(found.crossings, rod["events"], strict=True):
+    assert found.search_result.unstable_at_end == rod["unstable_at_end"]
+    for crossing, event in zip(found.thresholds, rod["events"], strict=True):
         exact = float(event["F"])
-        assert crossing.at == pytest.approx(exact, rel=1e-12)
-        assert abs(crossing.at - exact) <= 10 * crossing.error
+        assert crossing.value == pytest.approx(exact, rel=1e-12)
+        assert abs(crossing.value - exact) <= 10 * crossing.error
         assert crossing.frequency == pytest.approx(float(event["frequency"]), rel=1e-11)
         # At a double root the eigenvalue is where D and its slope vanish, which keeps its digits too.
         assert crossing.growth_rate == pytest.approx(float(event["rate"]), rel=1e-9)
@@ -51,26 +51,26 @@ def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
 def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_proved(multiple):
     """An anchor of the search is then a rod with a pair on the axis: which mode leads is known all the
     same."""
-    at = next(c.at for c in thresholds(1e4, 1e4, 1e-4, 40.0).crossings if c.kind == ChangeKind.hopf)
+    at = next(c.value for c in thresholds(1e4, 1e4, 1e-4, 40.0).thresholds if c.kind == ChangeKind.hopf)
     found = thresholds(1e4, 1e4, 1e-4, multiple * at)
     assert found.status == ThresholdStatus.ok, found.message
-    assert [c.kind for c in found.crossings][:2] == [ChangeKind.onset, ChangeKind.hopf]
-    assert found.crossings[1].at == pytest.approx(at, rel=1e-13)
+    assert [c.kind for c in found.thresholds][:2] == [ChangeKind.onset, ChangeKind.hopf]
+    assert found.thresholds[1].value == pytest.approx(at, rel=1e-13)
 
 
 def test_the_partial_beam_flutters_where_the_compressed_filament_does():
     """k2 = inf, gamma3 = 0: F (1 - F/k1) = Fc (Sec. VIII), so both ends of the window are known."""
     filament = thresholds(inf, inf, 0.0)
-    Fc = next(c.at for c in filament.crossings if c.kind == ChangeKind.hopf)
+    Fc = next(c.value for c in filament.thresholds if c.kind == ChangeKind.hopf)
     assert Fc == pytest.approx(37.6954308403186, rel=1e-13)
     for k1 in (4 * Fc * 1.0001, 163.0, 400.0):
         root = np.sqrt(1 - 4 * Fc / k1)
-        found = [c for c in thresholds(k1, inf, 0.0, 2 * k1).crossings if c.kind in (2, 4)]
+        found = [c for c in thresholds(k1, inf, 0.0, 2 * k1).thresholds if c.kind in (2, 4)]
         assert [c.kind for c in found][:2] == [ChangeKind.hopf, ChangeKind.restabilization] or k1 == 400.0
         # Near the fold F moves like the root of what D can tell.
-        assert found[0].at == pytest.approx(k1 / 2 * (1 - root), rel=1e-13 / root)
-        assert found[-1].at == pytest.approx(k1 / 2 * (1 + root), rel=1e-13 / root)
-    assert not [c for c in thresholds(4 * Fc * 0.9999, inf, 0.0, 2e3).crossings if c.kind in (2, 3, 4)]
+        assert found[0].value == pytest.approx(k1 / 2 * (1 - root), rel=1e-13 / root)
+        assert found[-1].value == pytest.approx(k1 / 2 * (1 + root), rel=1e-13 / root)
+    assert not [c for c in thresholds(4 * Fc * 0.9999, inf, 0.0, 2e3).thresholds if c.kind in (2, 3, 4)]
 
 
 FOLD = 147.921519683199662  # of k2 = 1e4, gamma3 = 1e-4, 30 digits known
@@ -82,9 +82,9 @@ def test_a_window_far_narrower_than_any_sampling_is_found(beyond):
     known = next(rod for rod in REFERENCE if rod["k1"] == "147.93")
     start, stop = (float(e["F"]) for e in known["events"] if e["kind"].startswith("hopf"))
     found = thresholds(FOLD + beyond, 1e4, 1e-4, accuracy=1e-8)
-    window = [c for c in found.crossings if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
+    window = [c for c in found.thresholds if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
     assert [c.unstable_after for c in window] == [2, 0]
-    assert window[1].at - window[0].at == pytest.approx(
+    assert window[1].value - window[0].value == pytest.approx(
         (stop - start) * np.sqrt(beyond / (147.93 - FOLD)), rel=2e-3
     )
     assert found.status == ThresholdStatus.ok
@@ -93,17 +93,17 @@ def test_a_window_far_narrower_than_any_sampling_is_found(beyond):
 def test_before_the_fold_there_is_no_window():
     found = thresholds(FOLD - 1e-9, 1e4, 1e-4)
     assert found.status == ThresholdStatus.ok
-    assert not [c for c in found.crossings if c.unstable_after]
+    assert not [c for c in found.thresholds if c.unstable_after]
 
 
 @pytest.mark.parametrize("beyond", [0.0, 1e-11, 1e-9])
 def test_a_window_that_rounding_cannot_decide_is_reported_open(beyond):
     found = thresholds(FOLD + beyond, 1e4, 1e-4)
     assert found.status == ThresholdStatus.window_open
-    assert found.transitions.open_range[0] < 75.3972626336 < found.transitions.open_range[1]
-    assert found.transitions.open_range[1] - found.transitions.open_range[0] < 1e-3
-    assert not found.transitions.proved
-    assert found.transitions.unstable_at_end == 0
+    assert found.search_result.open_range[0] < 75.3972626336 < found.search_result.open_range[1]
+    assert found.search_result.open_range[1] - found.search_result.open_range[0] < 1e-3
+    assert not found.search_result.proved
+    assert found.search_result.unstable_at_end == 0
 
 
 def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
@@ -113,7 +113,7 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
         k1, k2 = (10 ** rng.uniform(1.3, 6) if rng.random() < 0.85 else inf for _ in range(2))
         gamma3 = 10 ** rng.uniform(-6, 1) if rng.random() < 0.85 else 0.0
         end = min(150.0, 0.999 * k1)
-        found = transitions(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
+        found = find_thresholds(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
         forces = np.sort(rng.uniform(0, end, 20))
         for F, motion, unstable in zip(forces, *classes_and_unstable_counts(found, forces), strict=True):
             spectrum = solve_spectrum(Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), SpectrumRequest(2, 1e-6, True))
@@ -133,15 +133,15 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
     ],
 )
 def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, start, stop):
-    found = transitions(Path(fixed, name), start, stop).crossings
+    found = find_thresholds(Path(fixed, name), start, stop).thresholds
     assert found
     for crossing in found:
-        values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.at}
-        forces = [c.at for c in thresholds(**values, F_max=1.2 * fixed.F).crossings]
+        values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.value}
+        forces = [c.value for c in thresholds(**values, F_max=1.2 * fixed.F).thresholds]
         assert min(abs(F - fixed.F) for F in forces) < 1e-10 * fixed.F
         before, after = (
             count_right_of(0.0, Path(fixed, name).rod_at(Path(fixed, name).coordinate(v))).number
-            for v in (crossing.at * 0.99, crossing.at * 1.01)
+            for v in (crossing.value * 0.99, crossing.value * 1.01)
         )
         assert after == crossing.unstable_after
         if crossing.kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
@@ -159,7 +159,7 @@ def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
     found = thresholds(1e4, 1e4, 1e-4)
     assert found.status == ThresholdStatus.not_certified
     assert "modes are unstable between" in found.message
-    assert not found.transitions.proved
+    assert not found.search_result.proved
 
 
 def test_the_search_ends_below_a_crushed_rod_and_says_where():
@@ -173,35 +173,35 @@ def test_more_changes_than_the_list_holds_are_counted():
         Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(200.0, 1e-10, True, 2)
     )
     assert found.status == ThresholdStatus.list_full
-    assert len(found.crossings) == 3
+    assert len(found.thresholds) == 3
 
 
 def test_what_overflows_fails_with_a_reason():
     found = thresholds(1e300, 1e-300, 1e300)
     assert found.status == ThresholdStatus.failed
     assert found.message
-    assert isnan(found.transitions.open_range[0])
+    assert isnan(found.search_result.open_range[0])
 
 
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
     """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
-    found = transitions(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
-    kinds = [c.kind for c in found.crossings]
+    found = find_thresholds(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
+    kinds = [c.kind for c in found.thresholds]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
     assert kinds[:3] == [ChangeKind.onset, ChangeKind.restabilization, ChangeKind.real_leads]
     assert found.proved
-    onset, _, overtaken = found.crossings[:3]
+    onset, _, overtaken = found.thresholds[:3]
     assert onset.growth_rate > 60
     for change, before, after in ((onset, False, True), (overtaken, True, False)):
-        for F, pair in ((change.at - 1e-3, before), (change.at + 1e-3, after)):
+        for F, pair in ((change.value - 1e-3, before), (change.value + 1e-3, after)):
             w = solve_spectrum(
                 Rod(F=F, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(4, 1e-8, True)
             ).eigenvalues
             assert (w[0].imag != 0) == pair
     # A real eigenvalue and a pair have the same real part where the one overtakes the other.
     w = solve_spectrum(
-        Rod(F=overtaken.at, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(3, 1e-10, True)
+        Rod(F=overtaken.value, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(3, 1e-10, True)
     ).eigenvalues
     assert w.real == pytest.approx(overtaken.growth_rate, rel=1e-9)
     assert w.imag.max() == pytest.approx(overtaken.frequency, rel=1e-9)
@@ -215,15 +215,15 @@ def test_a_narrow_window_of_oscillations_is_found(beyond):
     found = thresholds(k1, inf, 0.0, 60.0, accuracy=1e-8)
     half = k1 / 2 * np.sqrt(1 - 4 * start / k1)
     assert found.status == ThresholdStatus.ok
-    assert [c.kind for c in found.crossings] == [ChangeKind.onset, ChangeKind.real_again]
-    assert found.crossings[1].at - found.crossings[0].at == pytest.approx(2 * half, rel=1e-3)
+    assert [c.kind for c in found.thresholds] == [ChangeKind.onset, ChangeKind.real_again]
+    assert found.thresholds[1].value - found.thresholds[0].value == pytest.approx(2 * half, rel=1e-3)
 
 
 def test_a_pair_about_to_cross_the_axis_leads():
     """The onset and an overtaking lie close together before it, between two spectra that agree in kind."""
     rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
-    found = transitions(Path(rod, "F"), -27.170544378578725, 100.0)
-    kinds = [c.kind for c in found.crossings]
+    found = find_thresholds(Path(rod, "F"), -27.170544378578725, 100.0)
+    kinds = [c.kind for c in found.thresholds]
     assert ChangeKind.onset in kinds
     assert ChangeKind.real_leads in kinds
     motion, _ = classes_and_unstable_counts(found, np.array([-4.95]))
@@ -236,24 +236,30 @@ def test_no_change_outside_the_path_is_reported():
     hopf = 37.6559805452710668
     before = thresholds(1e4, 1e4, 1e-4, F_max=hopf * (1 - 1e-6))
     assert before.status == ThresholdStatus.ok
-    assert [c.kind for c in before.crossings] == [ChangeKind.onset]
-    assert before.transitions.unstable_at_end == 0
-    beyond = transitions(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
-    assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
+    assert [c.kind for c in before.thresholds] == [ChangeKind.onset]
+    assert before.search_result.unstable_at_end == 0
+    beyond = find_thresholds(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
+    assert (beyond.unstable_at_start, beyond.thresholds) == (2, ())
 
 
 @pytest.mark.parametrize("k1", [8e8, 1.6e8, 3.1e9])
 def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
-    hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == ChangeKind.hopf)
-    found = transitions(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
-    assert [c.unstable_after for c in found.crossings if c.kind == ChangeKind.hopf] == [2]
+    hopf = next(
+        c.value for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).thresholds if c.kind == ChangeKind.hopf
+    )
+    found = find_thresholds(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
+    assert [c.unstable_after for c in found.thresholds if c.kind == ChangeKind.hopf] == [2]
 
 
 @pytest.mark.parametrize("F_max", [1e-3, 0.3, 0.7])
 def test_a_search_that_ends_before_anything_happens(F_max):
     found = thresholds(1e4, 1e4, 1e-4, F_max=F_max)
-    assert (found.status, found.crossings, found.transitions.unstable_at_end) == (ThresholdStatus.ok, (), 0)
+    assert (found.status, found.thresholds, found.search_result.unstable_at_end) == (
+        ThresholdStatus.ok,
+        (),
+        0,
+    )
 
 
 @pytest.mark.parametrize("k1", [1e4, 200.0])

@@ -16,7 +16,7 @@ from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.plane import write_balance, write_balance_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.material.build import STANDARD, Build
+from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.response import LocalSection, stress_beyond_rest
@@ -139,7 +139,7 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
 
 
 @pytest.mark.parametrize(
-    "build", [Build(profile=ONES), STANDARD], ids=["profile of ones", "taper of nearly 1"]
+    "build", [Build(profile=ONES), DEFAULT_BUILD], ids=["profile of ones", "taper of nearly 1"]
 )
 def test_an_arm_that_does_not_vary_beats_as_the_uniform_rod(build):
     values = {"F": 50.0, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
@@ -298,7 +298,7 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
         before, behind = (lambda u: np.cos(5 * u), lambda u: 2 + np.sin(4 * u))
         fields = []
         for form in (source, target):
-            u, (node,), (sides,) = form.mesh.positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
+            u, (node,), (sides,) = form.mesh.node_positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
             S = np.array([np.where(u < u[node], before(u), behind(u)), np.cos(3 * u), 0 * u])
             S[2] = S[0]
             for component, share in ((0, 3), (2, 4)):
@@ -330,11 +330,11 @@ def test_the_normal_form_is_the_limit_of_cycles(build):
     """
     rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, build=build)
     found = solve_criticality(rod, CriticalityRequest(60.0, 1e-9, True, 2))
-    hopf, born = found.crossings[0], found.coefficients[0]
+    hopf, born = found.hopf_points[0], found.coefficients[0]
     assert found.status.name == "ok"
     ratios = []
     for distance in (8e-3, 4e-3, 2e-3, 1e-3):
-        cycle = solve_cycle(replace(rod, F=hopf.at * (1 + distance)), request(1e-10, "hopf"))
+        cycle = solve_cycle(replace(rod, F=hopf.value * (1 + distance)), request(1e-10, "hopf"))
         assert cycle.status.name == "cycle"
         ratios.append(cycle.measures.tip_y_max**2 / distance)
     for factor in (2, 4, 8):
@@ -347,7 +347,7 @@ def test_the_normal_form_is_the_limit_of_cycles(build):
 def test_inextensible_cones_of_every_law_are_one(build):
     """With k1 = inf no law acts but through the bending factor at h1 = 1, which is 1."""
     values = {"F": 20.0, "k1": math.inf, "k2": math.inf, "gamma3": 0.0, "taper": 0.6}
-    linear, arm = (solve_cycle(Rod(**values, build=b), request(1e-7)) for b in (STANDARD, build))
+    linear, arm = (solve_cycle(Rod(**values, build=b), request(1e-7)) for b in (DEFAULT_BUILD, build))
     assert arm.status == linear.status
     assert arm.measures.period == pytest.approx(linear.measures.period, rel=2e-7)
     assert arm.measures.tip_y_max == pytest.approx(linear.measures.tip_y_max, rel=2e-7)
@@ -356,7 +356,7 @@ def test_inextensible_cones_of_every_law_are_one(build):
 def test_a_cone_begins_to_beat_where_its_thresholds_say():
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     found = solve_thresholds(rod, ThresholdsRequest(40.0, 1e-10, True, 8))
-    hopf = next(c.at for c in found.crossings if c.kind == ChangeKind.hopf)
+    hopf = next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)
     assert hopf == pytest.approx(15.4627583986, rel=1e-11)  # physics: by collocation
     for distance, status in ((-1e-4, "straight"), (1e-4, "cycle")):
         assert solve_cycle(replace(rod, F=hopf * (1 + distance)), request(1e-6)).status.name == status
@@ -406,7 +406,7 @@ def test_a_motion_that_repeats_on_a_coarse_mesh_alone_is_integrated_on_a_finer_o
     )
     found = solve_cycle(rod, request(1e-5))
     assert found.status.name == "cycle", found.message
-    below = solve_cycle(rod.changed(F=66.0), request(1e-5))
+    below = solve_cycle(rod.with_values(F=66.0), request(1e-5))
     assert below.status.name == "cycle", below.message
     assert below.measures.period > found.measures.period > 0.9 * below.measures.period
     assert abs(found.measures.energy_imbalance) < 1e-3

@@ -35,7 +35,7 @@ def near(request):
     """An orbit near the rod's cycle."""
     rod, gamma1 = request.param
     return orbit_from_hopf(
-        StressForm(rod.changed(gamma1=gamma1), uniform_mesh(1, 16)), hopf_point_below(rod), MEMORY
+        StressForm(rod.with_values(gamma1=gamma1), uniform_mesh(1, 16)), hopf_point_below(rod), MEMORY
     )
 
 

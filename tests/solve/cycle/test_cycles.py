@@ -25,7 +25,7 @@ from rodsweep.solve.cycle.accuracy.minimal_period import (
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.reference_rod import warm_up
 from rodsweep.solve.cycle.transient import schemes, transient
-from rodsweep.solve.motion.integrator import forget_integrators
+from rodsweep.solve.motion.integrator import destroy_integrators
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
@@ -57,7 +57,7 @@ def reference():
 def hopf():
     """F** of the soft rod."""
     found = solve_thresholds(rod_of(0.0, *SOFT), ThresholdsRequest(40.0, 1e-12, False, 4))
-    return next(c.at for c in found.crossings if c.kind.name == "hopf")
+    return next(c.value for c in found.thresholds if c.kind.name == "hopf")
 
 
 # An independent displacement-form code: docs/method.md, reference values.
@@ -241,13 +241,13 @@ def test_a_failed_integration_is_a_status():
     options = {"cycle_snes_max_it": "1", "cycle_ts_max_snes_failures": "1"}
     for name, value in options.items():
         PETSc.Options()[name] = value
-    forget_integrators()
+    destroy_integrators()
     try:
         c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     finally:
         for name in options:
             PETSc.Options().delValue(name)
-        forget_integrators()
+        destroy_integrators()
     assert c.status == CycleStatus.failed
     assert c.message
     assert c.linear_growth_rate > 0
@@ -291,7 +291,7 @@ def test_within_rounding_of_the_hopf_point_no_cycle_is_claimed():
 
 def test_options_that_lose_the_cycle_are_refused_in_one_sentence():
     PETSc.Options()["cycle_ts_type"] = "nosuch"
-    forget_integrators()
+    destroy_integrators()
     try:
         with pytest.raises(
             EnvironmentIncomplete, match="options '-cycle_ts_type nosuch' .* cannot run; remove"
@@ -299,7 +299,7 @@ def test_options_that_lose_the_cycle_are_refused_in_one_sentence():
             warm_up()
     finally:
         PETSc.Options().delValue("cycle_ts_type")
-        forget_integrators()
+        destroy_integrators()
     warm_up()
 
 
@@ -404,7 +404,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
 def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, order):
     half = orbit_on(elements, order)
     stresses = half.form.stresses(half.stage_states[:, -1])
-    analysis = legendre_analysis_matrix(2 * uniform_mesh(1, order).positions - 1)
+    analysis = legendre_analysis_matrix(2 * uniform_mesh(1, order).node_positions - 1)
     parts = [stresses[..., e * order : (e + 1) * order + 1] @ analysis.T for e in range(elements)]
     c = np.abs(np.stack(parts)).max(axis=(0, 2))
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]

@@ -10,7 +10,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.cycle.transient.shape_trace import SHAPE_TRACE_SETTINGS
-from rodsweep.solve.motion.fixed_tip import equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
 from rodsweep.solve.motion.integrator import integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 
@@ -50,7 +50,7 @@ def test_of_two_stable_states_the_place_decides():
 def test_the_motion_is_that_of_another_time_scheme():
     beam = Beam(FLUTTER, motion_mesh(FLUTTER, 1e-5))
     motion = released(FLUTTER, 0.7, 0.5).motion_shapes
-    z = equilibrium_at_tip(beam, 0.7, 0.5)
+    z = bent_state_with_tip_at(beam, 0.7, 0.5)
     for frame in (8, 20, 40):
         run = integrator(beam.mesh, TimeScheme("bdf", "4", 1e-7)).run(beam, z, frame * motion.time_step, 1e-8)
         # 1e-4 is the tolerance of the first run of a motion; errors add up over some 40 steps.

@@ -84,7 +84,7 @@ def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
     steps = 12
     count = 0
     for F in np.linspace(rod.F, end, steps + 1)[1:].tolist():
-        here = rod.changed(F=F)
+        here = rod.with_values(F=F)
         found = straight_rod_stability(here, near)
         w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
         assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
@@ -107,7 +107,7 @@ def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():
     assert (c.status, c.linear_growth_rate > 0) == (CycleStatus.cycle, True)
     rod = Rod(F=BESIDE.F, k1=BESIDE.k1, k2=BESIDE.k2, gamma3=BESIDE.gamma3)
     form = accurate_normal_form(
-        rod.changed(gamma1=BESIDE.gamma1), complex(c.linear_growth_rate, c.linear_frequency), 1e-3
+        rod.with_values(gamma1=BESIDE.gamma1), complex(c.linear_growth_rate, c.linear_frequency), 1e-3
     )
     assert c.measures.tip_y_max == pytest.approx(form.squared_y_and_frequency(BESIDE.F)[0] ** 0.5, rel=1e-2)
 

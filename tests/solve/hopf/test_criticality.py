@@ -19,7 +19,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.changes.along_path import pair_crossings, transitions
+from rodsweep.solve.changes.along_path import find_axis_crossings, find_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
@@ -49,8 +49,8 @@ def hopf_points(rod, **asked):
     """The rod at each of its Hopf points, the crossing there, and the coefficients."""
     found = solved(rod, **asked)
     assert found.status == CriticalityStatus.ok
-    for hopf, known in zip(found.crossings, found.coefficients, strict=True):
-        yield Rod(F=hopf.at, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), hopf, known
+    for hopf, known in zip(found.hopf_points, found.coefficients, strict=True):
+        yield Rod(F=hopf.value, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), hopf, known
 
 
 # --- the coefficients -------------------------------------------------------------------------------------
@@ -79,8 +79,10 @@ def test_coefficients_are_those_of_another_code(rod, signs):
 def cycle_near(at, hopf, known, gamma1, part):
     """(largest tip y squared, frequency less that of the Hopf point), both over F - F_H, of a cycle."""
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
-    normal = accurate_normal_form(at.changed(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
-    form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.node_count))
+    normal = accurate_normal_form(at.with_values(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
+    form = StressForm(
+        (replace(at, F=F)).with_values(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.node_count)
+    )
     measures = refined_cycle(orbit_by_normal_form(normal, form), 1e-11, NewtonWorkspace()).measures
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 
@@ -149,10 +151,12 @@ def test_errors_are_below_their_estimates(accuracy):
         for at, hopf, known in hopf_points(rod, accuracy=accuracy, F_max=100.0):
             finer = max(known.order + 8, known.order * 4 // 3) | 1
             exact = normal_form(
-                mixed_form(at.changed(gamma1=rod.gamma1), known.elements, finer), 1j * hopf.frequency
+                mixed_form(at.with_values(gamma1=rod.gamma1), known.elements, finer), 1j * hopf.frequency
             )
-            assert abs(known.landau / exact.c - 1) <= known.landau_error <= accuracy
-            assert abs(known.growth_slope / exact.slope - 1) <= known.growth_slope_error <= accuracy
+            assert abs(known.landau / exact.landau - 1) <= known.landau_error <= accuracy
+            assert (
+                abs(known.growth_slope / exact.eigenvalue_slope - 1) <= known.growth_slope_error <= accuracy
+            )
             assert (
                 abs(known.amplitude_coefficient / exact.amplitude_coefficient - 1)
                 <= known.amplitude_coefficient_error
@@ -168,12 +172,12 @@ def test_errors_are_below_their_estimates_where_rounding_is_largest(k1, k2):
     """Of rods soft in stretch and shear, up to where they are nearly crushed."""
     rod = Rod(F=0.0, k1=k1, k2=k2, gamma3=0.0, gamma1=0.7)
     found = solved(rod, accuracy=1e-12, F_max=300.0, most=40)
-    for hopf, known in zip(found.crossings, found.coefficients, strict=True):
-        at = Rod(F=hopf.at, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-        finer = mixed_form(at.changed(gamma1=rod.gamma1), known.elements, known.order + 8)
-        off = abs(normal_form(finer, 1j * hopf.frequency).c / known.landau - 1)
+    for hopf, known in zip(found.hopf_points, found.coefficients, strict=True):
+        at = Rod(F=hopf.value, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
+        finer = mixed_form(at.with_values(gamma1=rod.gamma1), known.elements, known.order + 8)
+        off = abs(normal_form(finer, 1j * hopf.frequency).landau / known.landau - 1)
         assert off <= known.landau_error <= 5e-11
-    assert hopf.at > 0.8 * k1
+    assert hopf.value > 0.8 * k1
 
 
 def test_errors_tell_how_near_two_hopf_points_are_to_meeting():
@@ -197,9 +201,9 @@ def test_error_of_the_force_is_in_that_of_the_coefficient(k1):
     for at, hopf, known in hopf_points(rod):
         step = 1e-6 * at.F
         beside = mixed_form(
-            (replace(at, F=at.F + step)).changed(gamma1=rod.gamma1), known.elements, known.order
+            (replace(at, F=at.F + step)).with_values(gamma1=rod.gamma1), known.elements, known.order
         )
-        moved = normal_form(beside, 1j * hopf.frequency + known.growth_slope * step).c
+        moved = normal_form(beside, 1j * hopf.frequency + known.growth_slope * step).landau
         by_force = abs(moved / known.landau - 1) * hopf.error / step
         assert known.landau_error >= by_force
         if k1 < 147.925:
@@ -215,10 +219,10 @@ def test_hopf_points_are_those_of_all_transitions():
     ):
         end = min(200.0, rod.k1 * (1 - 1e-6))
         path = Path(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
-        every, pairs = transitions(path, 0.0, end), pair_crossings(path, 0.0, end)
-        crossings = [c for c in every.crossings if not c.kind.changes_leader]
-        assert [(c.at, c.kind, c.unstable_after) for c in pairs.crossings] == [
-            (c.at, c.kind, c.unstable_after) for c in crossings
+        every, pairs = find_thresholds(path, 0.0, end), find_axis_crossings(path, 0.0, end)
+        crossings = [c for c in every.thresholds if not c.kind.changes_leader]
+        assert [(c.value, c.kind, c.unstable_after) for c in pairs.thresholds] == [
+            (c.value, c.kind, c.unstable_after) for c in crossings
         ]
         assert pairs.proved
         assert pairs.unstable_at_end == every.unstable_at_end
@@ -234,8 +238,8 @@ def test_sign_within_its_error_is_undecided():
     assert (rough.status, fine.status) == (CriticalityStatus.sign_undecided, CriticalityStatus.ok)
     assert [known.criticality for known in rough.coefficients] == [-1, 0]
     assert [known.criticality for known in fine.coefficients] == [-1, 1]
-    hopf, known = fine.crossings[1], fine.coefficients[1]
-    c, _ = coefficients((hopf.at, rod.k1, rod.k2, rod.gamma3, rod.gamma1), 1j * hopf.frequency, 34)
+    hopf, known = fine.hopf_points[1], fine.coefficients[1]
+    c, _ = coefficients((hopf.value, rod.k1, rod.k2, rod.gamma3, rod.gamma1), 1j * hopf.frequency, 34)
     assert known.landau.real == pytest.approx(c.real, rel=1e-3)
     assert known.landau.real < 3e-6 * abs(c)
     assert known.amplitude_coefficient_error > 1e5 * known.landau_error
@@ -280,7 +284,7 @@ def test_list_that_is_full_says_so():
     found = solved(STRETCHABLE, most=1)
     assert found.status == CriticalityStatus.list_full
     assert len(found.coefficients) == 1
-    assert len(found.crossings) == 2
+    assert len(found.hopf_points) == 2
 
 
 # --- as a user sees it ------------------------------------------------------------------------------------

@@ -84,7 +84,7 @@ def test_the_side_changes_once_and_at_the_point(found):
     assert told.unlocated_count == 0
     assert set(told.criticality) == {-1.0, 1.0}
     (after,) = np.flatnonzero(np.diff(told.criticality))
-    assert point.after == after
+    assert point.preceding_index == after
     at = np.array([axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True)])
     a, b = curve.scaled[after : after + 2, :2]
     assert np.linalg.norm(at - a) + np.linalg.norm(b - at) < 1.001 * np.linalg.norm(b - a)
@@ -120,7 +120,7 @@ def test_axial_drag_moves_it_along_the_hopf_curve(found):
     plane, curve, told = found
     (point,), (other,) = (
         told.points,
-        curve_criticality(replace(plane, rod=plane.rod.changed(gamma1=0.5)), curve, 1e-10).points,
+        curve_criticality(replace(plane, rod=plane.rod.with_values(gamma1=0.5)), curve, 1e-10).points,
     )
     assert abs(other.values[0] - point.values[0]) > 1e-3
     c = coefficients((*other.values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
@@ -164,11 +164,11 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     plane, curve, told = found
     (point,) = told.points
     x, y = (axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True))
-    there = np.insert(curve.scaled, point.after + 1, [x, y, np.log(point.frequency)], axis=0)
+    there = np.insert(curve.scaled, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
     again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
-    assert again.criticality[point.after + 1] == 0
+    assert again.criticality[point.preceding_index + 1] == 0
     assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
-    assert again.points[0].after in (point.after, point.after + 1)
+    assert again.points[0].preceding_index in (point.preceding_index, point.preceding_index + 1)
 
 
 @pytest.mark.long
@@ -320,7 +320,10 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
     curve = bautin_curve(space, start.point)
-    assert curve.ends == (BautinEnd.plane_edge, BautinEnd.plane_edge) or curve.ends[1] == BautinEnd.range_end
+    assert (
+        curve.end_reasons == (BautinEnd.plane_edge, BautinEnd.plane_edge)
+        or curve.end_reasons[1] == BautinEnd.range_end
+    )
     x, _, z = np.array([point.values for point in curve.points]).T
     assert (np.diff(x) > 0).all()
     assert x[-1] > 0.9
@@ -347,7 +350,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
-    assert curve.ends == (BautinEnd.closed, BautinEnd.closed)
+    assert curve.end_reasons == (BautinEnd.closed, BautinEnd.closed)
     x, _, z = np.array([point.values for point in curve.points]).T - 0.5
     turned = np.unwrap(np.arctan2(z, x))
     assert abs(turned[-1] - turned[0]) == pytest.approx(2 * np.pi)

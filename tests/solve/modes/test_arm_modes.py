@@ -21,8 +21,8 @@ from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 INF = float("inf")
-TIGHT = ModesRequest(modes=4, accuracy=1e-10, nodes=65, growth=True)
-NEAR = ModesRequest(modes=4, accuracy=1e-9, nodes=65, growth=True)
+TIGHT = ModesRequest(modes=4, accuracy=1e-10, node_count=65, computes_growth=True)
+NEAR = ModesRequest(modes=4, accuracy=1e-9, node_count=65, computes_growth=True)
 """Rounding leaves 2e-10 of the bending strain of the steepest of `ARMS`."""
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
 STEPS = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.3, 0.5, 0.2, 1.0, 1.5, 0.4), (1.0,) * 6))
@@ -53,10 +53,10 @@ def numbers(result):
     vectors, growth = result.vectors, result.growth
     return {
         "eigenvalues": result.spectrum.eigenvalues,
-        "right": vectors.right,
+        "right": vectors.right_modes,
         "h2": vectors.deformation[0],
         "Pi": vectors.deformation[1],
-        "left": vectors.left,
+        "left": vectors.left_modes,
         "pairing": vectors.pairing,
         "condition": vectors.condition,
         "abscissa": np.array(growth.numerical_abscissa),
@@ -96,11 +96,11 @@ def test_modes_and_growth_agree_with_another_discretisation(rod):
     assert result.vectors.condition == pytest.approx(condition, rel=1e-7)
     L, growth = in_energy_norm(rod), result.growth
     assert growth.numerical_abscissa == pytest.approx(np.linalg.eigvalsh(L + L.T)[-1] / 2, rel=1e-6)
-    if not rod.uniform:
+    if not rod.is_uniform:
         pencil = pencil_on(mesh_for(rod, 12.0, 1e-20))
         vectors = mode_vectors(rod, pencil, result.spectrum.eigenvalues, nodes(rod))
-        assert relative(vectors.right, right) < 1e-7
-        assert relative(vectors.left, left) < 1e-7
+        assert relative(vectors.right_modes, right) < 1e-7
+        assert relative(vectors.left_modes, left) < 1e-7
     if np.isfinite(growth.transient_growth):
         assert growth.transient_growth > 1.001
         norms = {x: np.linalg.norm(expm(L * x * growth.transient_time), 2) for x in (0.9, 1.0, 1.1)}
@@ -114,7 +114,7 @@ def test_modes_and_growth_agree_with_another_discretisation(rod):
 def test_conditions_and_abscissae_of_random_arms(seed):
     """Stiffnesses up to 1e5 times 10 at the ends of short elements cost the reference up to ten digits."""
     rod = random_arm(np.random.default_rng(seed))
-    result = solve_modes(rod, ModesRequest(3, 1e-8, 9, growth=True))
+    result = solve_modes(rod, ModesRequest(3, 1e-8, 9, computes_growth=True))
     assert result.status == SpectrumStatus.ok
     *_, condition = reference_modes(rod, result.spectrum.eigenvalues)
     assert result.vectors.condition == pytest.approx(condition, rel=1e-5)
@@ -124,7 +124,9 @@ def test_conditions_and_abscissae_of_random_arms(seed):
 
 @pytest.mark.parametrize("rod", ARMS, ids=str)
 def test_strains_and_errors_are_those_of_a_finer_mesh(rod):
-    coarse, fine = (solve_modes(rod, ModesRequest(4, accuracy, 65, growth=True)) for accuracy in (1e-4, 1e-9))
+    coarse, fine = (
+        solve_modes(rod, ModesRequest(4, accuracy, 65, computes_growth=True)) for accuracy in (1e-4, 1e-9)
+    )
     assert coarse.status == fine.status == SpectrumStatus.ok
     for name in ("right", "h2", "Pi", "left"):
         errors = abs(numbers(coarse)[name] - numbers(fine)[name]).max(axis=-1)
@@ -186,7 +188,7 @@ def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
     """T' = c3 - (g nu/c2) T^2, T(0) = 0, from break to break; of T = tan(phi) where T has poles."""
 
     def slope(u, T):
-        at = rod.local(np.clip(u, start + 1e-12, end - 1e-12))
+        at = rod.local_coefficients(np.clip(u, start + 1e-12, end - 1e-12))
         foundation = at.g * at.nu / at.c2
         if poles:
             return at.c3 * np.cos(T) ** 2 - foundation * np.sin(T) ** 2

@@ -8,7 +8,7 @@ from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import shape_from_strains, uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
 from rodsweep.model.balance import ad
-from rodsweep.model.longitudinal import longitudinal_rates
+from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.motion.context import MAX_STAGE_POINTS
@@ -17,7 +17,7 @@ from rodsweep.solve.motion.integrator import (
     Integrator,
     RunEnding,
     RunLimit,
-    forget_integrators,
+    destroy_integrators,
     integrator,
 )
 from rodsweep.solve.motion.leading_mode import leading_mode
@@ -37,7 +37,7 @@ def evolve(beam, z, duration, scheme=None):
 
 def bent(beam, size=1.0):
     """A state far from rest, smooth in u."""
-    u = beam.mesh.positions
+    u = beam.mesh.node_positions
     E = beam.strains(np.zeros(beam.layout.unknowns))
     wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
     return beam.state_of_strains(E + size * (1 - u) * wave)
@@ -55,7 +55,7 @@ def injected_and_dissipated(beam, z):
     stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)
-    dissipated = material.dissipation(V) @ matrices.weights
+    dissipated = material.dissipated_power_per_length(V) @ matrices.weights
     straining = ad(material.strain(stress), V)[0, -1]  # ad_E V of the tip
     reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
     return beam.rod.F * reaction, dissipated
@@ -63,7 +63,7 @@ def injected_and_dissipated(beam, z):
 
 @MESHES
 def test_jacobian_is_the_derivative_of_the_rate(elements, order):
-    beam = Beam(ROD.changed(gamma1=0.7), uniform_mesh(elements, order))
+    beam = Beam(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
     z = rough(beam)
     J = beam.jacobian(z)
     for k, d in enumerate(1e-3 * np.eye(len(z))):  # the rate is cubic: this difference is exact
@@ -77,7 +77,7 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
 @pytest.mark.kernel
 @MESHES
 def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
-    beam = Beam(ROD.changed(gamma1=0.7), uniform_mesh(elements, order))
+    beam = Beam(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
     z = rough(beam)
     rate, n = beam.state_derivative(z), beam.mesh.node_count
     stress = z.copy()
@@ -113,7 +113,7 @@ def test_uniformly_bent_rod_is_an_arc(elements, order):
     E = np.zeros((3, grid.element_nodes.size))
     E[0], E[2] = 0.9, 2.0
     x, y, theta = shape_from_strains(grid, E, np.zeros(3))
-    angle = 2.0 * grid.positions
+    angle = 2.0 * grid.node_positions
     assert np.abs(theta - angle).max() < 1e-14
     assert np.abs(x - 0.45 * np.sin(angle)).max() < 1e-14
     assert np.abs(y - 0.45 * (1 - np.cos(angle))).max() < 1e-14
@@ -132,10 +132,10 @@ def test_velocity_of_the_tip_is_that_of_its_reconstruction():
     "rod", [ROD, Rod(F=27.43, k1=1e4, k2=1e2, gamma3=1e-2), Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4)]
 )
 def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
-    beam = Beam(rod.changed(gamma1=0.8), uniform_mesh(1, 20))
+    beam = Beam(rod.with_values(gamma1=0.8), uniform_mesh(1, 20))
     values = np.linalg.eigvals(beam.jacobian(np.zeros(60)))
     transverse = solve_spectrum(rod, SpectrumRequest(4, 1e-12, True)).eigenvalues
-    for w in np.concatenate([transverse, longitudinal_rates(rod.k1, 0.8, 3)]):
+    for w in np.concatenate([transverse, longitudinal_eigenvalues(rod.k1, 0.8, 3)]):
         assert np.abs(values - w).min() <= 1e-9 * abs(w)
     assert leading_mode(beam).w == pytest.approx(transverse[0], rel=1e-9)
 
@@ -285,12 +285,12 @@ def petsc_options():
     def give(name, value):
         given.append(name)
         PETSc.Options()[name] = value
-        forget_integrators()
+        destroy_integrators()
 
     yield give
     for name in given:
         PETSc.Options().delValue(name)
-    forget_integrators()
+    destroy_integrators()
 
 
 def test_users_options_override_the_method(petsc_options):
@@ -313,7 +313,7 @@ def test_newtons_method_may_be_petscs(petsc_options):
 
 def test_defaults_of_the_method_are_not_recorded_as_the_users_options():
     before = PETSc.Options().getAll()
-    forget_integrators()
+    destroy_integrators()
     integrator(uniform_mesh(1, 8), TimeScheme())
     assert PETSc.Options().getAll() == before
 

@@ -7,7 +7,7 @@ from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, equilibrium_at_tip
+from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, bent_state_with_tip_at
 
 RODS = {
     "flutter": Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2),
@@ -28,13 +28,13 @@ def beam_of(rod: Rod) -> Beam:
 @pytest.mark.parametrize("place", PLACES)
 def test_the_tip_is_at_its_place(rod, place):
     beam = beam_of(rod)
-    assert beam.tip_coordinates(equilibrium_at_tip(beam, *place))[:2] == pytest.approx(place, abs=1e-8)
+    assert beam.tip_coordinates(bent_state_with_tip_at(beam, *place))[:2] == pytest.approx(place, abs=1e-8)
 
 
 @EACH_ROD
 def test_stretch_and_shear_are_those_of_the_straight_rod(rod):
     beam = beam_of(rod)
-    held = beam.strains(equilibrium_at_tip(beam, 0.4, 0.3))
+    held = beam.strains(bent_state_with_tip_at(beam, 0.4, 0.3))
     assert held[:2] == pytest.approx(beam.strains(np.zeros(beam.unknowns))[:2], abs=1e-12)
 
 
@@ -43,7 +43,7 @@ def test_stretch_and_shear_are_those_of_the_straight_rod(rod):
 def test_the_curvature_is_the_moment_of_a_force_at_the_tip(rod, place):
     """Pi = f x (r(1) - r), two numbers for the whole curve, to the accuracy of the mesh."""
     beam = beam_of(rod)
-    z = equilibrium_at_tip(beam, *place)
+    z = bent_state_with_tip_at(beam, *place)
     x, y, _ = beam.shape(z)
     Pi = beam.strains(z)[2]
     arms = np.stack([x[-1] - x, y[-1] - y], axis=1)
@@ -53,7 +53,7 @@ def test_the_curvature_is_the_moment_of_a_force_at_the_tip(rod, place):
 
 def test_a_mirrored_place_gives_the_mirrored_shape():
     beam = beam_of(RODS["flutter"])
-    above, below = (beam.shape(equilibrium_at_tip(beam, 0.5, y)) for y in (0.3, -0.3))
+    above, below = (beam.shape(bent_state_with_tip_at(beam, 0.5, y)) for y in (0.3, -0.3))
     assert below == pytest.approx(above * np.array([[1], [-1], [-1]]), abs=1e-9)
 
 
@@ -61,7 +61,7 @@ def test_a_mirrored_place_gives_the_mirrored_shape():
 def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     beam = beam_of(rod)
     length = beam.tip_coordinates(np.zeros(beam.unknowns))[0]
-    x, y = beam.tip_coordinates(equilibrium_at_tip(beam, 3.0, 4.0))[:2]
+    x, y = beam.tip_coordinates(bent_state_with_tip_at(beam, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
         (
             0.6 * FIXED_TIP_SETTINGS.max_tip_distance * length,

@@ -36,7 +36,7 @@ RODS = {
 
 def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
-    form = StressForm(rod.changed(gamma1=0.7), uniform_mesh(1, 8))
+    form = StressForm(rod.with_values(gamma1=0.7), uniform_mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
     return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
@@ -158,7 +158,7 @@ def whole_matrix(matrix):
 
 @pytest.mark.parametrize("period, growth", [(0.03, 1e5), (0.05, 1e12)])
 def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth):
-    form = StressForm(RODS["soft"].changed(F=150.0, gamma1=0.7), uniform_mesh(1, 8))
+    form = StressForm(RODS["soft"].with_values(F=150.0, gamma1=0.7), uniform_mesh(1, 8))
     states = 0.3 * np.random.default_rng(3).normal(size=(61, form.unknowns))
     states -= 150 * form.layout.state_with_stresses(
         {"n1": np.ones(8)}

@@ -111,7 +111,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
     for _ in range(4):
         rod = random_arm(rng)
         values = np.linspace(0.4, 1.0, 24) * rod.F
-        path = Path(rod.changed(F=float(values[0])), "F")
+        path = Path(rod.with_values(F=float(values[0])), "F")
         reached = follow_stretch_of_arms(path, values, REQUEST)
         if reached is None:
             continue

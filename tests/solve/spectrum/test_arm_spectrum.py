@@ -102,8 +102,8 @@ def test_uniform_rubber_is_solved_by_its_linear_equivalent(section):
 
 def test_vectors_are_those_of_a_finer_mesh():
     rod = Rod(F=14.0, k1=1e4, k2=200.0, gamma3=1e-3, taper=0.4)
-    rough = solve_spectrum(rod, SpectrumRequest(3, 1e-6, certify=True, vector_nodes=17)).vectors
-    fine = solve_spectrum(rod, SpectrumRequest(3, 1e-11, certify=True, vector_nodes=17)).vectors
+    rough = solve_spectrum(rod, SpectrumRequest(3, 1e-6, certify=True, vector_node_count=17)).vectors
+    fine = solve_spectrum(rod, SpectrumRequest(3, 1e-11, certify=True, vector_node_count=17)).vectors
     assert np.abs(rough - fine).max() < 1e-5 * np.abs(fine).max()
     np.testing.assert_allclose(fine[0, :, -1], 1, atol=1e-12)
 
@@ -146,13 +146,13 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     soft = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
     step = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
     rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=step))
-    wanted, whole = [], search.candidates_on
+    wanted, whole = [], search.candidates_on_mesh
 
     def attempt(rod_problem, mesh, number, vectors, tight):
         wanted.append(number)
         return whole(rod_problem, mesh, number, vectors, tight)
 
-    monkeypatch.setattr(search, "candidates_on", attempt)
+    monkeypatch.setattr(search, "candidates_on_mesh", attempt)
     monkeypatch.setattr(search, "SEARCH_SETTINGS", replace(search.SEARCH_SETTINGS, max_unproved_modes=2))
     if not countable:
         monkeypatch.setattr(problem, "hull_of", lambda rod: UNBOUNDED_HULL)

@@ -427,7 +427,7 @@ def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
 def test_krylov_schur_on_two_meshes_gives_the_vectors_that_the_search_gives():
     rod, request = (
         Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4),
-        SpectrumRequest(3, 1e-6, certify=False, vector_nodes=9),
+        SpectrumRequest(3, 1e-6, certify=False, vector_node_count=9),
     )
     found, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, request)
     assert found.vectors.shape == (2, 3, 9)

@@ -67,7 +67,7 @@ class LineNode(NamedTuple):
     exponent_and_slope: tuple[complex, complex]
 
 
-def sampled_points(first: int, last: int) -> list[int]:
+def sampled_point_indices(first: int, last: int) -> list[int]:
     """Indices of the `NO_CROSSING_SETTINGS.arm_count` points, of the points `first` to `last`, at which D is
     evaluated: the middle, the ends, and further points."""
     steps = NO_CROSSING_SETTINGS.arm_count - 1
@@ -81,9 +81,9 @@ def proves_no_crossing(
 ) -> bool:
     """Whether no unknown eigenvalue lies on the line Re w = `line` for any arm of an interval.
 
-    rods: arms of the interval in the order of `sampled_points`; p: their path variables, (n,). known: their
-    known eigenvalues, followed from arm to arm, and the errors, (n, m) each. family, hulls: as of the whole
-    path.
+    rods: arms of the interval in the order of `sampled_point_indices`; p: their path variables, (n,). known:
+    their known eigenvalues, followed from arm to arm, and the errors, (n, m) each. family, hulls: as of the
+    whole path.
     """
     w, error = known
     top = _height_of_hulls(line, p, hulls)

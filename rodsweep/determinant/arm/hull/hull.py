@@ -40,7 +40,7 @@ from .weights import clamp_integrals, constant_weights, least_squared_norm, vary
 
 def hull_of(rod: Rod) -> EigenvalueHull:
     """The smallest hull found for the spectrum of an arm; `UNBOUNDED_HULL` if no bound is found."""
-    return _hull_of_sampled_arms(_sample_arms([rod]))
+    return _hull_of_sampled_arms(_hull_samples([rod]))
 
 
 def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
@@ -48,12 +48,12 @@ def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
 
     Extremes along the path are evaluated at these values only; `HULL_SETTINGS.enlargement` allows for the
     arms between."""
-    arms = _sample_arms(rods)
-    hulls = [_hull_of_sampled_arms(_select_arms(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+    arms = _hull_samples(rods)
+    hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 
-def _hull_of_sampled_arms(arms: "SampledArms") -> EigenvalueHull:
+def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
     largest = 1 - HULL_SETTINGS.min_remainder
     a, c = _smallest_region(
         arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), largest
@@ -61,7 +61,7 @@ def _hull_of_sampled_arms(arms: "SampledArms") -> EigenvalueHull:
     return EigenvalueHull((1 + HULL_SETTINGS.enlargement) * a, c) if isfinite(a) else UNBOUNDED_HULL
 
 
-class SampledArms(NamedTuple):
+class HullSamples(NamedTuple):
     """Coefficients of n arms of one build at Chebyshev points, from which hulls are computed.
 
     F: forces, (n,). lengths: of the intervals between breaks, (pieces,). local: coefficients,
@@ -75,15 +75,15 @@ class SampledArms(NamedTuple):
     averaged_regions: Array
 
 
-def _sample_arms(rods: Sequence[Rod]) -> SampledArms:
+def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     build = rods[0].build
     lengths, u = _chebyshev_points_of_build(build)
     F = np.array([rod.F for rod in rods])
-    local = np.array(Rod.local_of_all(rods, u))
+    local = np.array(Rod.local_coefficients_of_rods(rods, u))
     averaged = (
-        np.empty((len(rods), 0, 2)) if build.continuous else _averaged_regions_by_arm(F, lengths, local)
+        np.empty((len(rods), 0, 2)) if build.is_continuous else _averaged_regions_by_arm(F, lengths, local)
     )
-    return SampledArms(F, lengths, local, averaged)
+    return HullSamples(F, lengths, local, averaged)
 
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_builds)
@@ -98,7 +98,7 @@ def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
 
 def _averaged_regions_by_arm(F: Array, lengths: Array, local: Array) -> Array:
     """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
-    g > 0 everywhere. F, lengths, local: as in `SampledArms`.
+    g > 0 everywhere. F, lengths, local: as in `HullSamples`.
     """
     starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
@@ -110,7 +110,7 @@ def _averaged_regions_by_arm(F: Array, lengths: Array, local: Array) -> Array:
     return regions
 
 
-def _select_arms(arms: SampledArms, chosen: slice) -> SampledArms:
+def _slice_of_samples(arms: HullSamples, chosen: slice) -> HullSamples:
     """The samples of the arms with the indices `chosen`."""
     local = np.ascontiguousarray(arms.local[:, chosen])
     return arms._replace(F=arms.F[chosen], local=local, averaged_regions=arms.averaged_regions[chosen])
@@ -131,12 +131,14 @@ class ChebyshevMatrices(NamedTuple):
 
 @cache
 def _chebyshev_matrices() -> ChebyshevMatrices:
-    x = -np.cos(np.pi * np.arange(HULL_SETTINGS.points) / (HULL_SETTINGS.points - 1))
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 1))
+    x = -np.cos(
+        np.pi * np.arange(HULL_SETTINGS.points_per_interval) / (HULL_SETTINGS.points_per_interval - 1)
+    )
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points_per_interval - 1))
     slopes = np.polynomial.chebyshev.chebder(to_series)
     integrals = np.polynomial.chebyshev.chebint(to_series, lbnd=-1)
-    derivative = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points - 2) @ slopes
-    integral = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points) @ integrals
+    derivative = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points_per_interval - 2) @ slopes
+    integral = np.polynomial.chebyshev.chebvander(x, HULL_SETTINGS.points_per_interval) @ integrals
     return ChebyshevMatrices(x, np.ascontiguousarray(derivative), np.ascontiguousarray(integral))
 
 
@@ -147,7 +149,8 @@ def _smallest_region(
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
     if no bound is found.
 
-    F, lengths, local, averaged_regions: as in `SampledArms`. largest: bound of c.
+    F, lengths, local: as in `HullSamples`. averaged: `averaged_regions` of `HullSamples`. largest: bound of
+    c.
     """
     nu, c2, c3, gamma2, gamma3, g = local
     push = 0.0

@@ -14,7 +14,7 @@ from ...certificate.box import BOX_SETTINGS
 class HullSettings(CompiledSettings):
     """Settings for the points and the weights alpha from which a hull is computed."""
 
-    points: int = 25
+    points_per_interval: int = 25
     """Number of Chebyshev points of each interval between breaks of the profile, where coefficients are
     evaluated and alpha is differentiated."""
     enlargement: float = 0.05

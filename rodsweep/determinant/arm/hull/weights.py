@@ -86,7 +86,7 @@ def clamp_integrals(alphas: Array, F: Array, lengths: Array, local: Array, integ
     (alphas,).
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
-    (`rodsweep.determinant.arm.hull.hull`). F, lengths, local: as in `SampledArms`. integral: matrix of
+    (`rodsweep.determinant.arm.hull.hull`). F, lengths, local: as in `HullSamples`. integral: matrix of
     `ChebyshevMatrices`.
     """
     found = np.zeros(len(alphas))

@@ -18,9 +18,9 @@ from matplotlib.patches import Patch
 
 from ....arrays import Array
 from ....config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
-from ....model.arm.drag import DRAGS
+from ....model.arm.drag import DRAG_NAMES
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import ARM_UNITS
+from ....model.arm.quantities import ARM_SCALES
 from ....results.file.view import View
 from ...summary.arm.arm import quantity_words
 from .. import style
@@ -153,7 +153,7 @@ def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) ->
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale_axis(axes, "x", x)
     if name == DRAG_AXIS:
-        axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
+        axes.set_xticks(x, [DRAG_NAMES[int(drag)].replace("_", "\n") for drag in x], rotation=90)
     several = sum(isinstance(each, Line2D) for each in handles) > 1
     style.label_outer(axes, label, panel.lines_label if several else panel.label)
     return handles
@@ -172,7 +172,7 @@ def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, c
     axes.fill_between(
         _axis_values_and_label(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1
     )
-    line = DRAGS[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
+    line = DRAG_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line})")]
 
 
@@ -207,7 +207,7 @@ def _constant_quantities_text(view: View, drawn: list[str]) -> str:
     """Constant quantities of the arm with their values, as text. drawn: names of the quantities on axes."""
     texts = []
     for name, values in view.quantities.items():
-        if name in drawn or name in ARM_UNITS:
+        if name in drawn or name in ARM_SCALES:
             continue
         if (
             np.size(values) > 1 and name not in view.arm_axes

@@ -9,8 +9,8 @@ from ....arrays import Array
 from ....config.arm.axes import PARAMETER_STORED_ALONG
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
-from ....model.arm.drag import DRAGS
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE_LOADS
+from ....model.arm.drag import DRAG_NAMES
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
 from ....model.units import value_in_unit
 from ....results.file.view import View
 from ...summary.arm.arm import quantity_words
@@ -33,10 +33,10 @@ def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[A
 
 def quantity_text(view: View, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
-    SI units; for a drag, index in DRAGS.
+    SI units; for a drag, index in DRAG_NAMES.
     """
     if name == "drag":
-        return f"{name}{NO_BREAK}{DRAGS[int(value)].replace('_', NO_BREAK)}"
+        return f"{name}{NO_BREAK}{DRAG_NAMES[int(value)].replace('_', NO_BREAK)}"
     shown, unit = in_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
     return f"{quantity_words(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
@@ -44,7 +44,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 def given_quantities(view: View) -> list[str]:
     """Names of the quantities that the user gave for the arm of a file."""
-    return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE_LOADS)]
+    return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_OF_RATIO)]
 
 
 def quantity_at_point(view: View, name: str, number: int) -> float:
@@ -66,7 +66,7 @@ def replaced_parameters(view: View, number: int) -> dict[str, float]:
     """
     given: dict[str, Any] = {name: quantity_at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
-        given["drag"] = DRAGS[int(given["drag"])]
+        given["drag"] = DRAG_NAMES[int(given["drag"])]
     arm = view.config.get("parameters", {}).get("arm") or {}
     own = SlenderArm(**given, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None})
     at = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}

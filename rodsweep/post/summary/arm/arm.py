@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ....model.arm.drag import DRAGS
-from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE_LOADS, SCALE_NAME, UNITS
+from ....model.arm.drag import DRAG_NAMES
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
@@ -87,7 +87,7 @@ def _largest_absolute(values: np.ndarray) -> float:
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
     """Quantities of an arm that differ between points of a file, by name: values at all points, (points,)."""
-    given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_UNITS}
+    given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_SCALES}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
@@ -111,13 +111,13 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     """
     values = column[chosen]
     if name == "drag":
-        names = [DRAGS[int(place)] for place in np.unique(values)]
+        names = [DRAG_NAMES[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     unit = _quantity_unit(view, name)
     factor = value_in_unit(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
-    if name in RELATIVE_LOADS:
+    if name in LOAD_OF_RATIO:
         return f"{extent} of flutter"
     return f"{quantity_words(name)} {extent} {unit}".rstrip()
 

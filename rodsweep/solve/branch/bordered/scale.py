@@ -20,7 +20,7 @@ from functools import lru_cache
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.arm_on_mesh import profile_compliance_at_nodes
+from ....discretization.arm_on_mesh import relative_bending_compliance_at_nodes
 from ....discretization.elements.elements import ELEMENT_SETTINGS
 from ....discretization.elements.mesh import Mesh
 from ....discretization.state_layout import StateLayout
@@ -78,5 +78,5 @@ def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
     """Cached `deflection_row`, (n,); callers share the array and must not change it."""
     # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
     # 0.
-    weights = mesh.quadrature * profile_compliance_at_nodes(build, mesh)
-    return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.positions[:-1])})
+    weights = mesh.quadrature * relative_bending_compliance_at_nodes(build, mesh)
+    return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.node_positions[:-1])})

@@ -156,7 +156,7 @@ class SpecialCurveProblem:
             at = float(np.dot(weights, [point.parameter for point in known]))
             at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
             values = {**rod.values, self.line.name: at, self.rows.name: self.rows.value(at_row)}
-            load = rod.build.relative_load(values["F"], values["k1"], values["taper"])
+            load = rod.build.crushing_ratio(values["F"], values["k1"], values["taper"])
             return 1 - END_SETTINGS.crushing_margin / 2 - load
 
         if distance(step) >= 0 or distance(0.0) <= 0:
@@ -176,11 +176,11 @@ class SpecialCurveProblem:
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
-        `Build.relative_load` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
+        `Build.crushing_ratio` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
         x = self.line.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
-        crushing = 1 - END_SETTINGS.crushing_margin - rod.build.relative_load(rod.F, rod.k1, rod.taper)
+        crushing = 1 - END_SETTINGS.crushing_margin - rod.build.crushing_ratio(rod.F, rod.k1, rod.taper)
         stretch = least_stretch_of_orbit(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
 

@@ -75,7 +75,7 @@ def least_stretch(path: CyclePath, enough: float = inf) -> float:
 
     before = [index_before_jump(int(node), grid.order) for node in form.nodal_rod.jumps]
     at_jumps = float(least_of(c[:, before + [index + 1 for index in before]]).min(initial=inf))
-    places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(grid.positions))
+    places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(grid.node_positions))
     values = least(places)
     best = int(np.argmin(values))
     rough = min(float(values[best]), at_jumps)

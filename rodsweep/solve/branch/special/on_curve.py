@@ -217,7 +217,7 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
     parameters are not allowed or change the unknowns of a state. changed: new parameter values by name."""
     try:
-        form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
+        form = replace(orbit.form, rod=orbit.form.rod.with_values(**changed))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
     if form.is_omega_unknown != orbit.form.is_omega_unknown:

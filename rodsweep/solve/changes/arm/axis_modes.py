@@ -41,7 +41,7 @@ class AxisModes:
     p: float
     w: Complex
     slopes: Complex
-    unstable: int
+    unstable_count: int
 
     def nearest_pair(self, growing: bool) -> tuple[float, float] | None:
         """Returns (distance from the imaginary axis, derivative of this distance with respect to p) of the
@@ -63,16 +63,16 @@ class AxisModes:
 class AxisModesOfPath:
     """The modes of the arms of a path, computed when needed.
 
-    modes_by_p: the modes computed so far, by path variable p. replacement_p: path variables at which the
-    modes are counted instead, if the count at an end of the path fails, for example because a pair lies on
-    the axis.
+    modes_by_p: the modes computed so far, by path variable p. outside_p_by_end: for p of each end of the
+    path, a path variable just outside, at which the modes are counted instead if the count at the end fails,
+    for example because a pair lies on the axis.
     """
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.certify = certify
         self.modes_by_p: dict[float, AxisModes] = {}
-        self.replacement_p: dict[float, float] = {}
+        self.outside_p_by_end: dict[float, float] = {}
 
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
@@ -80,7 +80,8 @@ class AxisModesOfPath:
         return self.certify and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.many_modes
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
-        """The modes at path variable p; raises Unsolvable if the eigenvalues or the count cannot be computed.
+        """The modes at path variable p, or just outside an end p of the path where the count fails; raises
+        Unsolvable if the eigenvalues or the count cannot be computed.
 
         beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
@@ -88,19 +89,19 @@ class AxisModesOfPath:
             try:
                 self.modes_by_p[p] = self._compute_modes(p, beside)
             except Unsolvable:
-                replacement = self._modes_at_replacement(p)
+                replacement = self._modes_just_outside(p)
                 if replacement is None:
                     raise
                 self.modes_by_p[p] = replacement
         return self.modes_by_p[p]
 
-    def _modes_at_replacement(self, p: float) -> AxisModes | None:
+    def _modes_just_outside(self, p: float) -> AxisModes | None:
         """The modes slightly outside the end p of the searched range, used if the modes at p cannot be
         counted; None if p is no end, or if these modes cannot be computed."""
-        if p not in self.replacement_p:
+        if p not in self.outside_p_by_end:
             return None
         try:
-            return self._compute_modes(self.replacement_p[p], None)
+            return self._compute_modes(self.outside_p_by_end[p], None)
         except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
             return None
 
@@ -108,7 +109,7 @@ class AxisModesOfPath:
         """The modes at path variable p; raises Unsolvable. beside: as in `modes_at`."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
         near = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
-        growing = 0 if near is None else near.unstable
+        growing = 0 if near is None else near.unstable_count
         found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
         return found or self._leading_modes(p, growing)
 
@@ -137,13 +138,13 @@ class AxisModesOfPath:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
         if the count fails or too many modes grow. growing: expected number of unstable modes."""
         modes = max(ANCHOR_SETTINGS.min_known_modes, 2 + growing)
-        found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHOR_SETTINGS.place_accuracy, self.certify))
+        found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHOR_SETTINGS.arm_accuracy, self.certify))
         while modes < _needed_modes(found) <= AXIS_MODE_SETTINGS.max_known_modes:
             if self.certify and found.unstable_count < 0:
                 break  # more modes do not help a failed count
             modes = _needed_modes(found)
             found = self.problem.spectrum(
-                p, SpectrumRequest(modes, ANCHOR_SETTINGS.place_accuracy, self.certify)
+                p, SpectrumRequest(modes, ANCHOR_SETTINGS.arm_accuracy, self.certify)
             )
         if found.unstable_count < 0:
             decided = found.status != SpectrumStatus.ok  # else only the number of unstable modes is unknown

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...point import Unsolvable
 from ..search_range import SearchedIntervals, SearchEnd
-from ..unstable_modes import ChangeKind, Crossing
+from ..unstable_modes import ChangeKind, Threshold
 from .axis_modes import AxisModes, AxisModesOfPath, next_count_position
 from .path import ArmPath
 
@@ -22,10 +22,10 @@ class ArmCrossingSettings:
     """Settings of the search for crossings along a path of arms."""
 
     full_list_ratio: float = 2.0
-    min_halved_interval: float = 1e-3
     """An interval is halved before its search if the number of pairs expected to grow at its right end
-    exceeds `full_list_ratio` times the maximum number of crossings, unless the interval is shorter than
-    `min_halved_interval` times the path."""
+    exceeds this number times the maximum number of crossings."""
+    min_halved_interval: float = 1e-3
+    """Intervals shorter than this fraction of the path are searched without being halved."""
     max_pairs_at_once: int = 6
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
@@ -33,15 +33,15 @@ class ArmCrossingSettings:
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest known
     |w|."""
     max_distance_in_errors: float = 10.0
+    """Two crossings may be equal if their parameter values differ by at most this multiple of the sum of
+    their errors."""
     same_frequency: float = 1e-6
-    """Two crossings are equal if their parameter values differ by less than `max_distance_in_errors` times
-    the sum of their errors, and their frequencies by less than `same_frequency` times the frequency."""
+    """Such crossings are equal if their frequencies differ relatively by at most this."""
     smallest_interval: float = 1e-6
-    """Intervals shorter than this fraction of the path are not divided: whether two crossings lie inside
-    remains undecided."""
+    """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
     smallest_step: float = 1e-12
-    """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
-    this (some thousand rounding errors), if its crossings are not located."""
+    """The search fails at an interval without located crossings whose length, divided by the larger modulus
+    of its ends, is at most this: some thousand rounding errors."""
     count_distance: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
@@ -64,45 +64,44 @@ class CrossingSearch:
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.axis_modes = AxisModesOfPath(problem, certify)
-        self.crossings_by_p: dict[float, Crossing] = {}
+        self.crossings_by_p: dict[float, Threshold] = {}
         self.gaps: list[tuple[float, float]] = []
 
-    def crossings(self, edges: list[float], most: float) -> tuple[list[Crossing], SearchEnd]:
+    def crossings(self, edges: list[float], most: float) -> tuple[list[Threshold], SearchEnd]:
         """Returns (crossings, end). crossings: all crossings from the first of `edges` to the end of the
         search, in increasing order of p. end: end of the search.
 
         The search ends after the first crossing beyond `most`: where dozens of modes grow, each further
-        crossing takes longer than all earlier crossings. Raises Unsolvable if the search ends at the first
-        edge.
+        crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first edge.
         """
         intervals = SearchedIntervals(edges)
         beside = ARM_CROSSING_SETTINGS.count_distance * intervals.length
-        self.axis_modes.replacement_p = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
+        self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
         self.axis_modes.modes_at(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.crossings_by_p) > most:
                 intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
                 continue
-            if self._is_too_long(a, b, most, intervals.length):
+            if self._must_be_halved(a, b, most, intervals.length):
                 intervals.add_parts((a, (a + b) / 2), ((a + b) / 2, b))
                 continue
             try:
-                self._search(a, b, intervals)
+                self._search_interval(a, b, intervals)
             except Unsolvable as why:
                 intervals.end_within((a, b), str(why))
                 self.crossings_by_p = {p: crossing for p, crossing in self.crossings_by_p.items() if p <= a}
         found = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
         return [one for one in found if self._may_lie_within(one, edges[0], edges[-1])], intervals.end
 
-    def _may_lie_within(self, crossing: Crossing, low: float, high: float) -> bool:
+    def _may_lie_within(self, crossing: Threshold, low: float, high: float) -> bool:
         """Whether path variables from `low` to `high` lie within the error of `crossing`."""
-        near = crossing.at - crossing.error, crossing.at + crossing.error
+        near = crossing.value - crossing.error, crossing.value + crossing.error
         first, last = sorted(map(self.problem.path.coordinate, near))
         return first <= high and last >= low
 
-    def _is_too_long(self, a: float, b: float, most: float, length: float) -> bool:
-        """Whether the interval (a, b) must be halved before its search: the list of `most` crossings is
-        likely to be full before b, where a count is expensive. length: length of the path."""
+    def _must_be_halved(self, a: float, b: float, most: float, length: float) -> bool:
+        """Whether (a, b) must be halved before its search: it is not short, the modes at b are not known, and
+        the list of `most` crossings is likely to be full before b. length: length of the path."""
         if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
         expected = self.problem.expected_unstable_count(b)
@@ -110,13 +109,13 @@ class CrossingSearch:
             self.axis_modes.has_many_modes(b) and expected > ARM_CROSSING_SETTINGS.full_list_ratio * 2 * most
         )
 
-    def _search(self, a: float, b: float, intervals: SearchedIntervals) -> None:
+    def _search_interval(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
         the interval as a gap if it is too short to be divided; raises Unsolvable."""
         left = self.axis_modes.modes_at(a)
         right = self.axis_modes.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
-        if left.unstable == right.unstable:
+        if left.unstable_count == right.unstable_count:
             share = next_count_position(left, right)
             if share == 0.0:
                 return
@@ -133,7 +132,7 @@ class CrossingSearch:
             )
             if parts is not None:
                 self.crossings_by_p.update(
-                    (self.problem.path.coordinate(crossing.at), crossing) for crossing in crossings
+                    (self.problem.path.coordinate(crossing.value), crossing) for crossing in crossings
                 )
                 intervals.add_parts(*parts)
                 return
@@ -143,19 +142,18 @@ class CrossingSearch:
         intervals.add_parts((a, middle), (middle, b))
 
     def _intervals_between_crossings(
-        self, crossings: list[Crossing], left: AxisModes, right: AxisModes, length: float
+        self, crossings: list[Threshold], left: AxisModes, right: AxisModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
         after a crossing do not confirm the crossing. length: length of the path.
 
-        Where many modes grow, the modes near the axis at a crossing are used for the counts before and after
-        the crossing.
+
         """
         parts: list[tuple[float, float]] = []
         start = left.p
         highest = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(left.largest_modulus, right.largest_modulus)
         for crossing in crossings:
-            p = self.problem.path.coordinate(crossing.at)
+            p = self.problem.path.coordinate(crossing.value)
             before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
             behind = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance * length)
             beside = None
@@ -164,20 +162,20 @@ class CrossingSearch:
                     p, highest, np.array([1j * crossing.frequency])
                 )
             change = (
-                self.axis_modes.modes_at(behind, beside).unstable
-                - self.axis_modes.modes_at(before, beside).unstable
+                self.axis_modes.modes_at(behind, beside).unstable_count
+                - self.axis_modes.modes_at(before, beside).unstable_count
             )
-            if change != (2 if right.unstable > left.unstable else -2):
+            if change != (2 if right.unstable_count > left.unstable_count else -2):
                 return None
             parts.append((start, before))
             start = behind
         return [*parts, (start, right.p)]
 
-    def _crossings_between(self, left: AxisModes, right: AxisModes) -> list[Crossing]:
+    def _crossings_between(self, left: AxisModes, right: AxisModes) -> list[Threshold]:
         """Crossings between the arms with the modes `left` and `right`, in increasing order of p, that
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
-        change = (right.unstable - left.unstable) // 2
+        change = (right.unstable_count - left.unstable_count) // 2
         many = self.axis_modes.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
         if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if many else 1):
@@ -185,7 +183,7 @@ class CrossingSearch:
         if many:
             self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         grows = change > 0
-        found: dict[float, Crossing] = {}
+        found: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
         # tried first.
         for start, growing in ((left, not grows), (right, grows)):
@@ -195,19 +193,17 @@ class CrossingSearch:
                 if crossing is not None and not any(
                     _are_same_crossing(crossing, other) for other in found.values()
                 ):
-                    found[self.problem.path.coordinate(crossing.at)] = crossing
+                    found[self.problem.path.coordinate(crossing.value)] = crossing
                 if len(found) == abs(change):
                     return [found[p] for p in sorted(found)]
         return []
 
     def _newton_crossing(
         self, start: AxisModes, i: int, ends: tuple[float, float], grows: bool
-    ) -> Crossing | None:
+    ) -> Threshold | None:
         """The crossing of the imaginary axis by the eigenvalue with index i in `start.w`, by Newton's method
         for p; None if Newton's method does not converge within `ends`, or converges to another crossing.
-
-        ends: allowed interval of p. grows: whether the growth rate of the pair increases with p.
-        """
+        ends: allowed interval of p. grows: whether the growth rate of the pair increases with p."""
         p = start.p
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
@@ -229,22 +225,25 @@ class CrossingSearch:
                 return None if unresolved else self._crossing_at(p, w, slope, blur, grows)
         return None
 
-    def _crossing_at(self, p: float, w: complex, slope: complex, blur: float, grows: bool) -> Crossing | None:
+    def _crossing_at(
+        self, p: float, w: complex, slope: complex, blur: float, grows: bool
+    ) -> Threshold | None:
         """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
-        opposite to `grows`. slope: dw/dp. blur: error of p. grows: as in `_newton_crossing`."""
-        # Newton's method may find another pair, which crosses in the opposite direction.
+        opposite to `grows`, as of another pair. slope: dw/dp. blur: error of p."""
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
-        kind = ChangeKind.hopf if grows != self.problem.path.is_compliance else ChangeKind.hopf_reverse
+        kind = ChangeKind.hopf if grows != self.problem.path.is_compliance_path else ChangeKind.hopf_reverse
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
         error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # at fixed p, and by the error of p
-        return Crossing(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
+        return Threshold(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
-def _are_same_crossing(one: Crossing, other: Crossing) -> bool:
+def _are_same_crossing(one: Threshold, other: Threshold) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
-    apart = abs(one.at - other.at) <= ARM_CROSSING_SETTINGS.max_distance_in_errors * (one.error + other.error)
+    apart = abs(one.value - other.value) <= ARM_CROSSING_SETTINGS.max_distance_in_errors * (
+        one.error + other.error
+    )
     return (
         apart and abs(one.frequency - other.frequency) <= ARM_CROSSING_SETTINGS.same_frequency * one.frequency
     )

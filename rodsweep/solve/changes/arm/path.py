@@ -67,23 +67,23 @@ class ArmPath(PathProblem):
 
     def __init__(self, path: Path):
         super().__init__(path)
-        self._followed: FollowedArms | None = None
-        self._solutions: dict[float, Spectrum] = {}
+        self._followed_arms: FollowedArms | None = None
+        self._solved_spectra: dict[float, Spectrum] = {}
         """Spectra that were solved, not followed: for each path variable p, the last spectrum solved."""
-        self._counts: dict[float, int] = {}
+        self._unstable_counts: dict[float, int] = {}
         """Proved numbers of unstable modes, by p."""
         self._families: list[ArmFamily] = []
-        self._along = ArmAlongPath(path, self._family)
+        self._determinant_along_path = ArmAlongPath(path, self._family_at)
 
-    def _family(self, p: float) -> ArmFamily | None:
+    def _family_at(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
         made = next((one for one in self._families if one.p_low <= p <= one.p_high), None)
         if (
             made is None
-            and self._followed is not None
+            and self._followed_arms is not None
             and self.expected_unstable_count(p) <= ARM_PATH_SETTINGS.max_growing_modes
         ):
-            return self._followed.family_at(p)
+            return self._followed_arms.family_at(p)
         return made
 
     def make_family(self, low: float, high: float, highest: float) -> None:
@@ -101,13 +101,13 @@ class ArmPath(PathProblem):
     def interval_edges(self, low: float, high: float) -> list[float]:
         edges = np.linspace(low, high, ARM_PATH_SETTINGS.first_interval_count + 1)
         edges[1:-1] -= ARM_PATH_SETTINGS.edge_shift * (high - low) / ARM_PATH_SETTINGS.first_interval_count
-        if self._followed is None and low < high:
+        if self._followed_arms is None and low < high:
             steps = (
                 np.arange(ARM_PATH_SETTINGS.first_interval_count * ARM_PATH_SETTINGS.steps_per_interval + 1)
                 / ARM_PATH_SETTINGS.steps_per_interval
             )
             points = np.interp(steps, np.arange(len(edges)), edges)
-            self._followed = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_modes)
+            self._followed_arms = FollowedArms(self.path, points, ARM_PATH_SETTINGS.followed_modes)
         return edges.tolist()
 
     def expected_unstable_count(self, p: float) -> float:
@@ -116,11 +116,14 @@ class ArmPath(PathProblem):
 
     def followed_spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
-        if self._followed is None or self.expected_unstable_count(p) > ARM_PATH_SETTINGS.max_growing_modes:
+        if (
+            self._followed_arms is None
+            or self.expected_unstable_count(p) > ARM_PATH_SETTINGS.max_growing_modes
+        ):
             return None
-        found = self._followed.spectrum(p, modes)
+        found = self._followed_arms.spectrum(p, modes)
         if found is not None:
-            self._counts[p] = found.unstable_count
+            self._unstable_counts[p] = found.unstable_count
         return found
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
@@ -132,7 +135,7 @@ class ArmPath(PathProblem):
                 followed if followed is not None else self._solved_spectrum(p, request)
             )
             if found.certified:
-                self._counts[p] = found.unstable_count
+                self._unstable_counts[p] = found.unstable_count
         return self._spectra[key]
 
     def _solved_spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
@@ -141,7 +144,7 @@ class ArmPath(PathProblem):
         Near a crossing a request for many modes is followed by a request for one more pair; this pair is
         therefore included in the first solve.
         """
-        earlier = self._solutions.get(p)
+        earlier = self._solved_spectra.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
         if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
             spare = ARM_PATH_SETTINGS.spare_modes if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
@@ -149,30 +152,30 @@ class ArmPath(PathProblem):
             # The additional modes may be harder to solve; they must not spoil the requested modes.
             if spare and earlier.status != SpectrumStatus.ok:
                 earlier = super().spectrum(p, request)
-            self._solutions[p] = earlier
+            self._solved_spectra[p] = earlier
         return replace(
             earlier,
             eigenvalues=earlier.eigenvalues[: request.modes],
             error_estimate=earlier.error_estimate[: request.modes],
         )
 
-    def known_count_amid(self, low: float, high: float) -> int | None:
+    def known_count_near_middle(self, low: float, high: float) -> int | None:
         places = [
             p
-            for p in self._counts
+            for p in self._unstable_counts
             if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_offset * (high - low)
         ]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
-        return None if nearest is None else self._counts[nearest]
+        return None if nearest is None else self._unstable_counts[nearest]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        known = self._followed.eigenvalue_slope(guess, p) if self._followed is not None else None
-        return self._along.eigenvalue(guess, p) if known is None else (guess, *known)
+        known = self._followed_arms.eigenvalue_slope(guess, p) if self._followed_arms is not None else None
+        return self._determinant_along_path.eigenvalue(guess, p) if known is None else (guess, *known)
 
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
-        return self._along.double_eigenvalue(x, p, reach)
+        return self._determinant_along_path.double_eigenvalue(x, p, reach)
 
-    def count(self, line: float, p: float) -> EigenvalueCount:
+    def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         found = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_modes)
         if found is not None:
             w = found.eigenvalues
@@ -183,7 +186,7 @@ class ArmPath(PathProblem):
                 return EigenvalueCount(int((w.real > line).sum()), 0)
             if clear and line == 0 and found.unstable_count < ARM_PATH_SETTINGS.followed_modes:
                 return EigenvalueCount(found.unstable_count, 0)
-        known = self._followed.roots(p) if self._followed is not None else None
+        known = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
         return ArmProblem(self.path.rod_at(p)).count(line, known)
 
     def counted_unstable_modes(self, p: float, known: Complex, error: Array) -> int | None:
@@ -192,13 +195,13 @@ class ArmPath(PathProblem):
         known: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
         error: errors of these eigenvalues, (n,).
         """
-        if p not in self._counts:
+        if p not in self._unstable_counts:
             roots = KnownRoots(np.append(known, known.conj()), np.append(error, error))
             number = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
             if number is None:
                 return None
-            self._counts[p] = number
-        return self._counts[p]
+            self._unstable_counts[p] = number
+        return self._unstable_counts[p]
 
     def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
         """Eigenvalues at p near the imaginary axis with |Im w| up to `highest`, (n,), one of each pair.
@@ -209,11 +212,11 @@ class ArmPath(PathProblem):
         rod = self.path.rod_at(p)
         return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
 
-    def relaxation(self, p: float) -> tuple[float, float]:
+    def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0
 
 
 def path_problem(path: Path) -> PathProblem:
     """The eigenvalue problem along `path`: `UniformPath` for uniform rods of linear material, else
     `ArmPath`."""
-    return UniformPath(path) if path.rod.standard else ArmPath(path)
+    return UniformPath(path) if path.rod.is_uniform_and_linear else ArmPath(path)

@@ -102,7 +102,7 @@ class _ChangeBoundaries:
         )
 
 
-def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
+def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
     """Boundary curves through all thresholds `seeds`; a threshold on a curve already followed starts no
     further curve."""
     problem = _ChangeBoundaries(plane, seeds)
@@ -134,7 +134,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
         if beside > BOUNDARY_ASSIGNMENT_SETTINGS.chord_overhang:
             continue
-        there = _point_at_height(Boundary(plane, curve.eigenvalue_sign), a, b, y)
+        there = _point_at_second_coordinate(Boundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
             there is not None
             and abs(there[2] - math.log(abs(seed.eigenvalue))) < BOUNDARY_ASSIGNMENT_SETTINGS.same_eigenvalue
@@ -143,7 +143,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
     return best
 
 
-def _point_at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
+def _point_at_second_coordinate(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
     """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
     None if not found.
 

@@ -19,9 +19,9 @@ from ...point import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
     BOUNDARY_STEPS,
+    BoundaryCurveProblem,
     BoundaryEnd,
     BoundaryPoint,
-    ChangeCurveProblem,
 )
 
 
@@ -44,7 +44,7 @@ class BoundaryCurve:
     eigenvalue_sign: 0 on a curve of Hopf points, else the sign of the double eigenvalue.
 
     values: both parameters of each point, (points, 2). frequency, growth_rate: Im and Re of the eigenvalue,
-    in 1/tau2, (points,). ends: reasons for the ends at the first and at the last point.
+    in 1/tau2, (points,). end_reasons: reasons for the ends at the first and at the last point.
     """
 
     eigenvalue_sign: float
@@ -52,12 +52,12 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
-    ends: tuple[BoundaryEnd, BoundaryEnd]
+    end_reasons: tuple[BoundaryEnd, BoundaryEnd]
     scaled: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
-    def hopf(self) -> bool:
+    def consists_of_hopf_points(self) -> bool:
         return self.eigenvalue_sign == 0
 
 
@@ -70,7 +70,7 @@ def trace_boundary(
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
     """
-    curve = ChangeCurveProblem(Boundary(plane, sign))
+    curve = BoundaryCurveProblem(Boundary(plane, sign))
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
@@ -90,7 +90,7 @@ def trace_boundary(
 
 
 def _curve_with_folds(
-    curve: ChangeCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
+    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
 ) -> BoundaryCurve:
     """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
     ends."""
@@ -113,7 +113,7 @@ def _curve_with_folds(
     return BoundaryCurve(boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), ends, points)
 
 
-def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
+def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
     """The fold between the points a and b, where the tangent has no component along `axis`; None if not
     found."""
     boundary = curve.boundary
@@ -139,7 +139,7 @@ def _fold_between(curve: ChangeCurveProblem, a: BoundaryPoint, b: BoundaryPoint,
         along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None
-    return _as_fold(boundary, found[length], axis, along)
+    return _fold_at(boundary, found[length], axis, along)
 
 
 def _tangent_error(boundary: Boundary) -> float:
@@ -153,7 +153,7 @@ def _tangent_error(boundary: Boundary) -> float:
     )
 
 
-def _as_fold(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
+def _fold_at(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
     """The fold of coordinate `axis` at a point of a boundary. along: error of the point along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))

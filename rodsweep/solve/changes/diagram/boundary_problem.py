@@ -59,8 +59,9 @@ CRUSHED_MARGIN = 4
 
 
 class BoundaryEnd(IntEnum):
-    """Reasons for the end of a boundary curve. edge: edge of the plane. crushed: crushed rod. closed: the
-    curve returns to its first point. list_full: maximum number of points."""
+    """Reasons for the end of a boundary curve. none: the point is not an end. edge: edge of the plane.
+    crushed: crushed rod. closed: the curve returns to its first point. not_followed: no further point was
+    found. list_full: maximum number of points."""
 
     none = 0
     edge = 1
@@ -86,7 +87,7 @@ class BoundaryPoint(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class ChangeCurveProblem:
+class BoundaryCurveProblem:
     """A boundary of the spectrum, as a problem for `follow_curve`."""
 
     boundary: Boundary
@@ -113,7 +114,7 @@ class ChangeCurveProblem:
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may describe no rod.
-        alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed(x, y) else -1.0
+        alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed_at(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def located_zero(

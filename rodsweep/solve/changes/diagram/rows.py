@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point import outcome_or_failure
-from ..along_path import Transitions, transitions
+from ..along_path import ThresholdList, find_thresholds
 from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
 from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
@@ -38,14 +38,15 @@ class RodClass(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class RowRequest:
-    """Request for every row: name of the varied parameter, and its increasing values, (values,)."""
+    """Request for every row: name of the varied parameter, and its increasing values, (values,). certify:
+    whether the list of thresholds must be proved complete."""
 
-    name: str
+    parameter_name: str
     values: Array
     accuracy: float
     """Relative accuracy of the thresholds."""
     certify: bool
-    crossings: int
+    max_thresholds: int
     """Maximum number of stored thresholds."""
     cycle_accuracy: float = 1e-6
     """Relative accuracy of the period and of the largest tip y of each cycle, if cycles are requested."""
@@ -85,7 +86,7 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
 def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
     crushing force; a row of crushed rods is not searched."""
-    name = request.name
+    name = request.parameter_name
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
@@ -104,14 +105,14 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
         stop = rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)
     if name == "k1" and not uncrushed.all():
         start = rod.F / (share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)) if rod.F > 0 else start
-    found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
+    found = find_thresholds(Path(rod.with_values(**{name: start}), name), start, stop, request.certify)
     classes, unstable = classes_and_unstable_counts(found, values)
     # Nearly crushed rods lie outside the searched range.
     classes[crushed] = RodClass.crushed
     unstable[crushed] = -1
     classes[nearly_crushed] = RodClass.undecided
     unstable[nearly_crushed] = -1
-    changes = thresholds_with_status(found, request.accuracy, request.certify, request.crossings)
+    changes = thresholds_with_status(found, request.accuracy, request.certify, request.max_thresholds)
     return DiagramRow(rod_class=classes, unstable_count=unstable, thresholds=changes)
 
 
@@ -127,7 +128,7 @@ def _row_of_one_class(
 
 
 def classes_and_unstable_counts(
-    found: Transitions, values: Array
+    found: ThresholdList, values: Array
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
     the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
@@ -135,20 +136,20 @@ def classes_and_unstable_counts(
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)
-    for crossing in found.crossings:
-        beyond = values > crossing.at
+    for crossing in found.thresholds:
+        beyond = values > crossing.value
         if crossing.kind.changes_leader:
             oscillates[beyond] = crossing.kind.pair_leads_after
         else:
             unstable[beyond] = crossing.unstable_after
-        blurred |= np.abs(values - crossing.at) <= crossing.error
+        blurred |= np.abs(values - crossing.value) <= crossing.error
     if found.ended_early:
         blurred |= (values < found.searched_interval[0]) | (values > found.searched_interval[1])
     low, high = found.open_range
     if not math.isnan(low):
         blurred |= (values >= low) & (values <= high)
         # Crossings in the open range change the number unseen; the count at the end applies behind the range.
-        unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
+        unstable[values > max([high, *(c.value for c in found.thresholds)])] = found.unstable_at_end
     classes = np.where(oscillates, RodClass.oscillatory, RodClass.monotone).astype(np.int8)
     classes[unstable > 0] = RodClass.flutter
     blurred |= unstable < 0

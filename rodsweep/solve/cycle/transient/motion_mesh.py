@@ -60,7 +60,7 @@ MOTION_MESH_SETTINGS = MotionMeshSettings()
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
     by_force = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
-    if not rod.standard:
+    if not rod.is_uniform_and_linear:
         modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
         bent = arm_elements(rod, by_force, accuracy)
         finest = max(modal, bent, key=lambda each: each.node_count)
@@ -98,7 +98,7 @@ def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
 def coarse_mesh_along_branch(rod: Rod) -> Mesh:
     """Coarse mesh for the intermediate orbits on the branch from a Hopf point to the cycle of a rod."""
     wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return uniform_mesh(
             1,
             max(

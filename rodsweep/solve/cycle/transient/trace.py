@@ -47,7 +47,7 @@ class TipTrace:
         states = run.states[finite]
         self.run_times.append(clock + run.times[finite])
         self.run_tip_motions.append(
-            np.concatenate(self.beam.tip_motion(states, self.beam.state_derivative(states)))
+            np.concatenate(self.beam.tip_position_and_velocity(states, self.beam.state_derivative(states)))
         )
 
     def at_equal_times(self, count: int) -> Array:

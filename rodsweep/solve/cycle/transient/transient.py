@@ -180,7 +180,7 @@ class Transient:
         record of the motion, if any, begins at z."""
         after = relax_fast_components(self.beam, z, self.leading_mode.period)
         if self.record:
-            self.elapsed_time = INTEGRATOR_SETTINGS.relaxation_share * self.leading_mode.period
+            self.elapsed_time = INTEGRATOR_SETTINGS.relaxation_duration_ratio * self.leading_mode.period
             self.record.begin_with_relaxation(z, after, self.elapsed_time)
         return after
 

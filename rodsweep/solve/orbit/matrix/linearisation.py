@@ -66,7 +66,7 @@ class Linearisation:
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
     """Derivatives of the rod and of its mass, (n,), with respect to the coordinate of parameter `name`."""
     change = form.parameter_derivative(name)
-    return ParameterDerivatives(change, form.mass_of(change))
+    return ParameterDerivatives(change, form.mass_diagonal_of(change))
 
 
 @compiled_for_vectors

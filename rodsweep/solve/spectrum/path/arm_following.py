@@ -153,9 +153,9 @@ def follow_eigenvalues_of_arms(
     """Follows eigenvalues of arms along the path variables p, (points,), and returns the number of points
     reached.
 
-    track: `w` and `order` of the first point are given, the remaining points are filled. family: family of
-    arms that contains all p. hulls: regions that contain the spectra of all arms of the family. known:
-    output, the number from `proved_count_right_of_line` at each point, (points,).
+    track: `w` and `descending_order` of the first point are given, the remaining points are filled. family:
+    family of arms that contains all p. hulls: regions that contain the spectra of all arms of the family.
+    known: output, the number from `proved_count_right_of_line` at each point, (points,).
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)

@@ -22,7 +22,8 @@ class ArmStretchSettings:
     """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
     proof."""
     largest_w_factor: float = 2.0
-    """The propagators of a new family are valid up to W = headroom * (largest |w| at the first point)."""
+    """The propagators of a new family are valid at least up to W = `largest_w_factor` * (largest |w| at the
+    first point)."""
     min_reused_w_factor: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_points
+from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.parameter_path import Path
 from .arm_count import confirmed_line
@@ -124,7 +124,7 @@ def _confirmed_line_at(
 
 def _is_line_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
     """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
-    points = sampled_points(*ends)
+    points = sampled_point_indices(*ends)
     known = found.track.w[points], found.track.error[points]
     p = found.p[points]
     rods = [path.rod_at(value) for value in p.tolist()]

@@ -24,7 +24,7 @@ class FollowedArms:
     nearest point.
 
     Eigenvalues are followed from point to point only as far as the largest requested p. If following fails at
-    a point, a new interval starts at a later point.
+    a point, a new interval starts at a later point. intervals: the intervals followed so far.
     """
 
     def __init__(self, path: Path, p: Array, modes: int):
@@ -34,7 +34,7 @@ class FollowedArms:
         self.path = path
         self.request = SpectrumRequest(modes, ARM_STRETCH_SETTINGS.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
-        self._proved_at: dict[float, list[ProvedEigenvalues]] = {}
+        self._proved_by_p: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
         self._next_point = 0
         self._points_skipped_on_failure = 1
@@ -63,7 +63,7 @@ class FollowedArms:
     def eigenvalue_slope(self, w: complex, p: float) -> tuple[complex, float] | None:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
         w."""
-        for one in self._proved_at.get(p, []):
+        for one in self._proved_by_p.get(p, []):
             for k in np.flatnonzero(one.track.w[0] == w).tolist():
                 return complex(one.track.slope[0, k]), float(one.track.error[0, k])
         return None
@@ -73,13 +73,13 @@ class FollowedArms:
         complete.
         """
         self._follow_to(p)
-        judged = self._proved_at.setdefault(p, [])
-        if not any(modes <= one.max_modes for one in judged):
+        judged = self._proved_by_p.setdefault(p, [])
+        if not any(modes <= one.max_tried_modes for one in judged):
             judged += self._proved_eigenvalues_at(p, modes)
         found = (one.spectrum(modes, self.request.accuracy) for one in judged)
         return next((spectrum for spectrum in found if spectrum is not None), None)
 
-    def roots(self, p: float) -> KnownRoots | None:
+    def followed_roots(self, p: float) -> KnownRoots | None:
         """Eigenvalues followed to path variable p, not proved complete; None if following fails."""
         self._follow_to(p)
         for one in self.intervals:
@@ -142,10 +142,10 @@ class FollowedArms:
 class ProvedEigenvalues(NamedTuple):
     """Eigenvalues at one path variable p; the leading `proved_modes` eigenvalues are proved complete.
 
-    max_modes: largest number of modes whose proof was tried.
+    max_tried_modes: largest number of modes whose proof was tried.
     """
 
-    max_modes: int
+    max_tried_modes: int
     track: Track
     proved_modes: int
 

@@ -45,9 +45,9 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
     uniform rod only the first eigenvalue is used; the proof for an arm that varies along its length needs
     several eigenvalues. accuracy: largest relative error.
     """
-    if rod.standard:
+    if rod.is_uniform_and_linear:
         return _follow_leader_of_uniform(rod, complex(near[0]), accuracy)
-    if rod.uniform:
+    if rod.is_uniform:
         linear, rate = rod.equivalent_linear_rod
         found = follow_leading_eigenvalue(linear, near / rate, accuracy)
         return found and LeadingEigenvalue(rate * found.w, rate * found.error, rate * found.eigenvalues)

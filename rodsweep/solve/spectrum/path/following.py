@@ -215,9 +215,9 @@ def follow_eigenvalues(
     """Follows eigenvalues of uniform rods along the path variables p, (points,), and returns the number of
     points reached.
 
-    track: `w` and `order` of the first point are given, the remaining points are filled. coefficients: (F,
-    nu, c2, gamma3) at each point, (points, 4). direction: d(F, nu, c2, gamma3)/dp. The leading `modes`
-    eigenvalues converge to rounding error.
+    track: `w` and `descending_order` of the first point are given, the remaining points are filled.
+    coefficients: (F, nu, c2, gamma3) at each point, (points, 4). direction: d(F, nu, c2, gamma3)/dp. The
+    leading `modes` eigenvalues converge to rounding error.
     """
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)

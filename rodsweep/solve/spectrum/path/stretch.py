@@ -54,12 +54,12 @@ class Stretch:
 
     def rod_at(self, i: int) -> Rod:
         """Rod of index i."""
-        return self.path.rod.changed(**{self.path.name: float(self.values[i])})
+        return self.path.rod.with_values(**{self.path.name: float(self.values[i])})
 
     @property
     def path_variables(self) -> Array:
         """Path variable p of every rod, (n,)."""
-        return 1 / self.values if self.path.is_compliance else self.values
+        return 1 / self.values if self.path.is_compliance_path else self.values
 
     @property
     def coefficients(self) -> Array:
@@ -130,9 +130,9 @@ def _followed_eigenvalues(stretch: Stretch, start: int, request: SpectrumRequest
     rod fails, or for a uniform rod of nonlinear material, which is solved as an equivalent linear rod."""
     rod = stretch.path.rod
     varies = stretch.path.name == "taper"
-    if rod.uniform and not (rod.standard or varies):
+    if rod.is_uniform and not (rod.is_uniform_and_linear or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
-    if varies or not rod.standard:
+    if varies or not rod.is_uniform_and_linear:
         return follow_stretch_of_arms(stretch.path, stretch.path_variables[start:], request)
     seed = _first_eigenvalues(stretch.rod_at(start), request)
     if seed is None:
