@@ -27,6 +27,7 @@ from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
+from .accuracy.energy_errors import energy_errors
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
 from .along_parameter import (
     CyclePredictor,
@@ -171,7 +172,9 @@ def cycle_from_neighbour(
         )
     found = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.scaled_on_chain(
-        found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
+        found.orbit,
+        relative_parameter_difference(neighbour.predictor.orbit.form, form, name),
+        energy_errors(found),
     )
     if known.is_valid:
         cycle = with_calibrated_errors(known, found, accuracy)

@@ -41,6 +41,10 @@ class HasMultipliers(Protocol):
     tangent: Array | None
     workspace: NewtonWorkspace
 
+    @property
+    def partial_multipliers(self) -> Complex:
+        """Multipliers over the solved part of the period, (rank,), with the trivial multiplier."""
+
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""

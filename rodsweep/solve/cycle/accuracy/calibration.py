@@ -17,9 +17,10 @@ from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORST_EXTREMUM
-from ...orbit.tails import smooth_tails, tails_of
+from ...orbit.tails import tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
+from .error_growth import energy_growth, growth_factors, tail_growth, tails_and_size
 
 MULTIPLIER_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
@@ -27,6 +28,8 @@ indices are the indices of `path_differences`."""
 ERROR_COUNT = 5
 """Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
 largest nontrivial multiplier."""
+CALIBRATION_ARRAYS = ("space", "time", "fall", "power", "tails", "energy")
+"""Names of the arrays of a calibration that a checkpoint stores."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +52,15 @@ class Calibration:
     reach: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
+    energy: Array = field(default_factory=lambda: np.zeros(2))
+    """`energy_errors` of the measured orbit, (2,); 0 if unknown."""
     error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
 
     def arrays(self) -> dict[str, Array]:
-        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), reach and mesh, without
-        `error_growth`."""
-        errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
+        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), energy (2,), reach and mesh,
+        without `error_growth`."""
+        errors = {name: getattr(self, name) for name in CALIBRATION_ARRAYS}
         numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.as_array}
         return errors | numbers
 
@@ -63,23 +68,25 @@ class Calibration:
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
         """The calibration from the named arrays that `Calibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
-        errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
+        errors = {name: arrays[name] for name in CALIBRATION_ARRAYS}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
-    def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
+    def scaled_on_chain(self, orbit: Orbit, change: float, energy: Array) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a chain; `reach` is inf if the orbit
-        has shrunk too much. change: relative change of the parameter since the previous orbit."""
-        tails = _tails_and_size(orbit)
+        has shrunk too much. change: relative change of the parameter since the previous orbit. energy:
+        `energy_errors` of the later orbit, (2,)."""
+        tails = tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
-        growth = _growth_factors(self.tails, tails)
+        growth = growth_factors(self.tails, tails)
+        growth[1] = max(growth[1], energy_growth(self.energy, energy))
         return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
-        after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0)
-        return replace(self, error_growth=_growth_factors(self.tails, after))
+        after = tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0)
+        return replace(self, error_growth=growth_factors(self.tails, after))
 
     @property
     def rates_only(self) -> "Calibration":
@@ -99,7 +106,7 @@ class Calibration:
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,) each: lower limits of errors measured again at
         `orbit` on the same mesh, fractions of the present errors that decrease with the coefficient tails."""
-        shrinkage = np.minimum(_tail_growth(self.tails, _tails_and_size(orbit)), 1.0)
+        shrinkage = np.minimum(tail_growth(self.tails, tails_and_size(orbit)), 1.0)
         in_space, in_time = CALIBRATION_SETTINGS.min_repeated_share * shrinkage
         return in_space * self.space, in_time * self.time
 
@@ -168,32 +175,6 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
     return errors
 
 
-def _tails_and_size(orbit: Orbit) -> Array:
-    """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
-    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.size)
-
-
-def _growth_factors(before: Array, after: Array) -> Array:
-    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
-
-    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
-
-    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
-    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point. A
-    predicted decrease is ignored.
-    """
-    # Errors are of second order in the tails.
-    growth: Array = np.maximum(_tail_growth(before, after), 1.0) * max((before[2] / after[2]) ** 2, 1.0)
-    return growth
-
-
-def _tail_growth(before: Array, after: Array) -> Array:
-    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
-    after: relative tails and size, (3,) each."""
-    change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
-    return change
-
-
 def calibration_of(
     mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
@@ -203,7 +184,7 @@ def calibration_of(
     order, the errors on both meshes give the rate in space; if it has another number of intervals, the order
     in time. Otherwise the rates of `before` are kept. None: rates from the coefficients and the stages.
     """
-    tails = _tails_and_size(orbit)
+    tails = tails_and_size(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_decay_ratio * tails_of(orbit).decay
         fall = _limited_space_decay(np.full(ERROR_COUNT, decay))

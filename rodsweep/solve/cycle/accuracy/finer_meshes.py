@@ -14,8 +14,10 @@ from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit, multiplier_change, multipliers_of, newton, with_orbit_matrix
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...orbit.path_differences import path_differences
+from ...orbit.path_differences import LARGEST_Y, path_differences
 from .calibration import Calibration, calibration_of
+from .calibration_settings import CALIBRATION_SETTINGS
+from .energy_errors import energy_errors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +69,10 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     if before is not None and before.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
         space, time = map(np.maximum, (space, time), before.min_remeasured_errors(found.orbit))
-    return calibration_of(mesh, space, time, found.orbit, before)
+    # The error of the largest y may be small only because it changes its sign near this cycle.
+    by_energy = energy_errors(found)
+    time[LARGEST_Y] = max(time[LARGEST_Y], by_energy[1] / CALIBRATION_SETTINGS.safety_factor)
+    return replace(calibration_of(mesh, space, time, found.orbit, before), energy=by_energy)
 
 
 class ComparedCycle:

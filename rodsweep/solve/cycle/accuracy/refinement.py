@@ -43,7 +43,7 @@ def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accu
     by_matrix = (
         REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.matrix_distance + trivial_error)
     )
-    by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
+    by_exponent = 2 * errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
@@ -53,8 +53,8 @@ def _multiplier_per_exponent(multipliers: Complex) -> float:
     """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
     |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
 
-    The exponent has the relative error of the amplitude, even if the multiplier agrees on two meshes by
-    coincidence.
+    Near a Hopf point the exponent is proportional to the squared amplitude. Its relative error is therefore
+    twice the error of the amplitude, even if the multiplier agrees on two meshes by coincidence.
     """
     modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
     return modulus * abs(log(modulus)) if modulus else 0.0

@@ -4,6 +4,8 @@ After the elimination of the intervals (`elimination`) a system for the state at
 Its last row is the phase condition. N: orbit values. K: intervals, s: stages each, n: unknowns of a state.
 """
 
+from functools import cached_property
+
 import numpy as np
 
 from ....arrays import Array, Complex
@@ -55,10 +57,16 @@ class Linearisation:
         )
         return step
 
+    @cached_property
+    def partial_multipliers(self) -> Complex:
+        """Multipliers over the solved part of the period, (rank,); first computed before another matrix is
+        assembled."""
+        return partial_multipliers(self._memory.propagator, self.orbit)
+
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return multipliers_over_period(partial_multipliers(self._memory.propagator, self.orbit), self.orbit)
+        return multipliers_over_period(self.partial_multipliers, self.orbit)
 
 
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
