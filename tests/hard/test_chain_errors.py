@@ -9,13 +9,45 @@ import os
 import numpy as np
 import pytest
 
+from rodsweep.discretization.stress.form import StressForm
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.point import Unsolvable
 
-from .cycles import Case, broken_promises, chain_of, first_hopf, random_case
+from .cycles import Case, broken_promises, chain_from, chain_of, first_hopf, random_case
 
 CHAINS, BATCH, POINTS = max(3, int(os.environ.get("RODSWEEP_RODS", "6")) // 5), 3, 10
+COLUMNS = ("k1", "k2", "k3", "gamma1", "gamma2", "gamma3")
 STEPS = {"F": (1.003, 1.05), "k2": (0.9, 1.1)}
 """Ratios of successive values."""
+TWO_SEGMENTS = {
+    "y changes the sign of its error where the chain's cycles shrink": (
+        {
+            "F": 74.60995683986623,
+            "k1": 1350.5018055503976,
+            "k2": 311.258390938865,
+            "gamma3": 0.002616628224146373,
+            "gamma1": 0.5492809444273703,
+        },
+        (0.195, 2.8145872298514814, ("k1", "k2", "k3", "gamma3")),
+        (1e-7, "k2", 1.02, 6),
+    ),
+    "extrema whose errors grow faster than the tails": (
+        {
+            "F": 10.639601595136423,
+            "k1": 1054.6813420163605,
+            "k2": 12.203956315124223,
+            "gamma3": 0.12006426403580528,
+            "gamma1": 0.6157517958242121,
+        },
+        (0.756, 0.29692617478869765, ("k1", "k2", "k3")),
+        (1e-5, "F", 1.03, 8),
+    ),
+}
+"""A rod; where its second segment begins, and which of its constants have which factor there; accuracy,
+parameter, ratio and points of a chain."""
 
 
 def chain(index):
@@ -54,3 +86,21 @@ def test_error_that_changes_its_sign_where_it_is_measured_is_not_believed():
     cycles = list(chain_of(case, "F", 1.0482541621611525, 8))
     assert len(cycles) == 8
     assert [broken_promises(found, case.accuracy) for found in cycles] == [[]] * 8
+
+
+def in_two_segments(rod, start, factor, names):
+    """The rod with a second segment, in whose constants of those names there is a factor."""
+    first = (1.0,) * 6
+    behind = tuple(factor if name in names else 1.0 for name in COLUMNS)
+    profile = Profile((0.0, start, start, 1.0), (first, first, behind, behind))
+    return Rod(**rod, build=Build(profile=profile))
+
+
+@pytest.mark.parametrize("rod, segment, chain_steps", TWO_SEGMENTS.values(), ids=TWO_SEGMENTS.keys())
+def test_errors_in_time_grow_with_the_energy_that_is_lost(rod, segment, chain_steps):
+    """Errors of y and of other extrema were 1.8 times their estimates."""
+    arm = in_two_segments(rod, *segment)
+    accuracy, parameter, ratio, points = chain_steps
+    cycles = list(chain_from(StressForm(arm, motion_mesh(arm, accuracy)), *chain_steps))
+    assert len(cycles) >= points - 1
+    assert [broken_promises(found, accuracy) for found in cycles] == [[]] * len(cycles)

@@ -20,6 +20,7 @@ from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
+from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, newton, with_orbit_matrix
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -27,7 +28,7 @@ from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
-from .accuracy.energy_errors import energy_errors
+from .accuracy.error_indicators import error_indicators
 from .accuracy.refinement import calibrated_cycle, matrix_distance, newton_tolerance, with_calibrated_errors
 from .along_parameter import (
     CyclePredictor,
@@ -171,13 +172,11 @@ def cycle_from_neighbour(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
     found = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
-    known = neighbour.calibration.scaled_on_chain(
-        found.orbit,
-        relative_parameter_difference(neighbour.predictor.orbit.form, form, name),
-        energy_errors(found),
-    )
+    path = CyclePath(found.orbit)
+    change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
+    known = neighbour.calibration.scaled_on_chain(found.orbit, change, error_indicators(found, path))
     if known.is_valid:
-        cycle = with_calibrated_errors(known, found, accuracy)
+        cycle = with_calibrated_errors(known, found, accuracy, path)
         if cycle.errors.largest_error <= accuracy:
             return cycle
     return calibrated_cycle(found, known, accuracy, name)

@@ -8,6 +8,7 @@ these errors are scaled up as the coefficient tails of the orbits grow.
 
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from ...orbit.path_differences import LARGEST_Y, PERIOD_CHANGE, WHOLE_PATH, WORS
 from ...orbit.tails import tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_error
-from .error_growth import energy_growth, growth_factors, tail_growth, tails_and_size
+from .error_growth import growth_factors, indicator_growth, tail_growth, tails_and_size
 
 MULTIPLIER_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration; the smaller
@@ -28,7 +29,7 @@ indices are the indices of `path_differences`."""
 ERROR_COUNT = 5
 """Length of the error arrays of a calibration: four errors of `path_differences`, and the error of the
 largest nontrivial multiplier."""
-CALIBRATION_ARRAYS = ("space", "time", "fall", "power", "tails", "energy")
+CALIBRATION_ARRAYS = ("space", "time", "fall", "power", "tails", "indicators")
 """Names of the arrays of a calibration that a checkpoint stores."""
 
 
@@ -52,13 +53,15 @@ class Calibration:
     reach: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
-    energy: Array = field(default_factory=lambda: np.zeros(2))
-    """`energy_errors` of the measured orbit, (2,); 0 if unknown."""
+    indicators: Array = field(default_factory=lambda: np.full(3, inf))
+    """`error_indicators` of the measured orbit, (3,); inf if unknown."""
     error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
+    extrema_growth: float = 1.0
+    """Estimated growth factor of the errors of extrema since the measurement, if larger than both."""
 
     def arrays(self) -> dict[str, Array]:
-        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), energy (2,), reach and mesh,
+        """Named arrays for a checkpoint: errors and rates (5,), tails (3,), indicators (3,), reach and mesh,
         without `error_growth`."""
         errors = {name: getattr(self, name) for name in CALIBRATION_ARRAYS}
         numbers = {"reach": np.array(self.reach), "calibrated_mesh": self.mesh.as_array}
@@ -68,19 +71,21 @@ class Calibration:
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
         """The calibration from the named arrays that `Calibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
-        errors = {name: arrays[name] for name in CALIBRATION_ARRAYS}
+        errors: dict[str, Any] = {name: arrays[name] for name in CALIBRATION_ARRAYS}
         return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
-    def scaled_on_chain(self, orbit: Orbit, change: float, energy: Array) -> "Calibration":
+    def scaled_on_chain(self, orbit: Orbit, change: float, indicators: Array) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a chain; `reach` is inf if the orbit
-        has shrunk too much. change: relative change of the parameter since the previous orbit. energy:
-        `energy_errors` of the later orbit, (2,)."""
+        has shrunk too much. change: relative change of the parameter since the previous orbit.
+        indicators: `error_indicators` of the later orbit, (3,)."""
         tails = tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails[-1]
         growth = growth_factors(self.tails, tails)
-        growth[1] = max(growth[1], energy_growth(self.energy, energy))
-        return replace(self, error_growth=growth, reach=inf if dies else self.reach + change)
+        in_time, of_extrema = indicator_growth(self.indicators, indicators)
+        growth[1] = max(growth[1], in_time)
+        reach = inf if dies else self.reach + change
+        return replace(self, error_growth=growth, extrema_growth=of_extrema, reach=reach)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
@@ -124,6 +129,8 @@ class Calibration:
         larger = float(self.error_growth.max())
         # Extrema and multipliers mix the errors in space and in time, so the larger growth applies.
         stated[2:] = _errors_with_safety_factors(self.space * larger, self.time * larger, accuracy)[2:]
+        # Extrema other than the largest y lie between time nodes.
+        stated[2] *= max(self.extrema_growth / larger, 1.0)
         return CycleErrors(*stated.tolist())
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:

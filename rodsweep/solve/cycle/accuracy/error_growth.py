@@ -1,11 +1,13 @@
-"""Growth of the errors of a mesh along a chain, from coefficient tails, sizes and lost energies of orbits."""
+"""Growth of the errors of a mesh along a chain, from coefficient tails, sizes and error indicators of orbits."""
 
 import numpy as np
 
 from ....arrays import Array
+from ....determinant.exponents import EXPONENT_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.tails import smooth_tails
 from .calibration_settings import CALIBRATION_SETTINGS
+from .error_indicators import LAST_HARMONICS
 
 
 def tails_and_size(orbit: Orbit) -> Array:
@@ -20,7 +22,7 @@ def growth_factors(before: Array, after: Array) -> Array:
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
-    `energy_growth` includes this factor for the errors in time. A predicted decrease is ignored.
+    `indicator_growth` includes this factor for the errors in time. A predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
     growth = np.maximum(tail_growth(before, after), 1.0)
@@ -35,11 +37,12 @@ def tail_growth(before: Array, after: Array) -> Array:
     return change
 
 
-def energy_growth(before: Array, after: Array) -> float:
-    """Estimated growth factor of the errors in time between two orbits of a chain; 0 if an energy is unknown.
+def indicator_growth(before: Array, after: Array) -> tuple[float, float]:
+    """Returns (growth of errors in time, growth of errors of extrema), between two orbits of a chain.
 
-    before, after: `energy_errors` of both orbits, (2,) each. The tail in time is the largest of all fields
+    before, after: `error_indicators` of both orbits, (3,) each. The tail in time is the largest of all fields
     and intervals, and may belong to a field on which the cycle hardly depends. The lost energy is the sum
-    over all fields and intervals.
+    over all fields and intervals. Between the time nodes, errors grow with the last harmonics of the path.
     """
-    return float((after / before).max()) if before.all() else 0.0
+    growth = after / np.maximum(before, EXPONENT_SETTINGS.least_divisor)
+    return float(growth[:LAST_HARMONICS].max()), float(growth[LAST_HARMONICS])

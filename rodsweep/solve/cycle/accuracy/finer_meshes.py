@@ -17,7 +17,7 @@ from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import LARGEST_Y, path_differences
 from .calibration import Calibration, calibration_of
 from .calibration_settings import CALIBRATION_SETTINGS
-from .energy_errors import energy_errors
+from .error_indicators import AMPLITUDE_ERROR, error_indicators
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,9 +70,10 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
         space, time = map(np.maximum, (space, time), before.min_remeasured_errors(found.orbit))
     # The error of the largest y may be small only because it changes its sign near this cycle.
-    by_energy = energy_errors(found)
-    time[LARGEST_Y] = max(time[LARGEST_Y], by_energy[1] / CALIBRATION_SETTINGS.safety_factor)
-    return replace(calibration_of(mesh, space, time, found.orbit, before), energy=by_energy)
+    indicators = error_indicators(found, measured.path)
+    by_energy = indicators[AMPLITUDE_ERROR] / CALIBRATION_SETTINGS.safety_factor
+    time[LARGEST_Y] = max(time[LARGEST_Y], by_energy)
+    return replace(calibration_of(mesh, space, time, found.orbit, before), indicators=indicators)
 
 
 class ComparedCycle:

@@ -32,10 +32,12 @@ from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_divisor, over_minima
 from .refinement_settings import REFINEMENT_SETTINGS
 
 
-def with_calibrated_errors(calibration: Calibration, found: ConvergedOrbit, accuracy: float) -> RefinedCycle:
+def with_calibrated_errors(
+    calibration: Calibration, found: ConvergedOrbit, accuracy: float, path: CyclePath | None = None
+) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
-    scaled to this orbit. accuracy: requested relative accuracy."""
-    path = CyclePath(found.orbit)
+    scaled to this orbit. accuracy: requested relative accuracy. path: path of the orbit, if known."""
+    path = path or CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0

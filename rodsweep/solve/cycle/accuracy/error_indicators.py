@@ -1,4 +1,5 @@
-"""Energy that is lost by the collocation in time, and the error of the amplitude of a cycle due to this loss.
+"""Indicators of the errors of a cycle in time: the energy lost by the collocation, the error of the amplitude
+due to this loss, and the last harmonics of the tip's path.
 
 Forces and drag balance over a period of the exact cycle. On a mesh the collocation loses some more energy:
 with a linear law, each time interval loses the square of a norm of its truncation error. All these losses
@@ -9,11 +10,20 @@ by comparison with a finer mesh may vanish.
 import numpy as np
 
 from ....arrays import Array, Complex
+from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 
+LOST_ENERGY, AMPLITUDE_ERROR, LAST_HARMONICS = range(3)
+"""Indices into the array that `error_indicators` returns."""
+LAST_HARMONIC_COUNT = 3
+"""Number of the last harmonics. The path of a symmetric orbit has even harmonics in x and odd harmonics in y
+and theta; only the slopes determine the very last harmonic."""
 
-def energy_errors(found: ConvergedOrbit) -> Array:
-    """Relative errors due to the time intervals, (2,): w/(2 E), and the estimated error of the amplitude.
+
+def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
+    """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
+    amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y. path: path of
+    the orbit `found`.
 
     w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
     proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A
@@ -27,7 +37,9 @@ def energy_errors(found: ConvergedOrbit) -> Array:
     # The squared energy norm is twice the elastic energy.
     twice_energy = float((orbit.form.energy_norm(orbit.regular_states) ** 2).mean())
     in_one_part = loss / twice_energy
-    return np.array([in_one_part, in_one_part / _decay_in_one_part(found.matrix.partial_multipliers)])
+    of_amplitude = in_one_part / _decay_in_one_part(found.matrix.partial_multipliers)
+    harmonics = float(np.linalg.norm(path.tip_coefficients[-LAST_HARMONIC_COUNT:]))
+    return np.array([in_one_part, of_amplitude, harmonics / abs(path.extrema["tip_y_max"])])
 
 
 def _decay_in_one_part(partial: Complex) -> float:
