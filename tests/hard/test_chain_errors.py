@@ -8,11 +8,13 @@ import os
 
 import numpy as np
 import pytest
+from surveyed import survey_only
 
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.hopf_start import hopf_point_below
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.point import Unsolvable
 
@@ -104,3 +106,49 @@ def test_errors_in_time_grow_with_the_energy_that_is_lost(rod, segment, chain_st
     cycles = list(chain_from(StressForm(arm, motion_mesh(arm, accuracy)), *chain_steps))
     assert len(cycles) >= points - 1
     assert [broken_promises(found, accuracy) for found in cycles] == [[]] * len(cycles)
+
+
+def random_arm(index):
+    """Of that number: a rod of up to three segments, or a cone, or of rubber, and a chain's accuracy,
+    parameter, ratio and points; None where it has no Hopf point well below its crushing force."""
+    random = np.random.default_rng([16, index])
+    names = (("k1", "k2", "k3"), ("k3",), ("k1", "k2", "k3", "gamma3"))[random.integers(3)]
+    stretched, u, rows = random.uniform(2, 4), [0.0], [(1.0,) * 6]
+    for start in np.sort(random.uniform(0.03, 0.97, random.integers(3))):
+        factor = 10 ** random.uniform(-2 if random.random() < 0.3 else -1, 1)
+        u += [float(start)] * 2
+        before = zip(rows[-1], COLUMNS, strict=True)
+        rows += [rows[-1], tuple(v * factor if name in names else 1.0 for v, name in before)]
+    law = "neo_hookean" if random.random() < 0.2 else "linear"
+    profile = Profile((*u, 1.0), (*rows, rows[-1])) if len(u) > 1 else None
+    rod = {"k1": 10**stretched, "k2": 10 ** random.uniform(1, 3), "gamma1": random.uniform(0.5, 1)}
+    rod |= {
+        "gamma3": random.uniform(0, 3) / rod["k2"],
+        "taper": float(random.choice([1.0, random.uniform(0.4, 1)])),
+    }
+    rod |= {"build": Build(law, profile=profile) if profile else Build(law)}
+    crushing = Rod(F=0.0, **rod).crushing_force
+    hopf = hopf_point_below(Rod(F=min(150.0, 0.8 * crushing), **rod))
+    parameter = random.choice(["F", "k2"])
+    beyond, ratio = 1 + 10 ** random.uniform(-2, 0), random.uniform(*STEPS[parameter])
+    if hopf is None or hopf.F * beyond * ratio**POINTS > 0.9 * crushing:
+        return None
+    accuracy = 10 ** random.uniform(-8, -4)
+    return Rod(F=hopf.F * beyond, **rod), (accuracy, str(parameter), ratio, POINTS)
+
+
+@survey_only
+@pytest.mark.parametrize("first", range(0, 5 * CHAINS, BATCH))
+def test_cycles_of_random_arms_keep_their_promises(first):
+    wrong = []
+    for index in range(first, first + BATCH):
+        arm = random_arm(index)
+        if arm is None:
+            continue
+        rod, steps = arm
+        try:
+            cycles = list(chain_from(StressForm(rod, motion_mesh(rod, steps[0])), *steps))
+        except Unsolvable:
+            continue
+        wrong += [(index, broken) for found in cycles if (broken := broken_promises(found, steps[0]))]
+    assert wrong == []

@@ -1,4 +1,4 @@
-"""Growth of the errors of a mesh along a chain, from coefficient tails, sizes and error indicators of orbits."""
+"""Growth of the errors of a mesh along a chain, from coefficient tails, sizes and error indicators."""
 
 import numpy as np
 
