@@ -3,7 +3,6 @@
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.exponents import EXPONENT_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.tails import smooth_tails
 from .calibration_settings import CALIBRATION_SETTINGS
@@ -44,5 +43,5 @@ def indicator_growth(before: Array, after: Array) -> tuple[float, float]:
     and intervals, and may belong to a field on which the cycle hardly depends. The lost energy is the sum
     over all fields and intervals. Between the time nodes, errors grow with the last harmonics of the path.
     """
-    growth = after / np.maximum(before, EXPONENT_SETTINGS.least_divisor)
+    growth = after / before
     return float(growth[:LAST_HARMONICS].max()), float(growth[LAST_HARMONICS])

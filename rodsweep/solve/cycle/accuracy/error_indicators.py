@@ -12,6 +12,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
+from .cycle_errors import CYCLE_ERROR_SETTINGS
 
 LOST_ENERGY, AMPLITUDE_ERROR, LAST_HARMONICS = range(3)
 """Indices into the array that `error_indicators` returns."""
@@ -22,8 +23,8 @@ and theta; only the slopes determine the very last harmonic."""
 
 def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
     """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
-    amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y. path: path of
-    the orbit `found`.
+    amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y; not below
+    `CYCLE_ERROR_SETTINGS.rounding_error`. path: path of the orbit `found`.
 
     w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
     proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A
@@ -39,7 +40,8 @@ def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
     in_one_part = loss / twice_energy
     of_amplitude = in_one_part / _decay_in_one_part(found.matrix.partial_multipliers)
     harmonics = float(np.linalg.norm(path.tip_coefficients[-LAST_HARMONIC_COUNT:]))
-    return np.array([in_one_part, of_amplitude, harmonics / abs(path.extrema["tip_y_max"])])
+    indicators = np.array([in_one_part, of_amplitude, harmonics / abs(path.extrema["tip_y_max"])])
+    return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
 
 
 def _decay_in_one_part(partial: Complex) -> float:
