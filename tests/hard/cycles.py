@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.elements.mesh import mesh_with_edges, uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -74,25 +74,29 @@ def chain_of(case, parameter, ratio, points):
     """The cycles of a chain in steps of a parameter, from the one of the case on, as far as it goes."""
     hopf = first_hopf(case.k1, case.k2, case.gamma3)
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    form = StressForm(rod, uniform_mesh(1, 16))
-    memory = NewtonWorkspace()
+    yield from chain_from(StressForm(rod, uniform_mesh(1, 16)), case.accuracy, parameter, ratio, points)
+
+
+def chain_from(form, accuracy, parameter, ratio, points):
+    """The cycles of a chain in steps of a parameter, behind that of the rod of a form, as far as it goes."""
+    rod, memory = form.rod, NewtonWorkspace()
     start = orbit_from_hopf(form, hopf_point_below(rod), memory)
-    found = refined_cycle(start, case.accuracy, memory, parameter)
-    neighbour = Neighbour.from_cycle(found, None, parameter, case.accuracy)
+    found = refined_cycle(start, accuracy, memory, parameter)
+    neighbour = Neighbour.from_cycle(found, None, parameter, accuracy)
     for _ in range(points):
         rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
         try:
-            found = cycle_from_neighbour(neighbour, replace(form, rod=rod), parameter, case.accuracy, memory)
+            found = cycle_from_neighbour(neighbour, replace(form, rod=rod), parameter, accuracy, memory)
         except Unsolvable:
             return
         yield found
-        neighbour = Neighbour.from_cycle(found, neighbour, parameter, case.accuracy)
+        neighbour = Neighbour.from_cycle(found, neighbour, parameter, accuracy)
 
 
 def finer(orbit):
     """The same cycle on a mesh that is far finer, converged to rounding, with its matrix."""
     here = mesh_of(orbit)
-    grid = uniform_mesh(here.element_count, here.order + ceil(FINER_ORDER / here.element_count))
+    grid = mesh_with_edges(here.edges, here.order + ceil(FINER_ORDER / here.element_count))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.interval_count))
     return with_matrix_within_distance(
         newton(orbit.on_mesh(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0

@@ -20,7 +20,7 @@ CHECKPOINTS = "chain-*"
 """Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
 ITEM_RESULTS = "unit-*"
 """Pattern of the file names of results of work items, including files that a kill left unfinished."""
-CHECKPOINT_HEAD = b"rodsweep checkpoint 6\n"
+CHECKPOINT_HEAD = b"rodsweep checkpoint 7\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 1\n"

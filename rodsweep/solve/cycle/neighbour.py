@@ -20,6 +20,7 @@ from ...model.material.build import Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
+from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -27,6 +28,7 @@ from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..point import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
+from .accuracy.error_indicators import error_indicators
 from .accuracy.refinement import (
     cycle_with_calibrated_errors,
     cycle_with_measured_errors,
@@ -175,11 +177,11 @@ def cycle_from_neighbour(
             "the rods have different unknowns: Omega is an unknown only at small rotational drag"
         )
     found = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
-    known = neighbour.calibration.scaled_on_chain(
-        found.orbit, relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
-    )
+    path = CyclePath(found.orbit)
+    change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
+    known = neighbour.calibration.scaled_on_chain(found.orbit, change, error_indicators(found, path))
     if known.is_valid:
-        cycle = cycle_with_calibrated_errors(known, found, accuracy)
+        cycle = cycle_with_calibrated_errors(known, found, accuracy, path)
         if cycle.errors.largest_weighted_error <= accuracy:
             return cycle
     return cycle_with_measured_errors(found, known, accuracy, name)

@@ -26,7 +26,6 @@ from ...discretization.stress.tip_motion import tip_matrices
 from .compiled_measures import (
     REFLECTION_SIGNS,
     harmonic_sizes,
-    power_means_and_least_stretch,
     tip_path,
     write_powers,
 )
@@ -180,9 +179,8 @@ def measures_of(path: CyclePath) -> Measures:
     """Scalar measures and harmonics of the orbit of `path`."""
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
-    mean = power_means_and_least_stretch(
-        np.ascontiguousarray(orbit.stage_states), orbit.collocation.weights, orbit.semidiscrete_equations
-    )
+    mean = orbit.means
+
     return Measures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,

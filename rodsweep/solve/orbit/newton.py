@@ -6,9 +6,11 @@ from typing import Protocol
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
+from ...model.compiled.compilation import compiled_for_vectors
 from ...watch import report
 from ..point import Unsolvable
-from .matrix.linearisation import Linearisation, largest_relative_change
+from .matrix.linearisation import Linearisation
 from .matrix.workspace import NewtonWorkspace
 from .orbit import Orbit
 
@@ -41,6 +43,10 @@ class NewtonMatrix(Protocol):
 
     tangent: Array | None
     workspace: NewtonWorkspace
+
+    @property
+    def multipliers_over_solved_part(self) -> Complex:
+        """Multipliers over the solved part of the period, (rank,), with the trivial multiplier."""
 
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
@@ -163,3 +169,26 @@ def relative_change(orbit: Orbit, step: Array) -> float:
     """Largest relative change of n2, m3 and the period in the Newton step `step`, (N,): the largest change of
     each quantity, divided by the largest modulus of this quantity; inf if the step is not finite."""
     return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.node_count))
+
+
+@compiled_for_vectors
+def largest_relative_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
+    """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
+    divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:
+    length of a state. nodes: number of nodes without the tip."""
+    largest = abs(step[-1]) / abs(values[-1])
+    for change in step:
+        # NaN would be lost in the comparisons below.
+        if not np.isfinite(change):
+            return np.inf
+    most = np.zeros(PLANE_COMPONENT_COUNT)
+    size = np.zeros(PLANE_COMPONENT_COUNT)
+    # The state at the start is left out: it is the last stage of the previous part of the period.
+    for first in range(unknowns, len(values) - 1, unknowns):
+        for a in range(1, PLANE_COMPONENT_COUNT):
+            for i in range(nodes):
+                at = first + stress_index(a, i, nodes)
+                most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
+    for a in range(1, PLANE_COMPONENT_COUNT):
+        largest = max(largest, most[a] / size[a])
+    return largest

@@ -7,7 +7,7 @@ Therefore the largest y is at a time node, where y is as accurate as T.
 """
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -17,6 +17,7 @@ from ...discretization.elements.collocation import Collocation, radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
+from .compiled_measures import OrbitMeans, power_means_and_least_stretch
 from .semidiscrete import SemidiscreteEquations
 from .symmetry import Symmetry
 
@@ -92,6 +93,13 @@ class Orbit:
     @property
     def semidiscrete_equations(self) -> SemidiscreteEquations:
         return _semidiscrete(self.form, self.symmetry, self.interval_count, self.stage_count)
+
+    @cached_property
+    def means(self) -> OrbitMeans:
+        """Mean powers over a period, and the smallest h1."""
+        return power_means_and_least_stretch(
+            np.ascontiguousarray(self.stage_states), self.collocation.weights, self.semidiscrete_equations
+        )
 
     @property
     def max_energy_norm(self) -> float:

@@ -8,6 +8,7 @@ scaled up at later cycles as the coefficient tails of the orbits grow.
 
 from dataclasses import dataclass, field, replace
 from math import ceil, inf
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +18,10 @@ from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
-from ...orbit.tails import smooth_tails, tails_of
+from ...orbit.tails import tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_weighted_error
+from .error_growth import error_growth_factors, indicator_growth, squared_tail_growth, tails_and_size
 
 MULTIPLIER_INDEX = 4
 """Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
@@ -27,7 +29,12 @@ ERROR_COUNT = 5
 """Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
 
 CHECKPOINT_FIELDS = dict(
-    space="space_errors", time="time_errors", fall="space_decay", power="time_order", tails="tails_and_size"
+    space="space_errors",
+    time="time_errors",
+    fall="space_decay",
+    power="time_order",
+    tails="tails_and_size",
+    indicators="indicators",
 )
 """Field of `Calibration` by the name of its array in a checkpoint."""
 
@@ -50,11 +57,15 @@ class Calibration:
     parameter_change: float
     """Sum of the relative changes of the parameter since the measurement; inf if the errors no longer
     apply."""
+    indicators: Array = field(default_factory=lambda: np.full(3, inf))
+    """`error_indicators` of the measured orbit, (3,); inf if unknown."""
     error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
+    extrema_growth: float = 1.0
+    """Estimated growth factor of the errors of extrema since the measurement, if larger than both."""
 
     def arrays(self) -> dict[str, Array]:
-        """All fields except `error_growth` as named arrays, for a checkpoint."""
+        """All fields except the growth factors as named arrays, for a checkpoint."""
         errors = {name: getattr(self, field) for name, field in CHECKPOINT_FIELDS.items()}
         numbers = {"reach": np.array(self.parameter_change), "calibrated_mesh": self.mesh.as_array}
         return errors | numbers
@@ -63,25 +74,27 @@ class Calibration:
     def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
         """The calibration from the named arrays that `Calibration.arrays` returns."""
         mesh = OrbitMesh.from_array(arrays["calibrated_mesh"])
-        errors = {field: arrays[name] for name, field in CHECKPOINT_FIELDS.items()}
+        errors: dict[str, Any] = {field: arrays[name] for name, field in CHECKPOINT_FIELDS.items()}
         return cls(mesh=mesh, parameter_change=float(arrays["reach"]), **errors)
 
-    def scaled_on_chain(self, orbit: Orbit, change: float) -> "Calibration":
+    def scaled_on_chain(self, orbit: Orbit, change: float, indicators: Array) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a chain; `parameter_change` is inf if
-        the orbit has shrunk too much. change: relative change of the parameter since the previous orbit."""
-        tails = _tails_and_size(orbit)
+        the orbit has shrunk too much. change: relative change of the parameter since the previous orbit.
+        indicators: `error_indicators` of the later orbit, (3,)."""
+        tails = tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
-        growth = _error_growth_factors(self.tails_and_size, tails)
-        return replace(
-            self, error_growth=growth, parameter_change=inf if dies else self.parameter_change + change
-        )
+        growth = error_growth_factors(self.tails_and_size, tails)
+        in_time, of_extrema = indicator_growth(self.indicators, indicators)
+        growth[1] = max(growth[1], in_time)
+        moved = inf if dies else self.parameter_change + change
+        return replace(self, error_growth=growth, extrema_growth=of_extrema, parameter_change=moved)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
-        after = _tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (0.0, 0.0, 1.0)
-        return replace(self, error_growth=_error_growth_factors(self.tails_and_size, after))
+        after = tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (0.0, 0.0, 1.0)
+        return replace(self, error_growth=error_growth_factors(self.tails_and_size, after))
 
     @property
     def with_outdated_errors(self) -> "Calibration":
@@ -102,7 +115,7 @@ class Calibration:
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,): lower limits of errors measured again at `orbit`
         on this mesh: fractions of the present errors that decrease with the coefficient tails."""
-        shrinkage = np.minimum(_squared_tail_growth(self.tails_and_size, _tails_and_size(orbit)), 1.0)
+        shrinkage = np.minimum(squared_tail_growth(self.tails_and_size, tails_and_size(orbit)), 1.0)
         in_space, in_time = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
         return in_space * self.space_errors, in_time * self.time_errors
 
@@ -119,6 +132,8 @@ class Calibration:
         stated[2:] = _errors_with_safety_factors(
             self.space_errors * larger, self.time_errors * larger, accuracy
         )[2:]
+        # Extrema other than the largest y lie between time nodes.
+        stated[2] *= max(self.extrema_growth / larger, 1.0)
         return CycleErrors(*stated.tolist())
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
@@ -172,29 +187,6 @@ def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> A
     return errors
 
 
-def _tails_and_size(orbit: Orbit) -> Array:
-    """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
-    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
-
-
-def _error_growth_factors(before: Array, after: Array) -> Array:
-    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1:
-    absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
-    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
-    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each."""
-    growth: Array = np.maximum(_squared_tail_growth(before, after), 1.0) * max(
-        (before[2] / after[2]) ** 2, 1.0
-    )
-    return growth
-
-
-def _squared_tail_growth(before: Array, after: Array) -> Array:
-    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
-    after: relative tails and size, (3,) each."""
-    change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
-    return change
-
-
 def calibration_of(
     mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
@@ -203,7 +195,7 @@ def calibration_of(
     the same elements but another order, the errors on both meshes give the rate in space; if the number of
     intervals differs, the order in time. Otherwise the rates of `before` are kept. None: rates from the
     coefficients and the stages."""
-    tails = _tails_and_size(orbit)
+    tails = tails_and_size(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
         fall = _limited_space_decay(np.full(ERROR_COUNT, decay))

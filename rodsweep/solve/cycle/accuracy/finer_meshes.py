@@ -20,8 +20,10 @@ from ...orbit.newton import (
     with_matrix_within_distance,
 )
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...orbit.path_differences import path_differences
+from ...orbit.path_differences import Y_INDEX, path_differences
 from .calibration import Calibration, calibration_of
+from .calibration_settings import CALIBRATION_SETTINGS
+from .error_indicators import AMPLITUDE_ERROR, error_indicators
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +75,11 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
     if before is not None and before.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
         space, time = map(np.maximum, (space, time), before.min_remeasured_errors(found.orbit))
-    return calibration_of(mesh, space, time, found.orbit, before)
+    # The error of the largest y may be small only because it changes its sign near this cycle.
+    indicators = error_indicators(found, measured.path)
+    by_energy = indicators[AMPLITUDE_ERROR] / CALIBRATION_SETTINGS.safety_factor
+    time[Y_INDEX] = max(time[Y_INDEX], by_energy)
+    return replace(calibration_of(mesh, space, time, found.orbit, before), indicators=indicators)
 
 
 class ComparedCycle:

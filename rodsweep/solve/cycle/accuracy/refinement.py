@@ -33,12 +33,14 @@ from .refinement_settings import REFINEMENT_SETTINGS
 
 
 def cycle_with_calibrated_errors(
-    calibration: Calibration, found: ConvergedOrbit, accuracy: float
+    calibration: Calibration, found: ConvergedOrbit, accuracy: float, path: CyclePath | None = None
 ) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
     scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled at
-    a nearby orbit, and of the amplitude error. accuracy: requested relative accuracy."""
-    path = CyclePath(found.orbit)
+    a nearby orbit, and of the amplitude error. accuracy: requested relative accuracy. path: path of the
+    orbit, if known."""
+
+    path = path or CyclePath(found.orbit)
     errors = calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_and_trivial_error(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
@@ -46,7 +48,7 @@ def cycle_with_calibrated_errors(
     by_matrix = (
         REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.matrix_distance + trivial_error)
     )
-    by_exponent = errors.amplitude_error * _multiplier_per_exponent(multipliers)
+    by_exponent = 2 * errors.amplitude_error * _multiplier_per_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
@@ -56,8 +58,8 @@ def _multiplier_per_exponent(multipliers: Complex) -> float:
     """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
     |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
 
-    The exponent has the relative error of the amplitude, even if the multiplier agrees on two meshes by
-    coincidence.
+    Near a Hopf point the exponent is proportional to the squared amplitude. Its relative error is therefore
+    twice the error of the amplitude, even if the multiplier agrees on two meshes by coincidence.
     """
     modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
     return modulus * abs(log(modulus)) if modulus else 0.0

@@ -4,11 +4,13 @@ After the elimination of the intervals (`elimination`) a system for the state at
 Its last row is the phase condition. N: orbit values. K: intervals, s: stages each, n: unknowns of a state.
 """
 
+from functools import cached_property
+
 import numpy as np
 
 from ....arrays import Array, Complex
 from ....discretization.nodal_rod import NO_JUMP_CHANGE, NodalChange
-from ....discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
+from ....discretization.state_layout import PLANE_COMPONENT_COUNT
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
 from ..orbit import Orbit
@@ -55,12 +57,16 @@ class Linearisation:
         )
         return step
 
+    @cached_property
+    def multipliers_over_solved_part(self) -> Complex:
+        """Multipliers over the solved part of the period, (rank,); first computed before another matrix is
+        assembled."""
+        return multipliers_over_solved_part(self._memory.propagator, self.orbit)
+
     def multipliers(self) -> Complex:
         """Floquet multipliers larger than rounding error, by descending modulus, (rank,), with the trivial
         multiplier."""
-        return multipliers_over_period(
-            multipliers_over_solved_part(self._memory.propagator, self.orbit), self.orbit
-        )
+        return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
 
 
 def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
@@ -225,26 +231,3 @@ def newton_step_with_factors(
     rights[0, :n] = closing_residual(points, p) - ends[0]
     rights[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
     return orbit_changes(rights, by_period, columns, p, factors)[0]
-
-
-@compiled_for_vectors
-def largest_relative_change(values: Array, step: Array, unknowns: int, nodes: int) -> float:
-    """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
-    divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:
-    length of a state. nodes: number of nodes without the tip."""
-    largest = abs(step[-1]) / abs(values[-1])
-    for change in step:
-        # NaN would be lost in the comparisons below.
-        if not np.isfinite(change):
-            return np.inf
-    most = np.zeros(PLANE_COMPONENT_COUNT)
-    size = np.zeros(PLANE_COMPONENT_COUNT)
-    # The state at the start is left out: it is the last stage of the previous part of the period.
-    for first in range(unknowns, len(values) - 1, unknowns):
-        for a in range(1, PLANE_COMPONENT_COUNT):
-            for i in range(nodes):
-                at = first + stress_index(a, i, nodes)
-                most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
-    for a in range(1, PLANE_COMPONENT_COUNT):
-        largest = max(largest, most[a] / size[a])
-    return largest

@@ -1,0 +1,51 @@
+"""Indicators of the errors of a cycle in time: the energy lost by the collocation, the error of the amplitude
+due to this loss, and the last harmonics of the tip's path.
+
+Forces and drag balance over a period of the exact cycle. On a mesh the collocation loses some more energy:
+with a linear law, each time interval loses the square of a norm of its truncation error. All these losses
+have the same sign, so their sum does not vanish at single cycles of a chain. A signed error that is measured
+by comparison with a finer mesh may vanish.
+"""
+
+import numpy as np
+
+from ....arrays import Array, Complex
+from ...orbit.measures import CyclePath
+from ...orbit.newton import ConvergedOrbit
+from .cycle_errors import CYCLE_ERROR_SETTINGS
+
+LOST_ENERGY, AMPLITUDE_ERROR, LAST_HARMONICS = range(3)
+"""Indices into the array that `error_indicators` returns."""
+LAST_HARMONIC_COUNT = 3
+"""Number of the last harmonics. The path of a symmetric orbit has even harmonics in x and odd harmonics in y
+and theta; only the slopes determine the very last harmonic."""
+
+
+def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
+    """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
+    amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y; not below
+    `CYCLE_ERROR_SETTINGS.rounding_error`. path: path of the orbit `found`.
+
+    w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
+    proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A
+    change of the amplitude decays at the rate |ln h| per part, h: the nontrivial multiplier of the slowest
+    decay over the solved part. If w is lost at a constant rate, the amplitude has the error w/(2 E |ln h|).
+    Near a fold or a Hopf point, where h = 1, this error is large.
+    """
+    orbit = found.orbit
+    mean = orbit.means
+    loss = abs(mean.injection_mean - mean.dissipation_mean) * orbit.solved_duration
+    # The squared energy norm is twice the elastic energy.
+    twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
+    in_one_part = loss / twice_energy
+    of_amplitude = in_one_part / _decay_in_one_part(found.matrix.multipliers_over_solved_part)
+    harmonics = float(np.linalg.norm(path.tip_coefficients[-LAST_HARMONIC_COUNT:]))
+    indicators = np.array([in_one_part, of_amplitude, harmonics / abs(path.extrema["tip_y_max"])])
+    return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
+
+
+def _decay_in_one_part(partial: Complex) -> float:
+    """Smallest |ln h| of the nontrivial multipliers h; 1 if there is none. partial: multipliers over the
+    solved part of the period, with the trivial multiplier, (rank,)."""
+    exponents = np.sort(np.abs(np.log(partial[partial != 0])))[1:]  # the exponent of the trivial one is 0
+    return float(exponents[0]) if len(exponents) else 1.0

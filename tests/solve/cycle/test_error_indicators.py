@@ -1,0 +1,50 @@
+"""Energy lost by the collocation in time, as an estimate of the error of the amplitude."""
+
+import numpy as np
+import pytest
+from rods import rod_of
+
+from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.stress.form import StressForm
+from rodsweep.solve.cycle.accuracy.error_indicators import AMPLITUDE_ERROR, error_indicators
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.orbit.compiled_measures import write_powers
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
+
+STAGES, FINE = 4, 24
+
+
+def converged(orbit, intervals):
+    found = newton(orbit.on_mesh(orbit.form.mesh, intervals, STAGES), 1e-11, NewtonWorkspace())
+    return with_matrix_within_distance(found, 1e-9)
+
+
+@pytest.fixture(scope="module", params=[1.01, 1.1])
+def orbit(request):
+    form = StressForm(rod_of(100.0, 1e3, 1e2, 1e-2), uniform_mesh(1, 12))
+    hopf = hopf_point_below(form.rod)
+    beyond = StressForm(rod_of(request.param * hopf.F, 1e3, 1e2, 1e-2), form.mesh)
+    return orbit_from_hopf(beyond, hopf, NewtonWorkspace())
+
+
+@pytest.mark.parametrize("intervals", [6, 8])
+def test_amplitude_error_by_energy_has_the_order_of_magnitude_of_the_error(orbit, intervals):
+    """On the same elements, so that the error is that of the time intervals alone."""
+    found, exact = converged(orbit, intervals), converged(orbit, FINE)
+    path = CyclePath(found.orbit)
+    y = [one.extrema["tip_y_max"] for one in (path, CyclePath(exact.orbit))]
+    estimate = error_indicators(found, path)[AMPLITUDE_ERROR]
+    assert estimate / 10 < abs(y[0] / y[1] - 1) < 10 * estimate
+
+
+def test_every_interval_loses_energy(orbit):
+    """The collocation never gains energy with a linear law, so the losses do not cancel."""
+    found = converged(orbit, 6).orbit
+    power = np.empty((2, found.intervals * found.stages))
+    write_powers(np.ascontiguousarray(found.points[1:]), power, found.semidiscrete)
+    lengths = found.duration * found.semidiscrete.interval_lengths
+    gained = (power[0] - power[1]).reshape(found.intervals, -1) @ found.collocation.weights * lengths
+    stored = np.diff(found.form.elastic_energy(np.ascontiguousarray(found.points[:: found.stages])))
+    assert (gained > stored).all()
