@@ -1,20 +1,10 @@
-"""Phrases for the shape and material of an arm, such as "a cone of rubber"."""
+"""Phrases for the material and the segments of an arm."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.section import Tube
 from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR
 from ..model.units import with_si_prefix
-
-
-def shape_words(arm: SlenderArm) -> str:
-    """Phrase for the shape of an arm, and for its material if it is rubber: "a cone of rubber", "an arm of
-    segments".
-    """
-    shape = "an arm"
-    if arm.shape.varies:
-        shape = "a cone" if arm.taper != 1 else "an arm of segments"
-    return shape if arm.law == LINEAR.law else f"{shape} of rubber"
 
 
 def law_words(arm: SlenderArm) -> str:

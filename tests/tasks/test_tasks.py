@@ -476,3 +476,11 @@ def test_an_onset_between_forces_far_from_each_other_is_located(F, rod):
     kinds = [CROSSING_KINDS[kind] for kind in data.change_kind.values]
     (found,) = data.change_F.values[[kind == "onset" for kind in kinds]]
     assert found == pytest.approx(rs.Rod(**rod).thresholds(F_max=50).F_onset, rel=1e-12)
+
+
+def test_flag_values_have_the_type_of_their_variable():
+    """As the CF conventions demand, also of the numbers -1 and 1 of a variable that NaN leaves open."""
+    data = rs.sweep("criticality", k1=1e4, k2=1e4, gamma3=1e-4, F_max=40, progress=False)
+    flagged = [name for name in data.variables if "flag_values" in data[name].attrs]
+    assert {"status", "criticality"} <= set(flagged)
+    assert all(data[name].attrs["flag_values"].dtype == data[name].dtype for name in flagged)

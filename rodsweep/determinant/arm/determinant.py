@@ -54,10 +54,6 @@ class ArmDeterminant:
         W, polynomials = self.propagators_for(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
         return determinant_along_chain(complex(w), W, polynomials)
 
-    def element_count(self, size: float) -> int:
-        """Number of elements for D at |w| = size."""
-        return len(self.propagators_for(size)[1])
-
     def wave_number(self, w: complex) -> float:
         """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
         return self.wave_number_and_length(w)[0]

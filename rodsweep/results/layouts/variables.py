@@ -76,7 +76,7 @@ class Variable:
     def attributes(self) -> dict[str, Any]:
         """Attributes of the variable in a result file, by name."""
         typed = {TYPED_UNIT: self.typed_unit} if self.typed_unit else {}
-        flags = flag_attributes(self.flags) if self.flags else {}
+        flags = flag_attributes(self.flags, self.dtype) if self.flags else {}
         return {"units": self.units, "long_name": self.long_name} | typed | flags
 
 
@@ -85,10 +85,11 @@ def dimension_attributes(name: str) -> dict[str, Any]:
     return dict(zip(("units", "long_name"), DIMENSIONS[name], strict=True))
 
 
-def flag_attributes(flags: Iterable[tuple[int, str]]) -> dict[str, Any]:
-    """netCDF attributes flag_values and flag_meanings from the (stored number, word) pairs of a variable."""
+def flag_attributes(flags: Iterable[tuple[int, str]], dtype: str = "|i1") -> dict[str, Any]:
+    """netCDF attributes flag_values and flag_meanings from the (stored number, word) pairs of a variable.
+    dtype: type of the variable, which flag_values must have."""
     values, meanings = zip(*flags, strict=True)
-    return {"flag_values": np.array(values, dtype="i1"), "flag_meanings": " ".join(meanings)}
+    return {"flag_values": np.array(values, dtype=dtype), "flag_meanings": " ".join(meanings)}
 
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
