@@ -9,18 +9,10 @@ import numpy as np
 
 from ..watch import report
 from .backend.petsc import PETSC_ERRORS
+from .unsolvable import Unsolvable
 
 Outcome = TypeVar("Outcome", bound=Any)
 """Result of a solver: a dataclass with the field `seconds`."""
-
-
-class Unsolvable(Exception):
-    """The rod has no solution in the model, or the numerical method finds none; the message states the
-    cause."""
-
-
-class WorkLimitReached(Unsolvable):
-    """The next matrix would exceed the requested limit of the work on a rod."""
 
 
 FAILURES = (*PETSC_ERRORS, Unsolvable, ArithmeticError, MemoryError, np.linalg.LinAlgError)

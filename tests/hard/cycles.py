@@ -19,7 +19,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, with_matrix_within_distance
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 MOST_FORCE = 200.0
 FINER_ORDER, FINER_SHARE, FINER_STAGES, LEAST_INTERVALS = 8, 1.2, 6, 10

@@ -26,7 +26,7 @@ from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, newton_step
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "4")), 2
 MOST_CYCLES, EACH = 40, 4

@@ -16,7 +16,7 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.hopf_start import hopf_point_below
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 from .cycles import Case, broken_promises, chain_from, chain_of, first_hopf, random_case
 

@@ -22,7 +22,7 @@ from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 from .cycles import Case, broken_promises, cycle_of, finer, random_case
 from .fourier import period_and_largest_y

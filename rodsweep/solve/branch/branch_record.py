@@ -6,7 +6,7 @@ from math import nan
 
 import numpy as np
 
-from ..point import Unsolvable, WorkLimitReached
+from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint

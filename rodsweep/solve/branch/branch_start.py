@@ -22,7 +22,7 @@ from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .arc import BranchCycle
 from .bordered.condition import BorderCondition
 from .bordered.scale import ArcLengthScale, deflection_of

@@ -10,7 +10,7 @@ from ...watch import SolvePosition, report
 from ...wording import counted
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure

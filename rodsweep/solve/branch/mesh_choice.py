@@ -10,7 +10,7 @@ from ...arrays import Array
 from ..cycle.accuracy.refinement import cycle_with_calibrated_errors, max_matrix_distance, newton_tolerance
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of

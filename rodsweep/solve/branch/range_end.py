@@ -6,7 +6,7 @@ from numpy.polynomial import Polynomial
 from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..orbit.orbit import Orbit
-from ..point import Unsolvable, WorkLimitReached
+from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc import (
     BranchCycle,
     arc_length_between,

@@ -22,7 +22,7 @@ from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..orbit.symmetry import NO_SYMMETRY
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix

@@ -13,7 +13,7 @@ from ...determinant.certificate.covering import Box, cover_with_boxes
 from ...determinant.certificate.first_boxes import first_boxes
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along_path
 from ...determinant.roots.newton import LocatedZero
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
 from .leading_eigenvalue import LeaderExchangeSearch

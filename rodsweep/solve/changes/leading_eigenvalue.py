@@ -16,9 +16,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
+from ..unsolvable import Unsolvable
 from .anchor_interpolation import (
     excludes_exchange,
     has_only_double_eigenvalue,

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,7 +19,8 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from ...arrays import Array
-from ..point import FAILURES, Unsolvable
+from ..point import FAILURES
+from ..unsolvable import Unsolvable
 
 Solution = TypeVar("Solution")
 

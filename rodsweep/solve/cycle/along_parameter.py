@@ -26,7 +26,7 @@ from ..orbit.normalised import (
 )
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -23,9 +23,9 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
-from ..point import Unsolvable
 from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
+from ..unsolvable import Unsolvable
 from .along_parameter import orbit_in_steps, predictor_from
 from .straight_rod import straight_rod_stability
 from .transient.motion_mesh import coarse_mesh_along_branch

@@ -25,7 +25,7 @@ from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.error_indicators import error_indicators

@@ -12,7 +12,7 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest

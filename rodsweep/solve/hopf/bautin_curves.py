@@ -19,7 +19,8 @@ from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
-from ..point import FAILURES, Unsolvable
+from ..point import FAILURES
+from ..unsolvable import Unsolvable
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEPS
 from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve
 

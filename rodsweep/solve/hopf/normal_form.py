@@ -30,7 +30,7 @@ from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, Straig
 from ...discretization.straight.mixed_form import MixedForm
 from ...discretization.straight.whole_matrices import WholeRodMatrices, straight_matrices
 from ...model.rod import Rod
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

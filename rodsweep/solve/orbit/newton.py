@@ -9,7 +9,7 @@ from ...arrays import Array, Complex
 from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ...model.compiled.compilation import compiled_for_vectors
 from ...watch import report
-from ..point import Unsolvable
+from ..unsolvable import Unsolvable
 from .matrix.linearisation import Linearisation
 from .matrix.workspace import NewtonWorkspace
 from .orbit import Orbit

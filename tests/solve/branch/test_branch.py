@@ -27,7 +27,7 @@ from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 from rodsweep.watch import reporting_to
 
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)

@@ -15,7 +15,7 @@ from rodsweep.solve.continuation.follower import (
     follow_curve,
     zero_along_step,
 )
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 STEPS = StepControl(
     first_length=0.01,

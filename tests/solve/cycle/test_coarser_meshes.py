@@ -18,7 +18,7 @@ from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
 from rodsweep.solve.orbit.path_differences import PATH_INDEX, PERIOD_INDEX, Y_INDEX, path_differences
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 ACCURACY = 1e-7
 FINE = OrbitMesh((0.0, 1.0), 19, 16, 4)

@@ -33,7 +33,7 @@ from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 from rodsweep.solve.orbit.tails import legendre_analysis_matrix, tails_of
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 """(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""

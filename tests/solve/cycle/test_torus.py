@@ -15,7 +15,7 @@ from rodsweep.solve.cycle.transient import transient
 from rodsweep.solve.cycle.transient.returns import tip_angle_row
 from rodsweep.solve.cycle.transient.torus import TORUS_TEST_SETTINGS, modulation_of
 from rodsweep.solve.motion.leading_mode import leading_mode
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 ROTATION = 1.54710

@@ -30,7 +30,7 @@ from rodsweep.solve.hopf.criticality import (
 )
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 from rodsweep.tasks.criticality import criticality_values
 from rodsweep.tasks.running.job import job_of_file
 

@@ -25,7 +25,7 @@ from rodsweep.solve.hopf.bautin_curves import (
     lies_on_curve,
 )
 from rodsweep.solve.hopf.generalised import curve_criticality
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 from rodsweep.tasks.running.job import job_of_file
 
 K2, GAMMA3 = 1e4, 1e-4

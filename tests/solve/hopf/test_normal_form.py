@@ -16,7 +16,7 @@ from rodsweep.determinant.value import newton_correction_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
-from rodsweep.solve.point import Unsolvable
+from rodsweep.solve.unsolvable import Unsolvable
 
 INF = np.inf
 # Hopf points to 25 digits: tests/reference/thresholds.json.

@@ -15,7 +15,7 @@ from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import WORKSPACE_SETTINGS, MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
-from rodsweep.solve.point import WorkLimitReached
+from rodsweep.solve.unsolvable import WorkLimitReached
 
 INTERVALS, PERIOD = 4, 0.02
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7)

@@ -14,7 +14,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from .matrix import BorderedMatrix
 from .scale import ArcLengthScale
 

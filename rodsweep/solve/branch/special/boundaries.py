@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...point import FAILURES, Unsolvable
+from ...point import FAILURES
+from ...unsolvable import Unsolvable
 from .curve_problem import END_SETTINGS, SpecialCurveProblem
 from .on_curve import SolvedPoint
 from .point import RowSpecialPoint, SpecialKind, SpecialPoint

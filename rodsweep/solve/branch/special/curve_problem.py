@@ -14,7 +14,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from .augmented.functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve

@@ -9,7 +9,7 @@ import numpy as np
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import cheapest_stage_count, mesh_of
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..arc import tangent_at
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of

@@ -16,7 +16,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
 from ...orbit.tails import smooth_tails
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.functions import FoldFunction, TorusFunction

@@ -17,7 +17,7 @@ from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
-from ...point import Unsolvable, WorkLimitReached
+from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of

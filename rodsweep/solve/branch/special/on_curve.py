@@ -12,7 +12,7 @@ from ....arrays import Array
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..bordered.scale import ArcLengthScale
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..arc import BranchCycle, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
 from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint

@@ -17,7 +17,7 @@ from ....model.parameters import PARAMETERS
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..arc import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.scale import ArcLengthScale

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Complex
-from ...point import Unsolvable
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
+from ...unsolvable import Unsolvable
 from ..anchor_interpolation import minimum_of_cubic
 from ..anchors import ANCHOR_SETTINGS
 from .path import ArmPath

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..search_range import SearchedIntervals, SearchEnd
 from ..unstable_modes import ChangeKind, Threshold
 from .axis_modes import AxisModes, AxisModesOfPath, next_count_position

@@ -15,7 +15,7 @@ from ....determinant.boundary import Boundary, BoundarySolution
 from ....determinant.parameter_plane import Plane
 from ....watch import report
 from ...continuation.follower import CurveStop, follow_curve, zero_along_step
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
     BOUNDARY_STEPS,

@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.boundary import Boundary, BoundarySolution
 from ...continuation.follower import Curve, CurveStop, StepControl, StepResult
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 
 BOUNDARY_STEPS = StepControl(
     first_length=0.01,

@@ -23,7 +23,7 @@ from ...orbit.newton import (
 )
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle

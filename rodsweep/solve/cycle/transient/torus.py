@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..hopf_start import hopf_point_below, orbit_from_hopf

@@ -21,7 +21,7 @@ from ....wording import counted
 from ...motion.integrator import INTEGRATOR_SETTINGS, RunEnding, Trajectory, integrator, relax_fast_components
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...point import Unsolvable
+from ...unsolvable import Unsolvable
 from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle import CycleRequest

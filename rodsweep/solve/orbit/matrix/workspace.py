@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ...point import WorkLimitReached
+from ...unsolvable import WorkLimitReached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

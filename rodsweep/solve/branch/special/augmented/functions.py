@@ -14,7 +14,7 @@ from .....arrays import Array
 from ....orbit.matrix.linearisation import closing_residual
 from ....orbit.matrix.phase import phase_right_side, write_phase_row
 from ....orbit.orbit import Orbit
-from ....point import Unsolvable
+from ....unsolvable import Unsolvable
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import deflection_of
 from ..point import SPECIAL_POINT_SETTINGS

@@ -8,7 +8,7 @@ from .....watch import report
 from ....orbit.matrix.workspace import NewtonWorkspace
 from ....orbit.newton import ORBIT_NEWTON_SETTINGS, relative_change
 from ....orbit.orbit import Orbit
-from ....point import Unsolvable
+from ....unsolvable import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import ArcLengthScale

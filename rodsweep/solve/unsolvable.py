@@ -1,0 +1,10 @@
+"""Exceptions of the solvers, in a module that does not load PETSc."""
+
+
+class Unsolvable(Exception):
+    """The rod has no solution in the model, or the numerical method finds none; the message states the
+    cause."""
+
+
+class WorkLimitReached(Unsolvable):
+    """The next matrix would exceed the requested limit of the work on a rod."""
