@@ -215,6 +215,7 @@ def test_other_parameters_are_refused(task, tmp_path):
                 load_config(path, (f"parameters.{name}=1",))
 
 
+@pytest.mark.long
 def test_every_attribute_of_a_file_is_explained(command):
     command.write("a.yaml", "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}")
     assert command.afresh("run", "a.yaml").returncode == 0

@@ -152,6 +152,7 @@ def test_petsc_dir_is_respected(tmp_path, monkeypatch):
     assert sys.path == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("module", ["petsc4py.lib", "h5py"])
 def test_modules_compiled_for_another_numpy_are_refused_in_a_sentence(command, module):
     command.write("c.yaml", "task: thresholds\nparameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}\n")

@@ -145,6 +145,7 @@ def test_figure_5(command):
         assert file["shape_y"].shape[-2:] == (8, 33)
 
 
+@pytest.mark.long
 def test_beating_arm(command):
     """By collocation, in the survey by integration too; the config states 17.7890 s and 6.46957 cm too."""
     of_period, seconds, of_height, centimetres = stated("beating_arm")[-4:]
@@ -160,6 +161,7 @@ def test_beating_arm(command):
         (command.directory / "beating_arm.h5").unlink()
 
 
+@pytest.mark.long
 def test_figure_6(command):
     hopf = stated("fig6")[0]
     forces = f"parameters.F=[27, {hopf + 0.01}, {hopf + 0.04}]"
@@ -183,6 +185,7 @@ def test_what_a_restabilised_rod_does_depends_on_where_it_comes_from(command):
                 assert file["linear_growth_rate"][:].ravel()[1] < 0
 
 
+@pytest.mark.long
 def test_filament(command):
     threshold, _, frequency, period, height = stated("filament")
     assert threshold == pytest.approx(FILAMENT, rel=1e-14)
@@ -196,6 +199,7 @@ def test_filament(command):
         assert file["least_stretch"][here][1:].tolist() == [1, 1]
 
 
+@pytest.mark.long
 def test_map_of_beating(command):
     period, height, hopf = stated("beating_map")[-3:]
     with run(command, "beating_map", "parameters.F=[27, 49.5, 50]", "parameters.k2=[100, 110]") as file:
@@ -241,6 +245,7 @@ def test_segments(command):
         assert file["certified"][...].all()
 
 
+@pytest.mark.long
 def test_cone_cycles(command):
     """Checked against strains marched in time, and dense eigenvalues of elements in displacements."""
     numbers = stated("cone_cycles")

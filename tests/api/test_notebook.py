@@ -37,6 +37,7 @@ def texts(output):
     return {kind: "" if kind.startswith("image/") else "".join(text) for kind, text in data.items()}
 
 
+@pytest.mark.long
 def test_stored_outputs_are_what_comes(runner, stored):
     """But for the last digits, which are the processor's. Else: python docs/notebook.py."""
     for before, now in zip(stored["cells"], runner.executed(stored)["cells"], strict=True):

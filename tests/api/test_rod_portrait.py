@@ -32,6 +32,7 @@ def numbers(text, before):
     return [float(found) for found in re.findall(rf"{re.escape(before)}([\d.]+\d)", text)]
 
 
+@pytest.mark.long
 def test_thresholds_and_criticality_are_those_of_their_tasks(portrait):
     crossings = FOLDED.thresholds().crossings
     (onset, hopf, again) = crossings["crossing_F"]
@@ -177,6 +178,7 @@ def test_the_picture_has_the_curves_of_the_branch(portrait):
     assert stars[0].get_ydata() == pytest.approx([cycle.period for cycle in portrait.cycles.values()])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", few(["png", "html", "svg", "pdf"], 1))
 def test_a_portrait_is_written_in_every_format(portrait, tmp_path, suffix):
     path = tmp_path / f"p.{suffix}"
@@ -184,6 +186,7 @@ def test_a_portrait_is_written_in_every_format(portrait, tmp_path, suffix):
     assert path.stat().st_size > 10_000
 
 
+@pytest.mark.long
 def test_the_page_has_the_paragraph_and_the_numbers_of_the_solver(portrait, tmp_path):
     portrait.save(tmp_path / "p.html")
     page = read_page(tmp_path / "p.html")

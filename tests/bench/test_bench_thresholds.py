@@ -79,6 +79,7 @@ def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 def test_peers_take_part_in_the_race_of_their_threshold(monkeypatch):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"],))
     found = Contender("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))

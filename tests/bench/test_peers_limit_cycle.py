@@ -77,6 +77,7 @@ def of(name):
     return [row for row in rows() if row.method == name]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("family", FOLLOWED, ids=lambda family: family.name)
 def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(family):
     loose, tight = of(family.name)

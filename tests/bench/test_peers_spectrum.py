@@ -30,6 +30,7 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
     assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rod", ARM_RODS.values(), ids=list(ARM_RODS))
 def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
     roots = exact_arm_spectrum(rod)

@@ -131,6 +131,7 @@ def test_auto_finds_nothing_where_nothing_is(auto):
     assert "auto-07p" not in versions() or "0.9" in versions()["auto-07p"]
 
 
+@pytest.mark.long
 @needs_pycont
 def test_pycont_finds_the_hopf_point_in_silence(capsys):
     for name in ("filament", "Fig. 2b"):

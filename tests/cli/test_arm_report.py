@@ -53,6 +53,7 @@ def test_the_arm_in_water_is_no_case_for_the_model():
     assert str(report).startswith("The model does not apply")
 
 
+@pytest.mark.long
 def test_the_fluid_and_the_thickness_that_are_stated_would_do_and_less_would_not():
     """4600 times the viscosity, or 0.018 times the radius: rounded to the safe side in the second digit."""
     for factor, fine in ((4600, True), (4450, False)):
@@ -154,6 +155,7 @@ def random_arm(rng):
     return SlenderArm(**given, **({} if load is None else {"pressure": load}))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", few(range(6), 2))
 def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     arm = random_arm(np.random.default_rng(seed))
@@ -189,6 +191,7 @@ def planes(arm):
     return [arm] if arm.radius is not None else [arm, replace(arm, width=arm.height, height=arm.width)]
 
 
+@pytest.mark.long
 def test_a_tall_rectangle_flutters_first_in_the_plane_of_its_width():
     """Its verdict is that of the same arm turned, and the other plane is mentioned."""
     tall = rs.Arm(**TALL, pressure="2 kPa")
@@ -219,6 +222,7 @@ def test_a_tall_arm_that_is_stiff_in_its_plane_of_motion_beats_in_the_other():
     assert tall.turned.flutter.first_forces(ChangeKind.hopf).high < tall.turned.F
 
 
+@pytest.mark.long
 def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
     arm = rs.Arm(**THICK)
     flutter, rate = arm.flutter.first_forces(ChangeKind.hopf), arm.flutter.first_frequencies(ChangeKind.hopf)
@@ -261,7 +265,8 @@ def test_a_load_relative_to_the_flutter_of_a_rectangle_is_so_in_the_plane_that_g
 @pytest.mark.parametrize("given", ["of flutter", "-1 of flutter", "1.2 of onset", "nan of flutter"])
 def test_other_relative_loads_are_refused(given):
     with pytest.raises(
-        rs.InputError, match=f"^pressure = '{given}' .*write a number with a unit|is not a number"
+        rs.InputError,
+        match=f"^pressure = '{given}' .*(?:write a number with a unit|is not a number|of 0 or above)",
     ):
         SlenderArm(**THICK, pressure=given)
 

@@ -244,6 +244,7 @@ def tried(results, path, what, lines):
     return complaints
 
 
+@pytest.mark.long
 def test_result_that_another_program_made_unfit_is_refused(results, tmp_path, name):
     complaints = []
     for number, (edit, change) in enumerate(shared(MISFITS.items(), name, 1)):
@@ -281,6 +282,7 @@ def test_interrupted_result_to_which_the_user_added_is_continued(results, tmp_pa
     assert not complaints, report(complaints)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", range(6 if MORE > 1 else 2))
 def test_the_command_itself_refuses_a_damaged_file(results, tmp_path, number):
     rng = Random(number)

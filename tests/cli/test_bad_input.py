@@ -127,6 +127,7 @@ def test_untouched_configs_are_valid_also_as_the_mutations_write_them(run, tmp_p
         assert outcome.out.startswith("c.yaml: valid")
 
 
+@pytest.mark.long
 def test_guards_see_a_solve(run, tmp_path, no_solver):
     (tmp_path / "c.yaml").write_bytes(CONFIGS[0].read_bytes())
     assert "is imported although nothing is to be solved" in run(tmp_path, "run", "c.yaml").fault

@@ -64,6 +64,7 @@ def test_a_name_for_another_kind_of_file_is_refused_with_the_endings_that_there_
     assert sorted(path.name for path in results.directory.iterdir()) == before
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["r.h5", "r.hdf5", "r.nc"])
 def test_results_may_have_each_of_the_endings(name, results):
     assert results("run", "c.yaml", "-q", "-o", name).returncode == 0

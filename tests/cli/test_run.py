@@ -228,6 +228,7 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
     assert "finished" in read_view(command.directory / "c.h5").attributes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rank", [0, 1])
 def test_bug_on_one_rank_ends_all_ranks(command, rank):
     command.write("c.yaml", MANY)
@@ -387,6 +388,7 @@ def test_link_as_output_is_followed(command):
     assert command("show", "link.h5").returncode == 0
 
 
+@pytest.mark.long
 def test_full_disk_under_the_log_is_told_in_a_sentence(command):
     command.write("c.yaml", SMALL)
     with open("/dev/full", "w") as full:

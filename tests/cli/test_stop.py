@@ -231,6 +231,7 @@ def test_run_is_stopped_within_a_point_that_is_then_solved_anew(command, content
     assert same(content(command.directory / "c.h5"), content_of(BRANCHES))
 
 
+@pytest.mark.long
 def test_shares_of_the_ranks_are_kept_and_shown(command):
     command.write("c.yaml", SPECTRA.replace("num: 40", "num: 25"))
     assert command("run", "c.yaml", ranks=3).returncode == 0

@@ -146,6 +146,7 @@ def test_rod_of_python_repeats_its_material():
     assert hash(rod) == hash(rod.replace())
 
 
+@pytest.mark.long
 def test_show_and_files_say_what_rests_on_an_estimate(command):
     """The winding number of a cone is estimated in part; that of uniform rods of any law is not."""
     said = {}
@@ -193,6 +194,7 @@ def test_compression_is_judged_where_the_arm_is_weakest_and_not_for_rubber():
     assert found[0.5, "neo_hookean"][0] != "compression"
 
 
+@pytest.mark.long
 def test_cycles_of_cones_are_stored_with_their_hopf_points(command):
     rest = "material: {profile: steps.csv}\nlimit_cycle: {start: neighbour}\naccuracy: 1.0e-5"
     (command.directory / "steps.csv").write_text(STEPPED)

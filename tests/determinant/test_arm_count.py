@@ -127,6 +127,7 @@ def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_
     assert max(fast.node_count, alone.node_count) < 65  # without the dominant wave 84 and 135 in four cases
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("F", [4.5, 12.0])
 def test_modes_beside_the_axis_are_those_of_the_dense_eigenvalues(F):
     rod = Rod(F=F, k1=1e5, k2=100.0, gamma3=1e-3, taper=0.117)

@@ -131,6 +131,7 @@ ARMS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("z", [1e-9j, -3e-5, 0.002 + 0.001j, 0.04j, -0.2 + 0.1j, 0.45, -0.7j, 1.0])
 @pytest.mark.parametrize("arm", range(len(ARMS)))
 def test_left_out_powers_of_w_do_not_matter(arm, z):

@@ -57,6 +57,7 @@ def test_line_through_an_eigenvalue_is_refused(reference_spectra):
         assert "too close" in count.failure_reason
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("offset", [1e-4, -1e-4, 1e-6, -1e-6])
 def test_line_beside_an_eigenvalue_is_decided_rightly(offset, reference_spectra):
     decided = 0

@@ -69,6 +69,7 @@ def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
     assert path.value(p, error)[1] == pytest.approx(apart, rel=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", PATHS)
 def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     """Against D with complex coefficients in mpmath, on the distinguished boundary, where the maximum is."""

@@ -71,6 +71,7 @@ def test_stepped_arms_have_the_eigenvalues_of_transfer_matrices_and_no_other(see
     assert np.count_nonzero(np.diff([int(sign) for sign in signs])) == 4
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("law", "section"), LAWS)
 def test_cones_with_a_jump_have_the_eigenvalues_of_integration_along_the_arm(law, section):
     ends = ((1.0,) * 6, (1.3,) * 6, (5.0,) * 6, (20.0,) * 6)

@@ -41,6 +41,7 @@ def test_products_are_those_of_the_whole_rod(rod, elements, order, components, p
     assert size <= by_elements.product_magnitude(p, q) * (1 + 1e-12) <= 2 * size
 
 
+@pytest.mark.long
 @pytest.mark.kernel
 @RODS
 @MESHES

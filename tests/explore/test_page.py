@@ -79,6 +79,7 @@ def shown(page: Page) -> dict[str, str]:
     return dict(re.findall(r'<tr data-name="(\w+)"><td>[^<]*</td><td>([^<]*)</td>', text))
 
 
+@pytest.mark.long
 def test_pictures_and_numbers_are_those_of_the_solver():
     page = page_with(ImmediateSolvers())
     rod = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01)
@@ -171,6 +172,7 @@ def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
     assert len(page.contents.spectrum.source.data["growth"]) > 0
 
 
+@pytest.mark.long
 def test_branches_wait_until_the_page_rests_and_cones_until_the_button():
     solvers = ImmediateSolvers()
     page = page_with(solvers)
@@ -184,6 +186,7 @@ def test_branches_wait_until_the_page_rests_and_cones_until_the_button():
     assert solvers.questions[-1].kind == "branch"
 
 
+@pytest.mark.long
 def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     command.write("plane.yaml", PLANE)
     assert command("run", "plane.yaml").returncode == 0

@@ -148,6 +148,7 @@ def test_a_solver_that_dies_says_so_and_the_next_question_is_answered(solver):
     assert replies[1].outcome == "answer"
 
 
+@pytest.mark.long
 def test_what_is_forked_has_started_neither_mpi_nor_petsc_nor_threads():
     lines = [
         "import os, sys",
@@ -168,6 +169,7 @@ def test_closing_ends_all_processes():
     assert not any(map(exists, pids))
 
 
+@pytest.mark.long
 def test_a_solver_ends_in_the_middle_of_a_solve_when_its_page_is_killed():
     """The page's process has no time to say anything."""
     lines = [

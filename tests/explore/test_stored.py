@@ -53,6 +53,7 @@ def asked(solvers: NoSolvers) -> set[str]:
     return {question.kind for question in solvers.questions}
 
 
+@pytest.mark.long
 def test_stored_cycles_are_drawn_and_not_solved_again(command):
     page, solvers = opened_page(command, CYCLES)
     data = rs.open(command.directory / "result.h5").squeeze()
@@ -109,6 +110,7 @@ def test_cycles_without_stored_shapes_are_solved_for_the_picture(command):
     assert "cycle" in asked(solvers)
 
 
+@pytest.mark.long
 def test_stored_branches_are_drawn_and_solved_again_by_their_button_only(command):
     page, solvers = opened_page(command, BRANCH)
     data = rs.open(command.directory / "result.h5").squeeze()

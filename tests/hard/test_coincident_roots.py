@@ -40,6 +40,7 @@ def rods_at(place):
     return [(*with_gamma3, float(gamma3 * (1 + offset))) for offset in OFFSETS]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", few(COINCIDENT, 4), ids=lambda p: str(p[0]))
 def test_an_eigenvalue_where_exponents_vanish_is_as_accurate_as_it_says(place):
     assert all_broken(rods_at(place), MODES) == []

@@ -18,6 +18,7 @@ from .promises import broken_promises, not_ok, spectrum, true_errors
 from .rods import CROWDED
 
 
+@pytest.mark.long
 @pytest.mark.kernel
 @pytest.mark.parametrize("rod", CROWDED, ids=str)
 def test_all_unstable_modes_are_counted_and_found_to_twelve_digits(rod):

@@ -113,6 +113,7 @@ WORST_ROUNDING = 4.0
 """In units of `ModeVectors.rounding`, the root of a sum of many squares: four standard deviations."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("place", few(EXCEPTIONAL, 2), ids=name)
 def test_condition_numbers_at_and_beside_a_double_root_are_as_accurate_as_they_say(place):
     """At F* they are as large as rounding allows, and not called accurate; beside it ok means right."""

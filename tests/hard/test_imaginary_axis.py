@@ -54,6 +54,7 @@ def test_a_billionth_beside_a_hopf_point_the_count_is_right_and_proved(offset):
     assert proved >= 0.9 * len(CROSSINGS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("offset", [1e-11, 1e-12, 1e-13, 1e-14, 1e-15])
 def test_however_near_a_hopf_point_the_count_is_never_wrong(offset):
     for *rod, event in CROSSINGS[::3]:

@@ -73,6 +73,7 @@ DRAWN = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", DRAWN)
 def test_the_reader_finds_a_mark_that_is_wrong(task, monkeypatch):
     """A hundredth off, in the file that is drawn."""
@@ -92,6 +93,7 @@ def test_the_reader_finds_a_mark_that_is_wrong(task, monkeypatch):
 TEXTS_OFF = {"27.4272": "27.4372", "14.7993": "14.7893", "10^{4}": "10^{5}"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", TEXTS_OFF)
 def test_the_reader_finds_a_number_in_a_figure_that_is_wrong(number, monkeypatch):
     true = figures.Drawing._texts

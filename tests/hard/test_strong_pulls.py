@@ -43,6 +43,7 @@ def check_errors(F, k1, k2, gamma3):
     return True
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rod", BEYOND)
 def test_exponentially_small_eigenvalues_lie_within_their_errors(rod):
     assert check_errors(*rod)

@@ -68,6 +68,7 @@ def test_marching_in_time_comes_to_the_same_end(first):
     assert {rod: words for rod, words in said.items() if words} == {}
 
 
+@pytest.mark.long
 def test_the_other_code_knows_the_eigenvalues_and_the_reference_cycle():
     """40-digit roots of D, and the cycle of docs/method.md."""
     w, _ = Displaced(27.4271941267593, 1e4, 1e2, 1e-2, 1.0, 18).leading_mode()

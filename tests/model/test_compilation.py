@@ -142,6 +142,7 @@ def test_comments_docstrings_and_lines_compile_nothing(made):
     assert made(moved, commented) == (VALUES, set())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("old", "new", "compiled", "changed"),
     [

@@ -114,6 +114,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
     assert (Sigma * G).sum() == pytest.approx(-lost, rel=1e-12)
 
 
+@pytest.mark.long
 @ALL
 @MESHES
 @pytest.mark.parametrize("uniform", [True, False], ids=["uniform", "tapered"])

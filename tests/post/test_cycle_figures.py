@@ -198,6 +198,7 @@ def test_the_file_suggests_its_figure(view, output, points, what):
     assert figure_name(FigureRequest([view], Path(output), points=points)) == what
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("gamma1", "suffix", "what"),
     [
@@ -296,6 +297,7 @@ def test_suffix_has_to_suit_the_figure(tmp_path, what, suffix):
         draw(two_cycles(), tmp_path / f"f.{suffix}", what=what)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("as_list", few([True, False], 1))
 def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
     """The figures name no variable that the file does not have."""

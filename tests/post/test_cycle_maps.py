@@ -273,6 +273,7 @@ def test_what_no_map_can_show_is_refused_in_one_sentence(tmp_path, views, words,
     assert not (tmp_path / "f.png").exists()
 
 
+@pytest.mark.long
 def test_a_file_as_the_task_lays_it_out_is_mapped(command):
     view = swept(*SMALL, stored=("shapes", "samples"))
     store(view, command.directory / "arms.h5")

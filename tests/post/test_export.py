@@ -126,6 +126,7 @@ def test_a_diagram_has_its_grid_its_rows_and_its_curves_as_tables(command):
     assert (values["fold"], values["fold_kind"], values["fold_of"]) == ("1", "hopf", "k1")
 
 
+@pytest.mark.long
 def test_a_branch_is_a_table_of_cycles_with_its_special_points_marked(command):
     config = "task: branch\naccuracy: 1.0e-4\nparameters: {k1: [130, 150], k2: 1.0e4, gamma3: 1.0e-4}\n"
     config += "branch: {stop: 100}\n"

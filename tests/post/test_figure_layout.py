@@ -210,6 +210,7 @@ def known_to(error, forces=(50.0, 123.456789, 200.0)):
     return replace(view, variables=v | given | {name: v[name] * by for name, by in scale.items()})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("what", "width"), at_widths([("cycle",), ("energy",)]))
 def test_a_period_with_all_its_digits_is_not_cut(what, width, tmp_path, monkeypatch):
     assert drawn(known_to(1e-9), tmp_path, monkeypatch, width, what=what).faults == []
@@ -245,6 +246,7 @@ def test_the_frames_of_a_film_are_whole(name):
         assert faults(figure) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "width"), at_widths([(seed,) for seed in range(4)], WIDTHS[:2], every=3))
 def test_random_figures_of_cycles_are_whole(seed, width, tmp_path, monkeypatch):
     rng = np.random.default_rng(seed)

@@ -55,6 +55,7 @@ def test_line_is_broken_where_another_root_takes_over():
 LINE = "task: spectrum\nparameters: {F: {start: 0, stop: 30, num: 16}, k1: 1e4, k2: 1e2, gamma3: 1e-2}\n"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("roots", "suffix"), [("smallest", "png"), ("rightmost", "pdf"), ("smallest", "svg")]
 )
@@ -243,6 +244,7 @@ def test_the_legend_names_no_flutter_where_there_is_none(command):
     assert axes.get_legend_handles_labels() == ([], [])
 
 
+@pytest.mark.long
 def test_fonts_of_a_pdf_are_embedded_as_type_42_and_images_have_300_dots_an_inch(command):
     command.write("c.yaml", LINE)
     command.solved("c.yaml")
@@ -480,6 +482,7 @@ parameters: {k1: [150, 200, .inf], k2: {start: 100, stop: 1.0e4, num: 4, spacing
 """
 
 
+@pytest.mark.long
 def test_thresholds_of_every_value_are_lines_or_cells_of_a_map(command, monkeypatch):
     figure, shown = drawn_of(command, monkeypatch, THRESHOLDS)
     assert "critical forces against k2 for every k1" in shown
@@ -525,6 +528,7 @@ def test_lines_that_cannot_be_told_apart_are_one():
     assert _groups_of_equal_lines(lines) == [[0], [4], [9]]
 
 
+@pytest.mark.long
 def test_several_lines_of_spectra_are_panels_of_one_figure(command, drawn):
     for name, k1 in (("a", 200), ("b", 1e4)):
         axes = f"F: {{start: 0, stop: 60, num: 13}}, k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4"

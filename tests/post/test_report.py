@@ -124,6 +124,7 @@ def test_a_map_of_spectra_has_the_growth_rates_under_the_pointer(command):
     assert rates == pytest.approx(stored.tolist(), rel=1e-7)
 
 
+@pytest.mark.long
 def test_a_title_and_a_config_cannot_bring_markup(command):
     comment = "# <img src='http://example.org/x.png'>"
     command.write("c.yaml", f'title: "{NASTY}"\n{comment}\n{CONFIGS["thresholds"]}')
@@ -138,6 +139,7 @@ def test_a_title_and_a_config_cannot_bring_markup(command):
     assert page.asked_for() == []
 
 
+@pytest.mark.long
 def test_a_page_of_a_part_says_what_is_missing(command):
     command.write("c.yaml", CONFIGS["thresholds"])
     assert command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5").returncode == 0

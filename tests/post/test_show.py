@@ -132,6 +132,7 @@ def test_the_time_of_a_growth_that_is_hardly_known_from_1_is_not_told():
     assert known_range_text(v, "transient_time", np.array([False, True])) == "none"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", ["spectrum", "modes"])
 @pytest.mark.parametrize("listed", [False, True])
 def test_several_points_are_told_by_how_many_are_stable(command, task, listed):

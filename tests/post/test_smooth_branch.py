@@ -38,6 +38,7 @@ def farthest(u, second_maximum):
     return max(off)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("offset", few(np.linspace(0, 0.9, 7), 3))
 @pytest.mark.parametrize("rise", [1.2, 2.5])
 def test_a_corner_is_drawn_where_another_maximum_becomes_the_largest(offset, rise):

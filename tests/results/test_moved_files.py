@@ -71,6 +71,7 @@ def test_run_whose_files_are_gone_writes_them_anew(command, strike):
     goes_on(command)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("strike", [cut, replaced])
 def test_another_file_in_the_place_of_a_result_is_left_and_the_points_wait(command, strike):
     code, _, err = struck(command, strike)

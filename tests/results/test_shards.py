@@ -100,6 +100,7 @@ def test_merged_shards_are_the_undivided_run(command):
     assert "complete, nothing to do" in command("run", "c.yaml", "-o", "m.h5").stdout
 
 
+@pytest.mark.long
 def test_merged_diagram_gets_its_curves_from_a_last_run(command):
     command.write("c.yaml", DIAGRAM)
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0

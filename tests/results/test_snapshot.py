@@ -47,6 +47,7 @@ def of_points_done(whole, part):
     return [{name: each[name][done] for name in points} for each in (whole, part)]
 
 
+@pytest.mark.long
 def test_running_sweep_is_seen_as_far_as_it_has_come(command, waiting):
     path, pages = command.directory / "c.h5", command.directory / "c.h5.journal"
     before = {page.name: page.read_bytes() for page in [path, *pages.iterdir()]}
@@ -72,6 +73,7 @@ def test_running_sweep_is_seen_as_far_as_it_has_come(command, waiting):
         np.testing.assert_array_equal(file.growth_rate.values, data.growth_rate.values)
 
 
+@pytest.mark.long
 def test_snapshot_is_taken_again_and_continued(command, waiting):
     assert command("snapshot", "c.h5", "-o", "s.h5").returncode == 0
     assert command("snapshot", "c.h5", "-o", "s.h5").returncode == 0

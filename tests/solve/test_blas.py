@@ -80,6 +80,7 @@ def others():
     return found
 
 
+@pytest.mark.long
 def test_one_kernel_is_recorded_and_nothing_said(command):
     command.write("c.yaml", SPECTRA)
     run = command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5")

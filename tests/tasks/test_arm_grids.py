@@ -135,6 +135,7 @@ def test_spectra_followed_along_the_load_are_those_of_single_arms(command):
         assert data[name].values == pytest.approx(alone[name].values.reshape(12, 2), rel=1e-8, abs=1e-8)
 
 
+@pytest.mark.long
 def test_neighbours_follow_each_other_along_the_load(command):
     command.write("a.yaml", CHAINS)
     command.solved("a.yaml")
@@ -164,6 +165,7 @@ def test_shards_a_stopped_run_ranks_and_python_give_the_same_file(command, confi
     assert "nothing to do" in command("run", "a.yaml", "-o", "whole.h5").stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("config", "old", "new", "told"),
     few(

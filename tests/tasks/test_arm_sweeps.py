@@ -227,6 +227,7 @@ def test_shards_and_a_stopped_run_of_an_arm_give_the_same_file(command):
         assert same(whole, content(command.directory / name))
 
 
+@pytest.mark.long
 def test_figures_of_an_arm_are_drawn(command):
     command.write("a.yaml", yaml("phase_diagram"))
     assert command("run", "a.yaml").returncode == 0

@@ -206,6 +206,7 @@ def test_figure_that_shows_nothing_is_refused(command, k1, said):
     assert said in " ".join(refused.stderr.split())
 
 
+@pytest.mark.long
 def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(command):
     shown(command, CONFIG.format(k1="[100, 150]", stop=90))
     assert "1 of 2 rods has no branch" in " ".join(
@@ -267,6 +268,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     assert "1 branch of cycles over F; 1 more have special points that are not stored" in drawn
 
 
+@pytest.mark.long
 def test_longer_lists_are_computed_anew_only_where_they_were_full(command):
     command.write("c.yaml", CONFIG.format(k1=150, stop=200).replace("{stop", "{cycles: 5, stop"))
     full = command("run", "c.yaml")
@@ -287,6 +289,7 @@ def test_words_have_the_numbers_of_the_solver():
     }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("along", ["F", "k1"])
 def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
     config = tmp_path / "c.yaml"
@@ -305,6 +308,7 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
     assert set(branch_values(found, along, 500, 64)) == names
 
 
+@pytest.mark.long
 def test_other_parameters_are_followed_from_the_command_line(command):
     told = shown(
         command,

@@ -445,6 +445,7 @@ def test_crossings_beyond_a_full_list_count_as_untraced(command):
     assert untraced == [0, 3]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", few(["limit_cycle", "thresholds", "spectrum", "modes", "phase_diagram"], 2))
 def test_a_taper_of_one_that_is_written_changes_nothing(command, task):
     """Also where stability changes between points of a grid, whose lines then have a further parameter."""

@@ -254,6 +254,7 @@ def test_verdict_says_where_the_load_lies(pressure, words):
     assert arm(pressure=pressure, viscosity=THICK).report().verdict[0].startswith(words)
 
 
+@pytest.mark.long
 def test_command_prints_verdict_numbers_and_checks(command):
     end = command("arm", *OPTIONS)
     assert (end.returncode, end.stderr) == (0, "")

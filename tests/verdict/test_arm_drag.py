@@ -197,6 +197,7 @@ def test_shards_ranks_and_an_extension_give_the_same_file(command):
     assert "drag" not in rs.open(command.directory / "less.h5").dims
 
 
+@pytest.mark.long
 def test_show_answers_in_the_units_of_the_arm_before_those_without_dimension(command):
     command.write("a.yaml", OVER_LOADS)
     command.solved("a.yaml")
@@ -307,6 +308,7 @@ def test_a_tube_flattens_as_brazier_found():
     assert "Wall:" not in str(rs.Arm(**SILICONE).report())
 
 
+@pytest.mark.long
 def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
     """As on a login node; on several ranks the first one alone makes the points."""
     tube = OVER_LOADS.replace("radius: 4 mm", "radius: 4 mm\n    inner_radius: 2 mm")

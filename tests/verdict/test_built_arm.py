@@ -59,6 +59,7 @@ def test_flutter_of_a_cone_is_that_of_the_rod_converted_by_hand():
     assert rs.Rod(arm=arm).thresholds(F_max=30).F_hopf == own.F_hopf
 
 
+@pytest.mark.long
 def test_report_on_a_cone():
     arm = rs.Arm(**CONE, pressure="5 kPa", density_difference="2 kg/m^3")
     report = arm.report()

@@ -1,9 +1,8 @@
 """Curves of generalised Hopf points over three parameters.
 
-Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, c: Landau coefficient), are isolated in a
-plane of two parameters and form a curve over three parameters. Each step prescribes the parameter that
-changes fastest along the curve, so folds in all parameters are possible. The predictor is the line through
-the last two points; the corrector moves along the Hopf curve of both free parameters to Re c = 0.
+Generalised Hopf points, D(i eta) = 0 and Re c = 0 (D: determinant, c: Landau coefficient), form a curve over
+three parameters. Each step prescribes the parameter that changes fastest, so folds in all parameters are
+possible. The predictor is the line through the last two points; the corrector moves along the Hopf curve.
 """
 
 from collections.abc import Sequence

@@ -205,6 +205,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
 
 
+@pytest.mark.long
 def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():
     along_k1 = solved(Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4), 120.0, 170.0, along="k1")
     fold = only(along_k1.curves[0], SpecialKind.fold)

@@ -62,6 +62,7 @@ def fig_2c():
     return solve_coexistence(FIG_2C, request(values), 64)
 
 
+@pytest.mark.long
 def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2c):
     assert fig_2c.status == CoexistenceStatus.ok
     assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]

@@ -37,6 +37,7 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     )
 
 
+@pytest.mark.long
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
     exact, found = (traced(build, ChangeKind.hopf) for build in (Build(), ONES))
     (fold,), (of_arm,) = exact.folds, found.folds
@@ -73,6 +74,7 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     assert low < fold.values[0] < high < low * 1.02
 
 
+@pytest.mark.long
 def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     axes = PlaneAxis("F", 40.0, 560.0), PlaneAxis("taper", 1.1, 1.8)
     (fold,) = (f for f in traced(SWELLING, ChangeKind.hopf, axes, k1=500.0).folds if f.axis == 1)

@@ -67,6 +67,7 @@ def test_three_exchanges_between_two_anchors_are_all_found(rod, F_max):
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 
+@pytest.mark.long
 def test_a_double_eigenvalue_behind_the_leading_pair_is_no_onset():
     rod = cone(20971.78966444228, 401.0547088144865, 4.178687351590938e-05, 0.1542518309504673)
     found = solve_thresholds(rod, ThresholdsRequest(39.13599469496463, 1e-6, True, 100))

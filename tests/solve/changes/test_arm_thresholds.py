@@ -69,7 +69,7 @@ def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
     uniform = solve_thresholds(Rod(**values), request)
     profiled = solve_thresholds(Rod(**values, build=Build(profile=ONES)), request)
     assert [c.kind for c in profiled.thresholds] == [c.kind for c in uniform.thresholds]
-    for name in ("at", "frequency", "growth_rate"):
+    for name in ("value", "frequency", "growth_rate"):
         ours, theirs = ([getattr(c, name) for c in found.thresholds] for found in (profiled, uniform))
         np.testing.assert_allclose(ours, theirs, rtol=1e-11, atol=1e-9)
 

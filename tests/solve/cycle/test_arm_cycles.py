@@ -239,6 +239,7 @@ OFF_BY_A_JUMP = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("accuracy, names, values, gamma1, jump", OFF_BY_A_JUMP, ids=["linear", "swelling"])
 def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, gamma1, jump):
     """A tip integrated with the mean strain at the jump was off by 7.9 and 1.4 times the stated error."""
@@ -309,6 +310,7 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
     assert errors[1] < 1e-7
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("build", [Build(profile=STEP), RUBBER[2]], ids=["segments", "swelling"])
 def test_cycles_agree_with_arkimex_alone(build):
     rod = Rod(F=60.0, k1=500.0, k2=1e2, gamma3=1e-2, build=build)

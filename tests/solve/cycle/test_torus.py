@@ -54,6 +54,7 @@ def test_a_torus_that_was_watched_too_briefly_is_not_settled():
     assert np.isnan(c.multiplier)
 
 
+@pytest.mark.long
 def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
     """At F = 203 the pair is inside the circle; without Newton's method the motion would not have settled."""
     assert rod(203.0, 400).status == CycleStatus.cycle

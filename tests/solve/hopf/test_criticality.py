@@ -336,6 +336,7 @@ def test_figure_over_one_parameter(command, k1):
     assert (command.directory / "c.svg").stat().st_size > 5000
 
 
+@pytest.mark.long
 def test_figure_over_two_parameters(command):
     config = CONFIG.format(k1="[100, 108, 200]").replace(
         "gamma3: 1.0e-4", "gamma3: [0.001, 0.1], gamma1: 0.5"
@@ -353,6 +354,7 @@ def test_figure_of_rods_without_hopf_points_is_refused(command):
     assert "c.h5 holds no Hopf point with a normal form that could be drawn" in refused.stderr
 
 
+@pytest.mark.long
 def test_config_shows_the_numbers_of_its_head(command):
     """Which are those of the other code, too."""
     axes = "parameters.k1=[100, 200]", "parameters.gamma3=[1.0e-4, 0.1]"

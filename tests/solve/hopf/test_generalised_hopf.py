@@ -57,6 +57,7 @@ def found():
     return plane, curve, curve_criticality(plane, curve, 1e-10)
 
 
+@pytest.mark.long
 def test_a_generalised_hopf_point_is_that_of_other_equations(found):
     """Newton's method in (F, k1) on the second normal form leaves it where it is."""
     (point,) = found[2].points
@@ -222,6 +223,7 @@ def test_it_does_not_depend_on_ranks_or_interruptions_nor_other_variables_on_it(
     assert same(whole, content(command.directory / "plain.h5"))
 
 
+@pytest.mark.long
 def test_a_diagram_without_one_says_so(command):
     command.write(
         "c.yaml",

@@ -118,6 +118,7 @@ def test_coefficient_converges_to_ten_digits_whatever_the_mesh(rod, w):
     assert normal_of(rod, w, elements=3, order=13).landau == pytest.approx(exact.landau, rel=1e-10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-10])
 def test_accuracy_asked_for_is_reached(accuracy):
     """At all Hopf points of the reference."""

@@ -183,6 +183,7 @@ SLAVED = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rod", few(SLAVED, 2), ids=str)
 def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
     """T' = c3 - (g nu/c2) T^2, T(0) = 0, from break to break; of T = tan(phi) where T has poles."""

@@ -205,6 +205,7 @@ def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
     assert (result.growth.transient_growth, result.growth.transient_time) == (1.0, 0.0)
 
 
+@pytest.mark.long
 @pytest.mark.kernel
 @pytest.mark.parametrize("parameters", few(RODS, 5))
 def test_modes_are_those_of_appendix_c(parameters):

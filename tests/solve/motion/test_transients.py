@@ -65,6 +65,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     assert np.abs(beam.tip_coordinates(found.y.T) - tip).max() < 1e-5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rod", "amplitude", "error"),
     [
@@ -193,6 +194,7 @@ def test_portrait_shows_how_the_beating_emerges_where_all_its_cycles_have_a_tran
         assert points == (200 if emerges else 801)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("view", "points", "what"),
     [

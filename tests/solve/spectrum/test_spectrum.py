@@ -71,6 +71,7 @@ def by_luck(w, rod):
     return abs(w) * max(4e-15, half_a_unit * sensitivity(complex(w), (rod.F, rod.k1, rod.k2, rod.gamma3)))
 
 
+@pytest.mark.long
 def test_error_estimate_is_the_error_within_a_factor_of_ten(reference_spectra):
     """Where the error is not small by luck; an error is never underestimated by more."""
     compared = 0

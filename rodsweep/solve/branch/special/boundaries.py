@@ -1,7 +1,6 @@
 """Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
 
-A curve is followed in two halves from a special point of a row. Each half curve is a work item, independent
-of all other half curves. `changes.diagram.boundaries` has the same task for the straight rod.
+A curve is followed in two halves, independent work items, from a special point of a row.
 """
 
 import math
