@@ -211,6 +211,10 @@ REFUSED_BY_TASK = [
     ),
     (config("branch", "F: 3, k1: 9"), "parameters.F is given but the task branch follows F; remove it"),
     (
+        config("branch", "k1: 9, k2: 9, gamma3: 0", "work: 0"),
+        "branch.work = 0 is not allowed; it should be a finite number above 0, or null for no limit",
+    ),
+    (
         config("branch", "k1: 9, k2: 9, gamma3: 0", "along: k1, start: 1"),
         "parameters.k1 is given but the task branch follows k1; remove it and set branch.start",
     ),

@@ -36,10 +36,13 @@ class BranchOptions(StrictSection):
     """Maximum number of stored cycles per rod, over all branches."""
     special: Annotated[int, Field(ge=1, le=10_000)] = 64
     """Maximum number of stored special points per rod."""
-    work: Annotated[Number, Field(gt=0, lt=inf)] | None = None
+    work: Annotated[
+        Annotated[Number, Field(gt=0, lt=inf)] | None,
+        Field(description="a finite number above 0, or null for no limit"),
+    ] = None
     """Largest work on the branches of a rod, in 1e9 multiplications of matrix elements; a core does ten to
     twenty of these units a second. A branch that needs more ends there, and a special point that needs more
-    has a larger error. null: no limit."""
+    has a larger error."""
     certify: bool = True
     """Confirm by winding numbers between the Hopf points that no Hopf point is missing."""
 
