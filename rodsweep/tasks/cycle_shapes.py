@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ..config.arm.axes import LOAD_KEYS
 from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
+from ..model.arm.drag import DRAG_NAMES
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY_VARIABLES, SHAPE_VARIABLES, TIP_VARIABLES
 from .running.job import Job, job_of_config
@@ -67,8 +69,11 @@ def _solve_stored_point(view: View, number: int) -> tuple[Job, dict[str, Any]]:
 
 
 def _job_of_point(view: View, number: int) -> Job:
-    """Job that solves one point of the file, with the config of the file but without a neighbour's cycle as
-    initial guess. number: number of the point, from 1.
+    """Job that solves one point of the file again with SHAPE_COUNT shapes and SAMPLE_COUNT samples.
+
+    Parameters, material, accuracy, harmonics and start are those of the file, for a start from a mode also
+    amplitude and most_periods; a start from a neighbour becomes a start from the leading mode. number: number
+    of the point, from 1.
     """
     stored = view.config["limit_cycle"]
     options = {
@@ -81,8 +86,30 @@ def _job_of_point(view: View, number: int) -> Job:
         options |= {"start": "mode", "amplitude": stored["amplitude"], "most_periods": stored["most_periods"]}
     tree = {
         "task": "limit_cycle",
-        "parameters": {name: float(column[number - 1]) for name, column in view.point_columns.items()},
+        "parameters": _parameters_of_point(view.as_list, number),
         "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
+    tree |= {"material": view.config["material"]} if "material" in view.config else {}
     return job_of_config(Path(view.path.name), validated_config(tree), tree)
+
+
+def _parameters_of_point(view: View, number: int) -> dict[str, Any]:
+    """Section `parameters` of a config with one point of a list of points: the parameters of a rod, or an arm
+    and its follower force, with the parameters that the file's config gives in addition to the arm. number:
+    number of the point, from 1.
+    """
+    own = {name: float(column[number - 1]) for name, column in view.point_columns.items()}
+    given = view.config["parameters"]
+    if "arm" not in given:
+        return own
+    arm: dict[str, Any] = {}
+    for key, value in given["arm"].items():
+        if key in LOAD_KEYS:
+            continue
+        # An axis of a quantity; the names of a law, a section or segments are no axes.
+        values = view.quantities[key].ravel() if isinstance(value, dict) else None
+        arm[key] = value if values is None else float(values[number - 1 if values.size > 1 else 0])
+    if "drag" in arm:
+        arm["drag"] = DRAG_NAMES[int(arm["drag"])]
+    return {name: value for name, value in own.items() if name == "F" or name in given} | {"arm": arm}

@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 from known_cycles import make_view
 
+import rodsweep as rs
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.selection import chosen_cycles
+from rodsweep.tasks.cycle_shapes import with_shapes
 
 ARM = {"length": 0.15, "radius": 5e-3, "young": 6e4, "viscosity": 30.0, "pressure": 726.0}
 TYPED = {"length": "cm", "radius": "mm", "young": "kPa", "viscosity": "Pa s", "pressure": "kPa"}
@@ -87,3 +90,30 @@ def test_a_film_of_an_arm_counts_seconds():
     seconds = float(view.variables["period"][0]) * arm.tau2 * 4 / moving.frames
     shown = re.match(r"\$t\$ = ([\d.]+) s = ", moving.text.get_text())
     assert float(shown[1]) == pytest.approx(seconds, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "arms",
+    [
+        {"F": 60.0, "k1": 200.0, "k2": 1e4, "gamma3": 1e-4, "law": "neo_hookean"},
+        {"F": 40.0, "k1": 1e4, "k2": 1e4, "gamma3": 1e-3, "profile": {"u": [0, 1], "k3": [1, 0.5]}},
+        {
+            "arm": {
+                "segments": ["5 cm: radius 6 mm, young 80 kPa", "7 cm: radius 5 mm"],
+                "young": "100 kPa",
+                "viscosity": "50 Pa s",
+                "drag": ["likeliest", "most"],
+                "pressure": "1.3 of flutter",
+            },
+            "gamma1": 0.6,
+        },
+    ],
+)
+def test_a_cycle_without_shapes_is_solved_again_as_that_of_its_own_arm(tmp_path, arms):
+    """With law, profile, segments and drag of the file; without them the cycle was refused as another one."""
+    data = rs.sweep("limit_cycle", accuracy=1e-3, progress=False, **arms)
+    view = view_of_dataset(data, tmp_path / "c.h5")
+    number = view.variables["status"].size
+    shown = with_shapes(view, [number])
+    tip = shown.variables["tip_y"].reshape(number, -1)[-1]
+    assert tip.max() == pytest.approx(view.variables["tip_y_max"].ravel()[-1], rel=2e-3)
