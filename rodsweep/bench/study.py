@@ -137,12 +137,12 @@ def timing_order(rounds: Sequence[int]) -> Iterator[int]:
 
 
 def _timed(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
-    began = processor_seconds()
+    began = processor_seconds_with_children()
     outcome = run()
-    return TimedRuns(outcome, (processor_seconds() - began,))
+    return TimedRuns(outcome, (processor_seconds_with_children() - began,))
 
 
-def processor_seconds() -> float:
+def processor_seconds_with_children() -> float:
     """Processor time, in s, used so far by this process and by its finished child processes."""
     programs = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + programs.ru_utime + programs.ru_stime

@@ -46,8 +46,8 @@ def print_job_check(job: Job) -> None:
     )
     if cost.doubt:
         console.print(
-            f"time and memory are not known: {cost.doubt} may take a hundred times as long, and some GB; "
-            "try a single point or row first"
+            f"this estimate is uncertain: {cost.doubt} may take a hundred times as long, and some GB; try a "
+            "single point or row first"
         )
     if cost.too_large_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)

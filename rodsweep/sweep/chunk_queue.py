@@ -1,8 +1,9 @@
-"""Distribution of work items over ranks, in small chunks whose size follows from each rank's time per item.
+"""Distribution of work items over ranks: independent items in small chunks whose size follows from each
+rank's time per item, and items that depend on earlier results one by one.
 
-A work item, item for short, is a point, a chain or a stretch of points. A rank with a slow chunk returns
-the unsolved items of the chunk with the next request. No rank ends while another rank may still return items,
-and all ranks finish within about the time of one item. `rodsweep.sweep.chunk_requests` sends the messages.
+A work item, item for short, is a point, a chain, a stretch of points, or a part of a curve. A rank with a
+slow chunk returns the unsolved items of the chunk with the next request. No rank ends while another rank may
+still return items, and all ranks finish within about the time of one item. `rodsweep.sweep.chunk_requests` sends the messages.
 """
 
 import threading
@@ -172,8 +173,8 @@ class DependentItemQueue(ChunkQueue):
             self.change.notify_all()
 
     def next_chunk(self, rank: int) -> IndexRange | None:
-        """The next item for a rank, as a range; NO_WORK_LEFT if no item is left, None if the rank has to
-        wait.
+        """The next item for a rank, as a range; NO_WORK_LEFT if no item is left or after a stop request, None
+        if the rank has to wait.
         """
         with self.change:
             if self.is_stopped:

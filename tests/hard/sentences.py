@@ -967,8 +967,8 @@ def _state_sentences(view, page, fine, row):
         found.append((line, "; ".join(filter(None, why))))
     for line, match in read(
         page,
-        "^curves of cycles: NUMBER; folds and torus points of rows lie within NUMBER "
-        "of these curves along F; NUMBER (?:is|are) on no curve",
+        "^curves of cycles: NUMBER; folds and torus points on a curve lie within NUMBER "
+        "of it along F; NUMBER (?:is|are) on no curve",
     ):
         true = (
             len(np.unique(view.variables["cycle_curve_number"])),

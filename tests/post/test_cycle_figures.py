@@ -24,7 +24,7 @@ from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, drawn_shape_indices
 from rodsweep.post.figures.cycle.selection import chosen_cycles
-from rodsweep.post.figures.limit_cycle import figure_name
+from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.post.hopf_points import LocatedChange
 
@@ -195,7 +195,7 @@ FEW = {"stored": ()}
     ],
 )
 def test_the_file_suggests_its_figure(view, output, points, what):
-    assert figure_name(FigureRequest([view], Path(output), points=points)) == what
+    assert chosen_figure_kind(FigureRequest([view], Path(output), points=points)) == what
 
 
 @pytest.mark.long

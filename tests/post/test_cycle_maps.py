@@ -13,7 +13,7 @@ from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.maps import STATUS_LOOKS, draw_maps, hopf_lines
 from rodsweep.post.figures.cycle.point_map import cell_edges, point_map
-from rodsweep.post.figures.limit_cycle import figure_name
+from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
@@ -203,11 +203,11 @@ def make_list():
 )
 def test_maps_are_suggested_where_amplitudes_have_no_room(axes, points, output, what):
     view = make_view(axes, np.zeros(np.prod([len(values) for values in axes])), **WORDS)
-    assert figure_name(FigureRequest([view], Path(output), points=points)) == what
+    assert chosen_figure_kind(FigureRequest([view], Path(output), points=points)) == what
 
 
 def test_a_list_that_forms_a_grid_is_drawn_as_maps():
-    assert figure_name(FigureRequest([make_list()], Path("f.png"))) == "maps"
+    assert chosen_figure_kind(FigureRequest([make_list()], Path("f.png"))) == "maps"
 
 
 @pytest.mark.long

@@ -43,4 +43,4 @@ def test_check_of_a_diagram_with_cycles_says_when_its_time_is_not_known(tmp_path
     )
     print_job_check(job_of_file(path, ()))
     text = " ".join(capsys.readouterr().out.split())
-    assert ("time and memory are not known: branches of rubber" in text) is not known
+    assert ("this estimate is uncertain: branches of rubber" in text) is not known

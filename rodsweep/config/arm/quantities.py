@@ -60,7 +60,7 @@ def _si_number(name: str, value: Any) -> float:
         raise ValueError(str(error)) from None
 
 
-def with_relative_load(given: Mapping[str, Any]) -> dict[str, Any]:
+def with_load_over_flutter(given: Mapping[str, Any]) -> dict[str, Any]:
     """Keys and values of an arm, with a load like "1.2 of flutter" moved to a key like
     `pressure_over_flutter`.
 

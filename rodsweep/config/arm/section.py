@@ -17,7 +17,7 @@ from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..material import LawName, SectionName
 from ..values import Axis, ParameterAxis, StrictSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
-from .quantities import DragAxis, QuantityAxis, drag_names, with_relative_load
+from .quantities import DragAxis, QuantityAxis, drag_names, with_load_over_flutter
 from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
 
 QuantityField = Field(
@@ -79,7 +79,7 @@ class ArmSection(StrictSection):
     @classmethod
     def _with_relative_load_and_length(cls, given: Any) -> Any:
         """Moves a load relative to flutter to its own key, and adds the length of an arm with segments."""
-        return with_length(with_relative_load(given)) if isinstance(given, dict) else given
+        return with_length(with_load_over_flutter(given)) if isinstance(given, dict) else given
 
     @model_validator(mode="after")
     def _require_length_and_modulus(self) -> "ArmSection":

@@ -57,7 +57,7 @@ class PhaseDiagramOptions(StrictSection):
         return next(((name, axis) for name, axis in given if axis is not None), None)
 
     @model_validator(mode="after")
-    def _require_one_third_parameter(self) -> "PhaseDiagramOptions":
+    def _require_valid_bautin_along(self) -> "PhaseDiagramOptions":
         if self.bautin_along is None:
             return self
         given = [name for name in THIRD_PARAMETERS if getattr(self.bautin_along, name) is not None]

@@ -27,7 +27,7 @@ class _MeshMatrices(NamedTuple):
 
     value_matrix, slope_matrix: matrices from nodes to Gauss points, (p, p + 1). slope_value_matrix: slope^T
     weights value, (p + 1, p + 1). constant_entries: entries of the first two blocks, which are the same for
-    every arm, (n,). weights_over_length, weights_times_length: Gauss weights divided by, and multiplied by,
+    every arm, (n,). weights_over_half_length, weights_times_half_length: Gauss weights divided by, and times,
     half the length of each element, (elements, p). node_masses: mass of the nodes, (elements, p + 1).
     entry_positions: index in the pattern of each entry of all blocks, (m,). rows, columns: row and column of
     each entry of the pattern, (nnz,)."""
@@ -36,8 +36,8 @@ class _MeshMatrices(NamedTuple):
     slope_matrix: Array
     slope_value_matrix: Array
     constant_entries: Array
-    weights_over_length: Array
-    weights_times_length: Array
+    weights_over_half_length: Array
+    weights_times_half_length: Array
     node_masses: Array
     entry_positions: NDArray[np.int64]
     rows: NDArray[np.int32]
@@ -78,8 +78,8 @@ class ArmPencil:
             constant_entries=np.concatenate(
                 [np.tile(x.ravel(), mesh.element_count) for x in (-slopes, slopes.T)]
             ),
-            weights_over_length=wg * (2 / h[:, None]),
-            weights_times_length=wg * h[:, None] / 2,
+            weights_over_half_length=wg * (2 / h[:, None]),
+            weights_times_half_length=wg * h[:, None] / 2,
             node_masses=w * h[:, None] / 2,
             entry_positions=where,
             rows=self.rows,
@@ -141,7 +141,7 @@ def _flat_entry_positions(
 def _pencil_of_coefficients(F: float, local: Array, pieces: _MeshMatrices) -> tuple[Array, Array, Array]:
     """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. local:
     coefficients of the arm, (6, elements, 2 order + 1)."""
-    elements, order = pieces.weights_times_length.shape
+    elements, order = pieces.weights_times_half_length.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)
     turn = np.zeros(nodes + 1)
@@ -159,7 +159,7 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _MeshMatrices) -> tu
         angle = max(turn[k + 1], least[k + 1])
         scale[k] = 1 / math.sqrt(push[k + 1])
         scale[nodes + k] = 1 / math.sqrt(angle)
-        weight = pieces.weights_times_length[k // order, k % order]
+        weight = pieces.weights_times_half_length[k // order, k % order]
         scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM_SETTINGS.shear_weight**2)
         B[k] = 1.0
         B[nodes + k] = turn[k + 1] / angle
@@ -178,13 +178,13 @@ def _add_entries(F: float, local: Array, pieces: _MeshMatrices, A: Array) -> Non
     F: follower force. local: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern,
     then one for the clamp, (nnz + 1,).
     """
-    elements, order = pieces.weights_times_length.shape
+    elements, order = pieces.weights_times_half_length.shape
     value = pieces.value_matrix
     where = pieces.entry_positions
     at = _add_block(pieces.constant_entries, 0, where, A)
     for e in range(elements):
         at = _add_block(
-            _bending_block(pieces.slope_matrix, pieces.weights_over_length[e] / local[2, e, :order]),
+            _bending_block(pieces.slope_matrix, pieces.weights_over_half_length[e] / local[2, e, :order]),
             at,
             where,
             A,
@@ -192,12 +192,12 @@ def _add_entries(F: float, local: Array, pieces: _MeshMatrices, A: Array) -> Non
     for _ in range(elements):
         at = _add_block(F * pieces.slope_value_matrix, at, where, A)
     for e in range(elements):
-        at = _add_block(value.T * (pieces.weights_times_length[e] * local[5, e, :order]), at, where, A)
+        at = _add_block(value.T * (pieces.weights_times_half_length[e] * local[5, e, :order]), at, where, A)
     for e in range(elements):
-        turned = pieces.weights_times_length[e] * local[0, e, :order]
+        turned = pieces.weights_times_half_length[e] * local[0, e, :order]
         at = _add_block(-turned.reshape(-1, 1) * value, at, where, A)
     for e in range(elements):
-        at = _add_block(-pieces.weights_times_length[e] * local[1, e, :order], at, where, A)
+        at = _add_block(-pieces.weights_times_half_length[e] * local[1, e, :order], at, where, A)
     A[where[at]] -= F  # the follower force at the tip, -F a(1) theta(1)
 
 

@@ -17,7 +17,7 @@ from .cycle.selection import (
     ENERGY_BUDGET_VARIABLES,
     MAX_CYCLES,
     SHAPE_VARIABLES,
-    TRACE_VARIABLES,
+    TRANSIENT_VARIABLE_NAMES,
     chosen_cycles,
 )
 from .cycle.transient import draw_transients
@@ -33,11 +33,12 @@ FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient":
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
-    """Draws the figure of one file, or the amplitudes of several files; returns a sentence. Raises InputError
-    for options that do not match the files.
+    """Draws the figure of one file or the amplitudes of several files, or writes an animation; returns a
+    sentence. If the file lacks variables that the figure needs, `request.shapes`, if given, solves the cycles
+    again. Raises InputError for options that do not match the files, and if nothing can be drawn.
     """
     points = request.points
-    name = figure_name(request)
+    name = chosen_figure_kind(request)
     view = _with_needed_variables(request, name)
     if name == "animation":
         request.require_output(*FILM_SUFFIXES)
@@ -66,7 +67,7 @@ def _with_needed_variables(request: FigureRequest, name: str) -> View:
     return request.shapes(view, numbers[:MAX_CYCLES])
 
 
-def figure_name(request: FigureRequest) -> str:
+def chosen_figure_kind(request: FigureRequest) -> str:
     """Kind of figure that the user has chosen by --what, or the default kind. Raises InputError for options
     that do not match the files.
     """
@@ -101,7 +102,7 @@ def _default_figure_kind(request: FigureRequest) -> str:
     few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES
     shaped = SHAPE_VARIABLES[0] in first.variables
     drawable = shaped and beats.any() and beats[[n for n in chosen if 0 <= n < beats.size]].all()
-    if few_points and TRACE_VARIABLES[0] in first.variables and not drawable:
+    if few_points and TRANSIENT_VARIABLE_NAMES[0] in first.variables and not drawable:
         return "transient"
     if chosen or (few_cycles and shaped):
         return "cycle"

@@ -77,9 +77,9 @@ def agreement_lines(view: View, line: str) -> list[str]:
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         within = error_text(float(v["cycle_curve_agreement"]))
+        near = f"folds and torus points on a curve lie within {within} of it along {line}; " * (curves > 0)
         lines.append(
-            f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
-            f"these curves along {line}; {_on_no_curve_clause(int(v['cycle_curves_untraced']))}"
+            f"curves of cycles: {curves}; {near}{_on_no_curve_clause(int(v['cycle_curves_untraced']))}"
         )
     return lines
 

@@ -134,13 +134,13 @@ def si_name_of(name: str, unit: str) -> str:
 
 
 def _si_meaning(variable: Variable, unit: str) -> str:
-    """Long name of the SI variable of a dimensionless variable: its long name, followed by "in SI units", or
-    by "in cycles per second" if `unit` is HERTZ."""
+    """Long name of the SI variable of a dimensionless variable: its long name, followed by "in SI units"; if
+    `unit` is HERTZ, without "angular" and the clause after the first comma, followed by "in cycles per
+    second"."""
     if unit != HERTZ:
         return f"{variable.long_name}; in SI units"
-    words = variable.long_name.removeprefix("angular ").partition(",")[
-        0
-    ]  # the clause after the comma defines the angular frequency
+    # The clause after the comma defines the angular frequency.
+    words = variable.long_name.removeprefix("angular ").partition(",")[0]
     return f"{words}; in cycles per second"
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
-from .thresholds import CROSSING_LIST_RULE, search_variables
+from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
 from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
 
 FORCE_UNIT = PARAMETERS["F"].unit
@@ -61,7 +61,7 @@ NORMAL_FORM = along_dimension(
     Variable("elements", "<i2", 0, "1", "spectral elements used"),
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
-OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
+OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

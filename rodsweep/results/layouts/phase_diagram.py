@@ -8,7 +8,7 @@ from .branch import SPECIAL_KINDS
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
-from .thresholds import CROSSING_LIST_RULE, search_variables
+from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
 from .variables import (
     ANGULAR_UNIT,
     NEEDS_NEW_SOLVE,
@@ -60,7 +60,7 @@ CYCLE_CURVE_ENDS = {
 """Meaning of every reason why a curve of folds of cycles, or of torus points, ends, by word; the file stores
 the position in this table."""
 OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) | {
-    "crossings": CROSSING_LIST_RULE,
+    "crossings": CROSSING_LIST_EXTENSION_RULE,
     "curves": NEEDS_NO_SOLVE,
 }
 

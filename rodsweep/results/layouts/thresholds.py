@@ -79,10 +79,10 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     )
 
 
-CROSSING_LIST_RULE = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
+CROSSING_LIST_EXTENSION_RULE = ExtensionRule(lambda records, before: records["crossing_count"] <= before)
 """Rule for the maximum number of stored crossings; a stored list that is not full already has all
 crossings."""
-OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_RULE, "certify": NEEDS_NEW_SOLVE}
+OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

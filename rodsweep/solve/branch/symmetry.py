@@ -81,7 +81,7 @@ BRANCH_END_SETTINGS = BranchEndSettings()
 class AsymmetricStartSettings:
     """Settings for the first asymmetric cycle near a symmetry breaking."""
 
-    first_relative_changes: tuple[float, ...] = (0.03, 0.01, 0.1)
+    first_cycle_distances: tuple[float, ...] = (0.03, 0.01, 0.1)
     """Relative differences between the predicted first asymmetric cycle and the symmetric cycle, tried in
     this order."""
 
@@ -149,7 +149,7 @@ def first_asymmetric_cycle(
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])
-    for share in ASYMMETRIC_START_SETTINGS.first_relative_changes:
+    for share in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
         try:
             ways = [moved_orbit(whole, name, sign * share * way) for sign in (1, -1)]
             # The two signs give mirror images. The cycle with the larger y is followed, so that the result
@@ -193,7 +193,7 @@ def reaches_symmetric_cycle(
     if float(asymmetry(other) @ reference) < lost:
         return True
     turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
-    return turns_back and _nearest_symmetry_breaking(start, known, accuracy) >= 0
+    return turns_back and _symmetry_breaking_ahead(start, known, accuracy) >= 0
 
 
 def _relative_asymmetry(start: BranchCycle) -> float:
@@ -212,7 +212,7 @@ def symmetry_breaking_between(
     """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
     does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
     needed. Raises Unsolvable if no shorter step is allowed."""
-    which = _nearest_symmetry_breaking(start, known, accuracy) if _is_nearly_symmetric(start) else -1
+    which = _symmetry_breaking_ahead(start, known, accuracy) if _is_nearly_symmetric(start) else -1
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
         return which
     if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
@@ -220,9 +220,9 @@ def symmetry_breaking_between(
     return None
 
 
-def _nearest_symmetry_breaking(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
-    """Index of the symmetry breaking in `known` with the parameter and period at which the extrapolated
-    asymmetry of the branch vanishes; -1 if no symmetry breaking in `known` agrees within the tolerances."""
+def _symmetry_breaking_ahead(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
+    """Index of the first symmetry breaking in `known` with the parameter and period, within tolerances, at
+    which the extrapolated asymmetry of the branch vanishes; -1 if there is none, or it does not decrease."""
     orbit = start.orbit
     present = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))

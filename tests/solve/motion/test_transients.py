@@ -18,7 +18,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.transient import draw_transients
-from rodsweep.post.figures.limit_cycle import figure_name
+from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
 from rodsweep.solve.cycle.transient.amplitude_equation import AMPLITUDE_EQUATION_SETTINGS
@@ -207,7 +207,7 @@ def test_portrait_shows_how_the_beating_emerges_where_all_its_cycles_have_a_tran
     ],
 )
 def test_transients_are_suggested_where_there_are_no_shapes_to_draw(tmp_path, view, points, what):
-    assert figure_name(FigureRequest([view], tmp_path / "f.png", points=points)) == what
+    assert chosen_figure_kind(FigureRequest([view], tmp_path / "f.png", points=points)) == what
     draw(view, tmp_path / "f.png", points=points)
 
 

@@ -63,7 +63,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
     figure, shapes, tips = _new_panels(cycles, narrow)
-    emerging = all(cycle.has_trace for cycle in cycles)
+    emerging = all(cycle.has_transient for cycle in cycles)
     end = DRAWN_TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.

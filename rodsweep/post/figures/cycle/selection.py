@@ -24,9 +24,11 @@ SHAPE_VARIABLES = ("shape_x", "shape_y", "shape_theta")
 """Names of the variables with the shapes over a period."""
 ENERGY_BUDGET_VARIABLES = ("energy", "injection", "dissipation")
 """Names of the variables with the energy budget over a period."""
-TRACE_VARIABLES = ("transient_time", "transient_x", "transient_y")
+TRANSIENT_VARIABLE_NAMES = ("transient_time", "transient_x", "transient_y")
 """Names of the variables with the motion from the initial state."""
-STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLES, "shapes") | dict.fromkeys(TRACE_VARIABLES, "transient")
+STORING_OPTIONS = dict.fromkeys(SHAPE_VARIABLES, "shapes") | dict.fromkeys(
+    TRANSIENT_VARIABLE_NAMES, "transient"
+)
 """Option of the config with which the task stores a variable. Other variables over a period are stored with
 the option `samples`."""
 
@@ -84,9 +86,11 @@ class StoredCycle:
         return self.values["shape_x"][:, -1], self.values["shape_y"][:, -1]
 
     @property
-    def has_trace(self) -> bool:
+    def has_transient(self) -> bool:
         """Whether the motion from the initial state is stored."""
-        return TRACE_VARIABLES[0] in self.values and bool(np.isfinite(self.values[TRACE_VARIABLES[0]]).all())
+        return TRANSIENT_VARIABLE_NAMES[0] in self.values and bool(
+            np.isfinite(self.values[TRANSIENT_VARIABLE_NAMES[0]]).all()
+        )
 
     def heading(self, *lines: str) -> str:
         """Title of a panel: the label, if not empty, above the given lines."""
@@ -125,13 +129,14 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Cy
     return _selected_cycles(view, points, words == "cycle", "cycle")
 
 
-def chosen_traces(view: View, points: Sequence[int]) -> CycleSelection:
-    """Motions from the initial state at the points with the numbers `points`, or the first stored motions if
-    `points` is empty. Raises InputError if a chosen motion, or every motion, is missing.
+def chosen_transients(view: View, points: Sequence[int]) -> CycleSelection:
+    """Motions from the initial state at the points with the numbers `points`, or the first stored motions, at
+    most MAX_CYCLES, if `points` is empty. Raises InputError if a chosen motion, every motion or a variable is
+    missing, if a point does not exist, or if more than MAX_CYCLES points are chosen.
     """
-    _refuse_missing(view, TRACE_VARIABLES)
+    _refuse_missing(view, TRANSIENT_VARIABLE_NAMES)
     _refuse_bad_points(view, points)
-    is_stored = np.isfinite(view.variables[TRACE_VARIABLES[0]][..., -1].ravel())
+    is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
             raise InputError(

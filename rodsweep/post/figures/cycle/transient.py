@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ..style import BLUE, VERMILION
-from .selection import TRACE_VARIABLES, StoredCycle, chosen_traces
+from .selection import TRANSIENT_VARIABLE_NAMES, StoredCycle, chosen_transients
 from .units import CycleUnits
 
 EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
@@ -23,7 +23,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
 
     points: numbers of the chosen points. narrow: whether the titles leave out the explanation of these lines.
     """
-    selection = chosen_traces(view, points)
+    selection = chosen_transients(view, points)
     count = len(selection.cycles)
     figure = Figure(figsize=(4.2 * count + 1.6, 5.0), layout="constrained")
     rows = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
@@ -44,7 +44,7 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Draws x (upper panel) and y (lower panel) of the tip from the initial state on, with horizontal lines
     at the extrema of the cycle, if any.
     """
-    time, *tip = (cycle.values[name] for name in TRACE_VARIABLES)
+    time, *tip = (cycle.values[name] for name in TRANSIENT_VARIABLE_NAMES)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
     for axes, values, colour, pair in zip((upper, lower), tip, (BLUE, VERMILION), levels, strict=True):

@@ -129,8 +129,8 @@ def _quantity_unit(view: View, name: str) -> str:
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines with the ranges of all variables in SI units, over the points in the mask `done`, (...,). Empty
-    list for a rod."""
+    """Lines with the ranges of an arm's variables, in typed or SI units, at the points in `done`, a mask
+    (...,), without errors and lists of crossings; lists need a single point. Empty list for a rod."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUT_MAKERS[view.task](view.config), view.config)

@@ -191,14 +191,14 @@ class _CurvesOfKind:
 
 
 def _trace_half_curve(
-    limits: SpecialCurveProblem,
+    problem: SpecialCurveProblem,
     one: RowSpecialPoint,
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecialPoint],
 ) -> TracedHalfCurve:
-    """One half of a curve, from special point `one` of a row; `half` is None after a failure. located: points
-    of this row, with cycles. special: all special points."""
-    width = abs(limits.line.parameter_slope(one.at))
+    """One half of a curve, from the point in `located` that agrees with special point `one`; `half` is None
+    if no point agrees or after a failure. located: points of the row, with cycles. special: all points."""
+    width = abs(problem.line.parameter_slope(one.at))
     same = [
         point
         for point in located
@@ -209,10 +209,10 @@ def _trace_half_curve(
     if not same:
         return TracedHalfCurve(None)
     try:
-        points, end = limits.follow_from(same[0], one.row_value)
+        points, end = problem.follow_from(same[0], one.row_value)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
-    distances = {i: _row_distance(limits, points, other) for i, other in enumerate(special)}
+    distances = {i: _row_distance(problem, points, other) for i, other in enumerate(special)}
     near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_row_distance}
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 

@@ -48,13 +48,13 @@ def cycle_with_calibrated_errors(
     by_matrix = (
         REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.matrix_distance + trivial_error)
     )
-    by_exponent = 2 * errors.amplitude_error * _multiplier_per_exponent(multipliers)
+    by_exponent = 2 * errors.amplitude_error * _multiplier_per_relative_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
 
 
-def _multiplier_per_exponent(multipliers: Complex) -> float:
+def _multiplier_per_relative_exponent(multipliers: Complex) -> float:
     """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
     |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
 

@@ -43,9 +43,9 @@ CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 
 @compiled
 def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
-    """(real part of the line in the middle of a gap at point i, relative half-width of the gap).
-
-    gap: number of eigenvalues to the right of the gap.
+    """(real part of the line in the middle of a gap at point i, half-width of the gap divided by the modulus
+    of this real part). The half-width is at most `wide_gap`, and 0 if the line is not to the left of the
+    imaginary axis. gap: number of eigenvalues to the right of the gap.
     """
     right = track.w[i, track.descending_order[i, gap - 1]].real
     left = track.w[i, track.descending_order[i, gap]].real

@@ -42,7 +42,7 @@ class NearbyCycleSolver:
 
     def __init__(self, family: CycleFamilyInterface, start: Orbit, contraction: float) -> None:
         """family: family of the cycles. start: orbit at which the first matrix is assembled. contraction:
-        initial value of the attribute `contraction`, measured at earlier cycles of the family; inf if
+        initial value of `contraction_rate`, measured at earlier cycles of the family; inf if
         unknown."""
         self.scale = family.scale
         self.border = family.border
