@@ -24,13 +24,13 @@ ANOTHER = "another"
 TRY = """
 import numpy as np
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.blas_kernel import blas
+from rodsweep.solve.backend.blas_kernel import blas_description
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 found = solve_spectrum(Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(4, 1e-10, True))
 assert abs(found.eigenvalues[0].real - 965025.548182) < 1e-6
 assert np.allclose(np.linalg.inv(np.eye(200) + np.ones((200, 200))) @ np.full(200, 201.0), 1.0)
-print(blas())
+print(blas_description())
 """
 """Says which BLAS and kernel are in use, after they have given the right numbers."""
 
