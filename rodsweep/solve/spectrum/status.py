@@ -27,4 +27,4 @@ class SpectrumStatus(PointStatus):
         "fewer eigenvalues are found than the winding number counts, so no eigenvalue is stored; request "
         "more modes",
     )
-    failed = 5, "the solver failed and nothing is stored; the message says why"
+    failed = 5, "the solver failed, and results that it did not find are missing; the message says why"
