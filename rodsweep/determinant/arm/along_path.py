@@ -17,8 +17,15 @@ from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ARM_FAMILY_SETTINGS, ArmFamily, determinant_of_family_arm, eigenvalue_of_family_arm
+from .family import (
+    ARM_FAMILY_SETTINGS,
+    ArmFamily,
+    determinant_of_family_arm,
+    eigenvalue_of_family_arm,
+    propagators_at,
+)
 from .newton import refine_eigenvalue_and_error
+from .rounding import rounding_error_by_chain
 
 CENTRAL_DIFFERENCE_STENCIL = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
@@ -29,14 +36,6 @@ FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
 class ArmDoubleEigenvalueSettings:
     """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
-    rounding_over_noise: float = 5.0
-    """Rounding error of D at a double eigenvalue divided by `noise`; measured: at most 4.7 at 44 double
-    eigenvalues of stepped arms, compared with 19 digits."""
-    compared_level_factors: tuple[int, ...] = (1, 4, 16)
-    """D at w is computed on the elements for each of these multiples of |w|. The differences estimate the
-    rounding error of D at a double eigenvalue."""
-    error_over_spread: float = 3.0
-    """The rounding error of D is estimated as this number times max - min of D on different elements."""
     max_shortenings: int = 20
     """Maximum number of divisions of a difference step by `step_divisor`, to 1e-12 of the first step."""
     step_divisor: float = 4.0
@@ -100,7 +99,6 @@ class ArmAlongPath:
             D = value.D.real
             D_w = value.D_w.real
             S = value.S
-            noise = value.noise
             h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
             D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
             stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
@@ -111,44 +109,30 @@ class ArmAlongPath:
                 return FAILED_ZERO
             in_x = (D_p * D_w - D_wp * D) / cross
             in_p = (D_ww * D - D_w * D_w) / cross
-            blur = ARM_DOUBLE_EIGENVALUE_SETTINGS.rounding_over_noise * noise + ROUND_OFF * abs(p * D_p)
+            rounding = self._rounding_error(x, p, S)
+            blur = rounding + ROUND_OFF * abs(p * D_p)
+            blur_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
             e_p = blur * abs(D_ww) / abs(cross)
-            e_x = (
-                blur * abs(D_wp)
-                + ARM_DOUBLE_EIGENVALUE_SETTINGS.rounding_over_noise
-                * noise
-                / max(abs(x), EXPONENT_SETTINGS.least_divisor)
-                * abs(D_p)
-            ) / abs(cross)
+            e_x = (blur * abs(D_wp) + blur_of_slope * abs(D_p)) / abs(cross)
             x += in_x
             p += in_p
             if not abs(p - first) <= 2 * reach or not x * start > 0 or not self._is_valid_at(p):
                 return FAILED_ZERO
             small = abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
             if small and (abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2):
-                # Only after convergence, because D on further elements is expensive.
-                more = max(self._rounding_error_from_spread(x, p, S) / blur, 1.0)
-                e_p = max(more * e_p, abs(in_p)) + ARM_FAMILY_SETTINGS.interpolation_error * abs(p)
-                return LocatedZero(x, p, max(more * e_x, abs(in_x)), e_p)
+                e_p = max(e_p, abs(in_p)) + ARM_FAMILY_SETTINGS.interpolation_error * abs(p)
+                return LocatedZero(x, p, max(e_x, abs(in_x)), e_p)
             last = abs(in_x)
         return FAILED_ZERO
 
-    def _rounding_error_from_spread(self, x: float, p: float, S: float) -> float:
-        """Estimated rounding error of D exp(-S) at real w = x, for the arm at p: `error_over_spread` times
-        (max - min) of D on different divisions of the arm into elements. S: scale of the result.
-
-        Minors that are large in the middle of an arm have rounding errors that `noise` does not contain.
-        """
-        arm = self.determinant(p)
-        values = [
-            self._determinant_value(x, p),
-            *(
-                arm.value_on_finer_elements(x, factor)
-                for factor in ARM_DOUBLE_EIGENVALUE_SETTINGS.compared_level_factors
-            ),
-        ]
-        D = [value.D.real * math.exp(value.S - S) for value in values]
-        return ARM_DOUBLE_EIGENVALUE_SETTINGS.error_over_spread * (max(D) - min(D))
+    def _rounding_error(self, x: float, p: float, S: float) -> float:
+        """Bound of the rounding error of D exp(-S) at real w = x, for the arm at p."""
+        family = self.family_at(p)
+        if family is not None and abs(x) < family.largest_w:
+            W, polynomials = propagators_at(family, p)
+        else:
+            W, polynomials = self.determinant(p).propagators_for(abs(x))
+        return rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
 
     def _determinant_value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""

@@ -24,7 +24,9 @@ from .determinant import CoefficientSamples, coefficient_samples, elements_for
 from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
 from .elements.settings import ARM_ELEMENT_SETTINGS
-from .value import ARM_VALUE_SETTINGS, determinant_along_chain, path_value_by_chain
+from .newton import ARM_ROOT_SETTINGS
+from .rounding import rounding_error_by_chain
+from .value import determinant_along_chain, path_value_by_chain
 
 LINEAR_SCALE = math.inf
 """Value of `ArmFamily.scale` for series in p itself, not in a logarithm of p."""
@@ -240,10 +242,11 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
             break
         last = abs(step)
         w -= step
-    D, D_w, D_p, _, noise = path_value_by_chain(w, family.largest_w, polynomials, changes)
+    D, D_w, D_p, S, _ = path_value_by_chain(w, family.largest_w, polynomials, changes)
     size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    rounding = ARM_VALUE_SETTINGS.root_residual * abs(D) + ARM_VALUE_SETTINGS.root_noise * noise
-    return w, slope, rounding / size + ARM_FAMILY_SETTINGS.interpolation_error * (abs(w) + abs(p * slope))
+    rounding = rounding_error_by_chain(w, family.largest_w, polynomials, S)
+    e = ARM_ROOT_SETTINGS.residual * abs(D) + rounding
+    return w, slope, e / size + ARM_FAMILY_SETTINGS.interpolation_error * (abs(w) + abs(p * slope))

@@ -15,17 +15,16 @@ from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, PropagatorsUpToW
-from .value import ARM_VALUE_SETTINGS, determinant_along_chain
+from .rounding import rounding_error_by_chain
+from .value import determinant_along_chain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmRootSettings(CompiledSettings):
     """Settings for the refinement of eigenvalues of arms."""
 
-    rounding: float = 16.0
-    """Rounding error of an eigenvalue from the products of propagators, divided by |w| times the spacing of
-    doubles at 1. Minors in the middle of an arm may exceed the minors at the tip. Measured: relative errors
-    of at most 4e-15 in 1000 eigenvalues of stepped arms, compared with 19 digits."""
+    residual: float = 2.0
+    """Factor of |D|, the residual after Newton's method, in the error of D at a root."""
     max_w_ratio: float = 16.0
     """If D is needed later at a larger |w|, at most this number times |w| of the roots, the roots use the
     elements for the larger |w|: at most four times as many. Rounding errors grow with their number."""
@@ -47,7 +46,8 @@ def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex
 @compiled
 def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
-    e = ARM_VALUE_SETTINGS.root_residual * abs(value.D) + ARM_VALUE_SETTINGS.root_noise * value.noise
+    rounding = rounding_error_by_chain(w, level[0], level[1], value.S)
+    e = ARM_ROOT_SETTINGS.residual * abs(value.D) + rounding
     size = abs(value.D_w)
     error = e / max(size, EXPONENT_SETTINGS.least_divisor)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
@@ -56,7 +56,7 @@ def _root_error_from_value(w: complex, value: DeterminantValue, level: Propagato
         if size**2 < ROOT_SETTINGS.min_squared_slope * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), size / second + spread)
-    return error + ARM_ROOT_SETTINGS.rounding * ROUND_OFF * abs(w)
+    return error + ROUND_OFF * abs(w)
 
 
 @compiled

@@ -117,7 +117,10 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
             continue
         for i in np.flatnonzero(reached.is_accepted)[::8]:
             dense = eigenvalues(path.rod_at(float(values[i])))
-            assert reached.unstable_count[i] == int((dense.real > 0).sum()), (rod, rod.build, values[i])
+            # An eigenvalue of an arm in tension may be -1e-18, the largest ones of the mesh are 1e9.
+            blur = 1e-16 * np.abs(dense).max()
+            least, most = (int((dense.real > limit).sum()) for limit in (blur, -blur))
+            assert least <= reached.unstable_count[i] <= most, (rod, rod.build, values[i])
             for w in dense[:4]:
                 assert np.abs(reached.w[i] - w).min() <= 1e-4 * max(abs(w), 1.0)
             compared += 1

@@ -139,6 +139,37 @@ def apply_propagator(C: Array, x: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
+def apply_transposed_propagator(C: Array, x: Array, out: Array) -> None:
+    """out = C^T x for a propagator C, (2 or more, PADDED), and vectors x and out, (2, MINORS)."""
+    for j in range(MINORS):
+        real = 0.0
+        imaginary = 0.0
+        for i in range(MINORS):
+            k = MINORS * j + i
+            real += C[RE, k] * x[0, i] - C[IM, k] * x[1, i]
+            imaginary += C[RE, k] * x[1, i] + C[IM, k] * x[0, i]
+        out[0, j] = real
+        out[1, j] = imaginary
+
+
+@compiled_for_vectors
+def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
+    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED), and vectors a and x,
+    (2, MINORS).
+
+    |real part| + |imaginary part| replaces each modulus, so that the sum is up to 2 sqrt(2) times too large.
+    """
+    total = 0.0
+    for j in range(MINORS):
+        column = 0.0
+        for i in range(MINORS):
+            k = MINORS * j + i
+            column += (abs(C[RE, k]) + abs(C[IM, k])) * (abs(a[0, i]) + abs(a[1, i]))
+        total += column * (abs(x[0, j]) + abs(x[1, j]))
+    return total
+
+
+@compiled_for_vectors
 def apply_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
     (2, MINORS).

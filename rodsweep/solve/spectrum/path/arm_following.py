@@ -19,7 +19,8 @@ from ....determinant.arm.completeness import (
 )
 from ....determinant.arm.family import ARM_FAMILY_SETTINGS, ArmFamily, write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
-from ....determinant.arm.value import ARM_VALUE_SETTINGS, determinant_along_chain, path_value_by_chain
+from ....determinant.arm.rounding import rounding_error_by_chain
+from ....determinant.arm.value import determinant_along_chain, path_value_by_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
@@ -41,10 +42,15 @@ variable p); both arrays: (elements, terms, PADDED)."""
 
 
 @compiled
-def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
-    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real."""
-    D, D_w, D_p, _, noise = path_value_by_chain(w, level[0], level[1], level[2])
-    return newton_step(w, D, D_w, D_p, ARM_VALUE_SETTINGS.root_noise * noise)
+def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes, exact: bool) -> CorrectedEigenvalue:
+    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real.
+
+    exact: whether the rounding error is the bound of `rounding_error_by_chain`; otherwise it is the error of
+    the products at the tip, which takes less time.
+    """
+    D, D_w, D_p, S, noise = path_value_by_chain(w, level[0], level[1], level[2])
+    rounding = rounding_error_by_chain(w, level[0], level[1], S) if exact else noise
+    return newton_step(w, D, D_w, D_p, rounding)
 
 
 @compiled
@@ -61,7 +67,7 @@ def _converged_step_and_error(
         error = converged_error(here, crowding, exact)
         if error < math.inf:
             return here, error
-        here = correct_eigenvalue_of_arm(here.w, level)
+        here = correct_eigenvalue_of_arm(here.w, level, exact)
     return here, math.inf
 
 
@@ -99,11 +105,12 @@ def _refine_all_eigenvalues(
         if guess[k].imag != 0 and mate[k] < 0:
             return False
         if guess[k].imag >= 0:
-            first = correct_eigenvalue_of_arm(guess[k], level)
+            leads = rank <= modes
+            first = correct_eigenvalue_of_arm(guess[k], level, leads)
             w[k] = first.w
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
-            last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
+            last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), leads, level)
             # Interpolation changes D as relative changes of w and p by `ARM_FAMILY_SETTINGS.converged_tail`
             # would.
             error[k] += ARM_FAMILY_SETTINGS.converged_tail * (abs(last.w) + abs(p * last.slope))

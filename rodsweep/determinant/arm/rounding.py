@@ -1,0 +1,69 @@
+"""Rounding error of an arm's D(w), from the propagators of its elements and the sensitivities of D.
+
+D = a_e . C_e x_e for every element e: x_e are the minors at the start of the element, C_e is its
+propagator, and a_e are the derivatives of D by the minors at its end. Rounding changes each product C_ij x_j
+by a relative error of about the spacing of doubles at 1. The rounding error of D is therefore at most this
+spacing times the sum over elements of |a_e| . |C_e| |x_e|. The products at the tip alone are not enough:
+close to crushing, minors are large in the middle of an arm, and their errors exceed those at the tip.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+from ...model.compiled.compilation import compiled
+from ...model.compiled.settings import CompiledSettings
+from ..exponents import ROUND_OFF
+from .elements.evaluation import (
+    apply_propagator,
+    apply_transposed_propagator,
+    fill_propagator_value,
+    modulus_sum_of_form,
+    powers_and_derivatives,
+)
+from .elements.minor_rates import PADDED, SM
+from .elements.settings import MINORS
+from .value import divide_by_norm
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmRoundingSettings(CompiledSettings):
+    """Settings for the rounding error of D."""
+
+    error_per_product: float = 1.5
+    """Relative rounding error of a product of propagator and minor, divided by the spacing of doubles at 1.
+    Measured: 1.5 times the difference of 700 eigenvalues of random arms, half of them close to crushing,
+    between four divisions of the arm into elements exceeds the resulting bound by at most 1 %."""
+
+
+ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
+
+
+@compiled
+def rounding_error_by_chain(w: complex, W: float, polynomials: Array, S: float) -> float:
+    """Bound of the rounding error of D exp(-S) at w, to first order.
+
+    polynomials: propagators valid for |w| <= W, (elements, terms, PADDED). S: scale of the result.
+    """
+    elements, terms, _ = polynomials.shape
+    powers = powers_and_derivatives(w / W, terms)
+    C = np.empty((elements, 2, PADDED))
+    x = np.zeros((elements + 1, 2, MINORS))
+    x[0, 0, SM] = 1.0
+    scale = np.zeros(elements + 1)
+    for e in range(elements):
+        fill_propagator_value(polynomials[e], powers, C[e])
+        apply_propagator(C[e], x[e], x[e + 1])
+        scale[e + 1] = scale[e] + divide_by_norm(x[e + 1])
+    after, before = np.zeros((2, 2, MINORS))
+    after[0, SM] = 1.0
+    scale_after = -S
+    total = 0.0
+    for e in range(elements - 1, -1, -1):
+        total += math.exp(scale[e] + scale_after) * modulus_sum_of_form(after, C[e], x[e])
+        apply_transposed_propagator(C[e], after, before)
+        scale_after += divide_by_norm(before)
+        after, before = before, after
+    return ARM_ROUNDING_SETTINGS.error_per_product * ROUND_OFF * total

@@ -1,0 +1,104 @@
+"""Errors of eigenvalues close to crushing, where minors are large in the middle of an arm."""
+
+import math
+
+import numpy as np
+import pytest
+from surveyed import RODS
+
+from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.family import eigenvalue_of_family_arm, interpolated_family
+from rodsweep.determinant.arm.rounding import rounding_error_by_chain
+from rodsweep.determinant.arm.value import determinant_along_chain
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.search import SpectrumRequest, SpectrumStatus, solve_spectrum
+
+CLOSE_PAIR = Rod(
+    F=116.98506875,
+    k1=109.83750492645562,
+    k2=7.02,
+    gamma3=0.21681568646611862,
+    build=Build(
+        profile=Profile(
+            (0.0, 1.0),
+            (
+                (1.4726647073144412, 1.0, 1.0, 1.0, 1.0, 1.0),
+                (1.116211212073014, 1, 1, 1, 1.2836789734528988, 1),
+            ),
+        )
+    ),
+)
+"""Crushed at F = 122.6; two leading real eigenvalues are 0.49 apart at 2552."""
+
+
+def nearly_crushed(rng):
+    """An arm of two to four smooth parts, close to the force that crushes its weakest section."""
+    rows = int(rng.integers(2, 5))
+    factors = 10 ** rng.uniform(-0.5, 0.5, rows)
+    u = (0.0, *np.sort(rng.uniform(0.1, 0.9, rows - 2)).tolist(), 1.0)
+    k1 = 10 ** rng.uniform(1.5, 2.5)
+    return Rod(
+        F=k1 * factors.min() * (1 - 10 ** rng.uniform(-4, -0.5)),
+        k1=k1,
+        k2=k1 * 10 ** rng.uniform(-3, 0.5),
+        gamma3=float(rng.choice([0.0, 10 ** rng.uniform(-6, -0.5)])),
+        build=Build(profile=Profile(u, tuple((f, f, f * f, 1.0, 1.0, 1.0) for f in factors.tolist()))),
+    )
+
+
+def refined(w, determinant, factor):
+    """The eigenvalue near w on the elements for a multiple of |w|."""
+    for _ in range(6):
+        value = determinant.value_on_finer_elements(w, factor)
+        step = value.D / value.D_w
+        w -= complex(step.real, 0.0) if w.imag == 0 else step
+    return w
+
+
+def leading(rod):
+    found = solve_spectrum(rod, SpectrumRequest(4, 1e-6, certify=True))
+    if found.status != SpectrumStatus.ok:
+        return []
+    pairs = zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True)
+    return [(w, error) for w, error in pairs if w.imag >= 0]
+
+
+@pytest.mark.parametrize("seed", range(RODS // 5 or 10))
+def test_eigenvalues_close_to_crushing_are_within_their_errors(seed):
+    rod = nearly_crushed(np.random.default_rng([77, seed]))
+    determinant = ArmDeterminant(rod)
+    for w, error in leading(rod):
+        for factor in (1.4, 2.2, 3.5):
+            assert abs(refined(w, determinant, factor) - w) <= 2 * error, (rod, rod.build)
+
+
+def test_two_close_eigenvalues_have_larger_errors_than_the_products_at_the_tip():
+    determinant = ArmDeterminant(CLOSE_PAIR)
+    pair = [(w, error) for w, error in leading(CLOSE_PAIR) if 2551 < w.real < 2553]
+    assert len(pair) == 2
+    for w, error in pair:
+        W, polynomials = determinant.propagators_for(abs(w))
+        value = determinant_along_chain(w, W, polynomials)
+        assert rounding_error_by_chain(w, W, polynomials, value.S) > 20 * value.noise
+        spread = [abs(refined(w, determinant, factor) - w) for factor in (1.4, 2.2, 3.5)]
+        assert 1e-12 < max(spread) <= 2 * error < 1e-8
+
+
+def test_eigenvalues_of_families_close_to_crushing_are_within_their_errors():
+    path = Path(CLOSE_PAIR, "F")
+    family = interpolated_family(path, 110.0, 117.0, 6000.0)
+    for F in (112.3, 115.1, CLOSE_PAIR.F):
+        determinant = ArmDeterminant(path.rod_at(F))
+        for guess, _ in leading(path.rod_at(F)):
+            w, _, error = eigenvalue_of_family_arm(family, guess, F)
+            assert abs(w - refined(guess, determinant, 2.2)) <= 2 * error
+
+
+def test_the_rounding_error_does_not_depend_on_the_scale():
+    determinant = ArmDeterminant(CLOSE_PAIR)
+    W, polynomials = determinant.propagators_for(3000.0)
+    one, other = (rounding_error_by_chain(2500.0 + 10j, W, polynomials, S) for S in (0.0, 5.0))
+    assert one == pytest.approx(other * math.exp(5.0), rel=1e-12)
