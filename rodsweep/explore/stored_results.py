@@ -105,18 +105,24 @@ class StoredResults:
         return values
 
     def _matching_points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
-        """Indices of the points of the file that have the parameters of `state`; the parameters in `free` may
-        have any value.
+        """Indices of the points of the file that have the parameters of `state`.
+
+        The parameters in `free`, and the parameter along a row of a phase diagram, may have any value.
         """
         same = np.ones(self.data["status"].size, dtype=bool)
+        along_rows = {name for name in state.values if self._is_along_rows(name)}
         for name, text in state.values.items():
-            if name not in free:
+            if name not in free and name not in along_rows:
                 value = SCALES[state.tab][name].value(text)
                 own = self._control_values(state.tab, name)
                 same &= np.array(
                     [value is not None and _matches_control(value, each) for each in own], dtype=bool
                 )
         return np.flatnonzero(same)
+
+    def _is_along_rows(self, name: str) -> bool:
+        """Whether a point of the file is a row of rods with several values of the parameter `name`."""
+        return name in self.data.variables and not set(self.data[name].dims) <= set(self.dims)
 
     def _data_at(self, numbers: NDArray[np.integer]) -> Dataset:
         """Data at the points with the indices `numbers`, with the dimension `POINT_DIMENSION` for the

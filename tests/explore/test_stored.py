@@ -208,6 +208,13 @@ def test_stored_thresholds_of_arms_are_the_diagram(command):
     assert set(drawn["y"]) == {8, 10}
 
 
+def test_a_diagram_without_a_force_axis_is_solved_over_the_force(command):
+    axes = "{k1: {start: 20, stop: 300, num: 6}, k2: [10, 100], F: 30, gamma3: 0}"
+    page, solvers = opened_page(command, f"task: phase_diagram\nparameters: {axes}\n")
+    assert (page.state.rod["F"], page.state.second) == ("30", "k1")
+    assert {"diagram", "branch"} <= asked(solvers)
+
+
 @pytest.mark.long
 def test_a_stored_branch_of_an_arm_is_drawn(command):
     page, solvers = opened_page(command, BRANCH_OF_ARM)

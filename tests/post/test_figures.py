@@ -1,5 +1,6 @@
 """Figures: which roots are followed, what is drawn, what cannot be; and the configs' own numbers."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from matplotlib.colors import to_hex
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
@@ -15,6 +17,7 @@ from shown import HOPF, STABLE_AGAIN
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
+from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.lists import label_point_numbers
@@ -23,14 +26,23 @@ from rodsweep.post.figures.sections import section_at_values
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
-from rodsweep.post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, pixel_classes
+from rodsweep.post.figures.stability.regions import (
+    PIXEL_COUNT,
+    ClassifiedPoints,
+    DrawnPlane,
+    pixel_classes,
+)
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
+from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.variables import flag_number
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
 from rodsweep.tasks.running.job import job_of_file
+
+NO_PIXELS = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
 
 
 def test_every_task_has_a_summary_and_a_figure():
@@ -134,7 +146,14 @@ def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
         "status": np.zeros(1),
         "k1": np.array([200.0]),
     } | {name: np.array(values) for name, values in changes.items()}
-    view = View(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
+    forces = variables["F"].tolist()
+    tree = {
+        "task": "phase_diagram",
+        "parameters": {"F": forces, "k1": [200.0, 300.0], "k2": 1e4, "gamma3": 1e-4},
+    }
+    resolved = resolved_config(validated_config(tree))
+    attributes = {"task": "phase_diagram", "config_resolved": json.dumps(resolved)}
+    view = View(Path("f.h5"), attributes, variables, ("k1",), {0: "ok"}, 0)
     edges = np.array([0.0, 50.0, 199.0, 200.0, 220.0])
     assert class_along_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
 
@@ -411,11 +430,45 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
         assert figure.bbox.x0 <= box.x0
         assert box.x1 <= figure.bbox.x1
         assert not box.overlaps(axes.get_tightbbox())
-        F, k1 = next(line.get_data() for line in axes.lines if len(line.get_xdata()) == 1000)
-        assert np.array_equal(F, k1)
+        (edge,) = (each for each in axes.collections if isinstance(each, QuadContourSet))
+        F, k1 = np.concatenate([path.vertices for path in edge.get_paths()]).T
+        assert len(F) > 100
+        assert pytest.approx(k1, rel=1e-6) == F
         marks = [line for line in axes.lines if line.get_marker() not in (None, "None", "")]
         assert len(marks) == len({line.get_marker() for line in marks}) == 2
         assert {text.get_text() for text in axes.texts} == {r"$\tilde F_*$", r"$\tilde F_{**}$"}
+
+
+@pytest.mark.parametrize(
+    ("parameters", "flutters"),
+    [
+        (
+            "{taper: {start: 0.3, stop: 2, num: 8}, F: {start: 0, stop: 60, num: 20}, "
+            "k1: 100, k2: 1000, gamma3: 0.01}",
+            (50.0, 0.76),
+        ),
+        ("{k1: {start: 20, stop: 300, num: 15}, k2: [10, 30, 100], F: 30, gamma3: 0}", (32.0, 12.0)),
+    ],
+)
+def test_regions_of_a_diagram_end_where_the_force_crushes_the_rod(command, monkeypatch, parameters, flutters):
+    figure, _ = drawn_of(command, monkeypatch, f"task: phase_diagram\nparameters: {parameters}\n")
+    classes = figure.axes[0].images[0].get_array()
+    view = read_view(command.directory / "c.h5")
+    F, k1 = (view.variables[name] for name in ("F", "k1"))
+    x, y = F, view.variables["taper" if "taper" in view.variables else "k2"]
+    if "taper" in view.variables:
+        F = DrawnPlane.pixel_centres(F)
+        k1 = 100 * np.minimum(1, DrawnPlane.pixel_centres(y)[:, None] ** 2)
+    else:
+        x, k1 = k1, DrawnPlane.pixel_centres(k1)
+    crushed = np.broadcast_to(k1 <= F, classes.shape)
+    assert np.array_equal(classes == flag_number("crushed", CLASSES), crushed)
+    at = (
+        np.abs(DrawnPlane.pixel_centres(axis) - place).argmin()
+        for axis, place in ((x, flutters[0]), (y, flutters[1]))
+    )
+    column, row = at
+    assert classes[row, column] == flag_number("flutter", CLASSES)
 
 
 def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
@@ -424,7 +477,7 @@ def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
     places = ClassifiedPoints(
         np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1])
     )
-    table = pixel_classes(places, places, [np.column_stack([x, x**2])])
+    table = pixel_classes(places, places, [np.column_stack([x, x**2])], NO_PIXELS)
     centres = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
     off = centres[:, None] - centres[None, :] ** 2
     away = np.abs(off) > 3 / PIXEL_COUNT
@@ -435,9 +488,9 @@ def test_a_region_between_curves_without_a_computed_point_has_the_class_of_a_pla
     rails = [np.array([[0.0, y], [1.0, y]]) for y in (0.5, 0.52)]
     computed = ClassifiedPoints(np.array([[0.5, 0.2], [0.5, 0.8]]), np.array([1, 2]))
     further = ClassifiedPoints(np.array([[0.3, 0.51]]), np.array([3]))
-    assert pixel_classes(computed, further, rails)[int(0.51 * PIXEL_COUNT), ::100].tolist() == [3] * (
-        PIXEL_COUNT // 100
-    )
+    assert pixel_classes(computed, further, rails, NO_PIXELS)[int(0.51 * PIXEL_COUNT), ::100].tolist() == [
+        3
+    ] * (PIXEL_COUNT // 100)
 
 
 def test_all_stored_roots_are_drawn_where_asked(command, drawn):

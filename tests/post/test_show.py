@@ -270,13 +270,16 @@ def test_a_number_has_the_digits_that_its_error_leaves(value, error, text):
 
 
 @pytest.mark.parametrize(
-    ("branch", "told"),
+    ("rod", "branch", "told"),
     [
-        ("start: 300, stop: 400", "the force crushes the rod everywhere in the range of F"),
-        ("stop: 70", "from 0 to 70, where the force does not crush the rod; the list"),
+        ("k1: 60", "start: 300, stop: 400", "the force crushes the rod everywhere in the range of F"),
+        ("k1: 60", "stop: 70", "from 0 to 70, where the force does not crush the rod; the list"),
+        ("k1: 100, taper: 0.5", "start: 40, stop: 90", "crushes the rod everywhere in the range of F"),
+        ("k1: 100, taper: [0.5, 1]", "start: 40, stop: 45", "the force crushes 1 of 2 rods everywhere in"),
+        ("k1: 60, F: 30", "along: taper, start: 0.2, stop: 0.5", "everywhere in the range of taper"),
     ],
 )
-def test_a_branch_is_told_to_be_followed_where_the_rod_is_not_crushed(command, branch, told):
-    rod = "{k1: 60, k2: 1.0e3, gamma3: 1.0e-3}"
+def test_a_branch_is_told_to_be_followed_where_the_rod_is_not_crushed(command, rod, branch, told):
+    rod = f"{{{rod}, k2: 1.0e3, gamma3: 1.0e-3}}"
     text = shown(command, f"task: branch\nparameters: {rod}\nbranch: {{{branch}}}\n")
     assert told in text

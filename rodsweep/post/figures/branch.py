@@ -20,7 +20,7 @@ from ..branch_curves import (
     followed_parameter,
     stability_runs,
 )
-from ..uncrushed_range import uncrushed_range
+from ..crushing import uncrushed_ranges
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -150,7 +150,7 @@ def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches.
     """
-    low, high = uncrushed_range(rod.view, rod.rod)
+    [(low, high)] = uncrushed_ranges(rod.view, [rod.rod])
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
     return low, high

@@ -14,12 +14,12 @@ from matplotlib.patches import Patch
 
 from ...arrays import Array
 from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
-from ...model.parameters import CRUSHING_PARAMETERS, LINEAR_PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_joint_variables_in
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.variables import flag_number
+from ..crushing import crushing_ratio
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
@@ -90,9 +90,22 @@ CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
 """Palette for the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 """Palette for the stable states listed in STABLE_STATES."""
-BARRIER_RATIOS = 1 - np.linspace(0, 3e-3, 7)
-"""Values of F/k1 of lines that separate regions of different colours. Curves of cycles end at 1 - F/k1 =
-1e-3; these lines close the gaps between the curves and the line F = k1."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClassMap:
+    """What a map of classes shows. plane: the rectangle. classes: at the computed points, (rows, columns).
+    crushing_ratio: force divided by the force that crushes the rod, at every pixel, (pixels, pixels).
+    """
+
+    plane: DrawnPlane
+    classes: Array
+    crushing_ratio: Array
+
+
+CURVES_END_AT_RATIO = 1 - 3e-3
+"""Curves of a file may end at this ratio of force to crushing force; rods with larger ratios bound regions as
+curves do."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
@@ -116,23 +129,26 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         return request.write(_draw_rows(view, palette, line, row), shown, BAR_ASPECT * len(y))
     table = values.reshape(len(y), len(x))[keep]
     y = y[keep]
+    plane = DrawnPlane(x, y)
+    at = (plane.pixel_centres(x), plane.pixel_centres(y))
+    ratio = crushing_ratio(view, line, row, at[0], at[1][:, None])
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
-    pixels = _class_of_pixels(view, palette, line, row, table)
+    pixels = _class_of_pixels(view, palette, line, row, ClassMap(plane, table, ratio))
     unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     scale_axis(axes, "x", x)
     scale_axis(axes, "y", y)
-    edge = _draw_crushing(axes, x, y) if _is_crushed_at_k1(view, line, row) else []
+    edge = _draw_crushing(axes, ratio, *at)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
-    handles: list = palette.legend_entries(table)
+    handles: list = palette.legend_entries(pixels)
     if "curve_number" in view.variables:
         handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
         handles += draw_cycle_curves(axes, view, line, row)
     if "cycle_special_kind" in view.variables:
         handles += mark_cycles_on_rows(axes, view, line, row)
-    handles += edge if (table == flag_number("crushed", palette.words)).any() else []
+    handles += edge
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
     missing = (
@@ -153,24 +169,15 @@ def _constant_parameters_text(view: View, line: str, row: str) -> str:
     return parameter_text(fixed)
 
 
-def _is_crushed_at_k1(view: View, line: str, row: str) -> bool:
-    """Whether the axes `line` and `row` are F and k1 and the rods are crushed at F = k1, as uniform rods of
-    linear material are.
-    """
-    return (line, row) == CRUSHING_PARAMETERS and has_standard_rods(view.config)
+def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]:
+    """Draws the line on which the force begins to crush the rod; returns a list with its legend entry.
 
-
-def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
-    """Covers the region x > y, in which the force x crushes the rod with k1 = y, and draws the line x = y;
-    returns a list with the legend entry. x, y: values along the axes.
+    ratio: force divided by the crushing force at x and y, (pixels, pixels). x, y: coordinates, (pixels,).
     """
-    if x[-1] <= y[0]:
+    if not ratio.min() < 1 < ratio.max():
         return []
-    ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
-    below = np.append(ends, x[-1])
-    axes.fill_between(below, np.minimum(below, y[-1]), y[0], color=CLASS_COLOURS["crushed"], lw=0)
-    force, stiffness = (SYMBOLS[name] for name in CRUSHING_PARAMETERS)
-    return axes.plot(ends, ends, color="0.4", lw=1.2, label=f"${stiffness} = {force}$")
+    axes.contour(x, y, ratio, levels=[1.0], colors="0.4", linewidths=1.2)
+    return [Line2D([], [], color="0.4", lw=1.2, label="crushing force")]
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
@@ -197,18 +204,17 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     return figure
 
 
-def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: Array) -> Array:
+def _class_of_pixels(view: View, palette: Palette, line: str, row: str, map_: ClassMap) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
-    curves of the file. Crushed points are ignored if the rods are crushed at F = k1.
+    curves of the file and by the crushing force.
 
-    line, row: parameters along a row, and constant on a row. table: classes at the computed points, (rows
-    with a finite value, columns).
+    line, row: parameters along a row, and constant on a row.
     """
-    y = view.parameter_values[row]
-    plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
+    plane = map_.plane
+    crushed = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
-    known = (table != flag_number("crushed", palette.words)) | (not _is_crushed_at_k1(view, line, row))
-    computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), table[known])
+    known = map_.classes != crushed
+    computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), map_.classes[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
         x, at, found = classes_between_crossings(view, row)
@@ -221,7 +227,5 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
             number = np.where(v["curve_kind"] == 1, number, 0)
         ones = [number == one for one in np.unique(number[number > 0])]
         curves += [plane.fractions_of_axes(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
-    if _is_crushed_at_k1(view, line, row):
-        edge = np.linspace(plane.y[0], plane.y[-1], 1000)
-        curves += [plane.fractions_of_axes(share * edge, edge) for share in BARRIER_RATIOS]
-    return pixel_classes(computed, further, curves)
+    pixels = pixel_classes(computed, further, curves, map_.crushing_ratio > CURVES_END_AT_RATIO)
+    return np.where(map_.crushing_ratio < 1, pixels, crushed)

@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import ParameterRange, RodBranches, StoredBranch, branch_ends, followed_parameter
-from ..uncrushed_range import uncrushed_range
+from ..crushing import uncrushed_ranges
 from .errors import known_range_text
 from .ranges import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
@@ -51,7 +51,12 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     at = count_of_total((counts > 0).sum(), len(rods), "rod")
     line = f"{branches} at {at}, {cycles}{_sizes_text(view, done)}"
     along = followed_parameter(view)
+    ranges = uncrushed_ranges(view, (rod.rod for rod in rods))
+    crushed = sum(low >= high for low, high in ranges)
     answer = [line, *_special_lines(rods, along), *_coexistence_lines(rods, along)]
+    if crushed:
+        everywhere = f"everywhere in the range of {along}"
+        answer.insert(1, f"the force crushes {count_of_total(crushed, len(rods), 'rod')} {everywhere}")
     return SummaryLines(answer, [_searched_range_line(view, done)])
 
 
@@ -65,7 +70,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known"
     elif not rod.curves:
-        low, high = uncrushed_range(rod.view, rod.rod)
+        [(low, high)] = uncrushed_ranges(rod.view, [rod.rod])
         if not low < high:
             yield f"the force crushes the rod everywhere in the range of {along}"
             return
@@ -212,8 +217,8 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     """
     along = followed_parameter(view)
     start, stop = branch_ends(view)
-    ranges = np.array([uncrushed_range(view, int(rod)) for rod in np.flatnonzero(done.ravel())])
-    crushed = "" if (ranges == (start, stop)).all() else ", where the force does not crush the rod"
+    ranges = uncrushed_ranges(view, np.flatnonzero(done.ravel()).tolist())
+    crushed = "" if set(ranges) <= {(start, stop)} else ", where the force does not crush the rod"
     proved = count_of_total(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
         f"followed in {along} from {start:g} to {stop:g}{crushed}; the list of Hopf points "

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 
 from ...determinant.parameter_path import Path
+from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ...watch import solve_part
 from ..changes.along_path import ThresholdList, find_axis_crossings
@@ -30,8 +31,6 @@ class BranchSettings:
     crushing_margin: float = 1e-4
     """A branch ends where the relative distance of F from the crushing force is this number, because the rod
     at rest is then almost crushed. Branches along F, k1 or taper have this margin."""
-    taper_accuracy: float = 1e-9
-    """Relative tolerance of the smallest taper at which the force does not crush the tip."""
     max_row_cycles: int = 500
     """Maximum number of cycles on all branches of one row of a phase diagram."""
 
@@ -110,7 +109,12 @@ def warm_up() -> None:
 
 
 def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
-    low, high, crushed = _uncrushed_range(rod, request)
+    low, high = uncrushed_interval(
+        rod.build,
+        {"F": rod.F, "k1": rod.k1, "taper": rod.taper},
+        (request.along, request.start, request.stop),
+        BRANCH_SETTINGS.crushing_margin,
+    )
     if not low < high:
         why = "the force crushes the rod everywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
@@ -124,7 +128,8 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         except FAILURES as error:
             failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
     ends = (path.coordinate(low), path.coordinate(high))
-    reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
+    crushed = (low > request.start, high < request.stop)
+    reasons = [EndReason.crushed if end else EndReason.range_end for end in crushed]
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
@@ -139,37 +144,6 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         proved=found.proved_to_the_end,
         curves=tuple(curves),
     )
-
-
-def _uncrushed_range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """(smallest and largest value of the parameter in the requested range without crushing, index of the
-    range end at which the rod is crushed: 0, 1, or -1 if the rod is crushed at neither end)."""
-    low = request.start
-    high = request.stop
-    share = rod.build.relative_crushing_force(rod.taper)
-    if request.along == "F" and high > (1 - BRANCH_SETTINGS.crushing_margin) * share * rod.k1:
-        return low, (1 - BRANCH_SETTINGS.crushing_margin) * share * rod.k1, 1
-    if request.along == "k1" and low < rod.F / share * (1 + BRANCH_SETTINGS.crushing_margin):
-        return rod.F / share * (1 + BRANCH_SETTINGS.crushing_margin), high, 0
-    if request.along == "taper":
-        thinnest = _smallest_uncrushed_taper(rod, low, high)
-        return thinnest, high, 0 if thinnest > low else -1
-    return low, high, -1
-
-
-def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
-    """Smallest taper in [low, high] whose tip the force does not crush; `high` if every tip is crushed."""
-
-    def holds(taper: float) -> bool:
-        share = (1 - BRANCH_SETTINGS.crushing_margin) * rod.build.relative_crushing_force(taper)
-        return share * rod.k1 > rod.F
-
-    if holds(low) or not holds(high):
-        return low if holds(low) else high
-    while high - low > BRANCH_SETTINGS.taper_accuracy * high:
-        middle = (low + high) / 2
-        low, high = (low, middle) if holds(middle) else (middle, high)
-    return high
 
 
 def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:

@@ -12,13 +12,13 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....model.parameters import CRUSHING_PARAMETERS
+from ....model.crushing import uncrushed_interval
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ....results.layouts.rods import has_standard_rods
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....results.layouts.variables import flag_number
 from ....wording import plural
+from ...crushing import build_of_rods
 from ..lists import label_point_numbers, shared_parameters
 from ..style import (
     BLUE,
@@ -243,8 +243,9 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
         found = [at[kinds > 0]]
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    if line in CRUSHING_PARAMETERS and has_standard_rods(view.config):  # other rods are not crushed at F = k1
-        (other,) = set(CRUSHING_PARAMETERS) - {line}
-        found.append(view.point_columns[other][[index]])
+    rod = {name: float(column[index]) for name, column in view.point_columns.items()}
+    x = view.variables[line]
+    ends = uncrushed_interval(build_of_rods(view), rod, (line, x[0], x[-1]))
+    found.append(np.array([end for end, other in zip(ends, (x[0], x[-1]), strict=True) if end != other]))
     changes = np.concatenate(found)
     return np.unique(changes[np.isfinite(changes)])

@@ -40,6 +40,14 @@ class DrawnPlane:
                 columns.append((values - axis[0]) / (axis[-1] - axis[0]))
         return np.column_stack(columns)
 
+    @staticmethod
+    def pixel_centres(axis: Array) -> Array:
+        """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
+        share = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
+        if is_logarithmic(axis):
+            return np.asarray(axis[0] * (axis[-1] / axis[0]) ** share)
+        return np.asarray(axis[0] + (axis[-1] - axis[0]) * share)
+
 
 @dataclass(frozen=True, slots=True)
 class ClassifiedPoints:
@@ -58,15 +66,15 @@ class ClassifiedPoints:
 
 
 def pixel_classes(
-    computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array]
+    computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array], closed: NDArray[Any]
 ) -> NDArray[Any]:
     """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
     The lowest row of pixels comes first. further: points that are used in regions without a computed point.
-    curves: boundaries as fractions of the axes, (m, 2) each. A region without any point has the class of the
-    nearest computed point.
+    curves: boundaries as fractions of the axes, (m, 2) each. closed: mask of pixels that belong to no region,
+    (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class of the nearest computed point.
     """
-    walls = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
+    walls = scipy.ndimage.binary_dilation(closed)
     for curve in curves:
         row, column = _pixels_of_points(_dense_curve_points(curve)).T
         walls[row, column] = True

@@ -1,0 +1,46 @@
+"""Crushing of the rods of a result file by the force."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..arrays import Array
+from ..config.document.reading import config_from_resolved
+from ..errors import InputError
+from ..model.crushing import uncrushed_interval
+from ..model.material.build import Build
+from ..results.file.view import View
+from .branch_curves import ParameterRange, branch_ends, followed_parameter
+
+
+def build_of_rods(view: View) -> Build:
+    """Constitutive law and profile of the rods of a file. Raises InputError if this version of rodsweep does
+    not accept the config of the file."""
+    try:
+        return config_from_resolved(view.config).build
+    except ValueError as error:
+        raise InputError(f"{view.path}: {error}") from None
+
+
+def uncrushed_ranges(view: View, rods: Iterable[int]) -> list[ParameterRange]:
+    """(start, stop) of the followed range of branches without forces that crush the rod, for each of the
+    rods; stop <= start if all forces of the range crush the rod. rods: indices among the points of the file.
+    """
+    low, high = branch_ends(view)
+    along = followed_parameter(view)
+    build = build_of_rods(view)
+    columns = {name: values.ravel() for name, values in view.point_columns.items()}
+    each = ({name: float(column[index]) for name, column in columns.items()} for index in rods)
+    return [uncrushed_interval(build, rod, (along, low, high)) for rod in each]
+
+
+def crushing_ratio(view: View, line: str, row: str, x: Array, y: Array) -> Array:
+    """Force divided by the force that crushes the rod, at the points x, y of the plane of a phase diagram;
+    0 if no force crushes the rod.
+
+    line, row: parameters along a row, and constant on a row. x, y: their values, of shapes that broadcast.
+    """
+    fixed = {name: np.asarray(values[0]) for name, values in view.parameter_values.items()}
+    values = {"taper": np.asarray(1.0)} | fixed | {line: x, row: y}
+    share = build_of_rods(view).relative_crushing_forces(values["taper"])
+    return np.asarray(values["F"] / (values["k1"] * share) + 0 * (x + y))
