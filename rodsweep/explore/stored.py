@@ -11,6 +11,7 @@ import numpy as np
 from ..api.dataset import open_result
 from ..config.document.reading import config_from_resolved, load_config
 from ..config.schema import Config
+from ..config.task.branch import BranchConfig
 from ..errors import InputError
 from .scales import SCALES
 from .solving.diagrams import (
@@ -68,6 +69,9 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
         raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
+    if isinstance(config, BranchConfig) and config.branch.along != "F":
+        ends = (config.branch.start, config.branch.stop)
+        axes[config.branch.along] = np.array([sum(ends) / 2])
     rod = {
         name: _middle_value_text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()
     }
@@ -95,6 +99,11 @@ def _largest_force(config: Config, default: str) -> str:
 
 
 def _state_of_arm(config: Config, path: Path) -> PageState:
+    if beside := list(config.parameters.given_axes):
+        raise InputError(
+            f"{path}: the page cannot show an arm with {beside[0]} of its own; "
+            f"it calculates {beside[0]} from the arm's {', '.join(DEFAULT_ARM)}"
+        )
     section: Any = config.parameters.arm
     given = {name: getattr(section, name) for name in type(section).model_fields}
     given = {name: value for name, value in given.items() if value is not None}

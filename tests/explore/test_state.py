@@ -108,6 +108,31 @@ def test_a_config_of_an_arm_that_varies_along_its_length_is_refused():
         )
 
 
+@pytest.mark.parametrize(
+    ("task", "load", "given"),
+    [
+        ("thresholds", "", "k2: 20"),
+        ("limit_cycle", ", pressure: 2 kPa", "gamma1: 2"),
+        ("spectrum", "", "F: 3"),
+    ],
+)
+def test_a_config_of_an_arm_with_parameters_of_its_own_is_refused(task, load, given):
+    arm = f"{{length: 10 cm, radius: 4 mm, young: 100 kPa, viscosity: 30 Pa s{load}}}"
+    text = f"task: {task}\nparameters: {{arm: {arm}%s}}\n"
+    if task != "spectrum":
+        assert state_from_config_text(text % "").tab == "arm"
+    with pytest.raises(InputError, match=f"with {given.partition(':')[0]} of its own"):
+        state_from_config_text(text % f", {given}")
+
+
+def test_a_branch_along_another_parameter_opens_with_the_middle_of_its_range():
+    text = (
+        "task: branch\nparameters: {F: 60, k2: 1e4, gamma3: 1e-4}\nbranch: {along: k1, start: 100, stop: 300}"
+    )
+    state = state_from_config_text(text)
+    assert (state.rod["k1"], state.rod["F"]) == ("200", "60")
+
+
 @pytest.mark.parametrize("tab", ["rod", "arm"])
 def test_the_python_lines_make_the_subject_of_the_state(tab):
     state = PageState(tab=tab, rod=OTHER, law="fixed")
