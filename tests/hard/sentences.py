@@ -757,7 +757,7 @@ def diagram_sentences(view, page, keywords, fine):
     beats = (table == "flutter").any(axis=1)
     found += ranges(
         page,
-        rf"^flutter on the rows {row} = RANGE; no flutter on the rows {row} = RANGE",
+        rf"^flutter: on \d+ of \d+ rows?, {row} = RANGE; none on \d+, {row} = RANGE",
         rows[beats],
         rows[~beats],
     )

@@ -700,3 +700,22 @@ def test_a_bar_of_frequencies_that_are_all_0_does_not_reach_below():
     figure = figure_of("spectrum", arm=ARM | load)
     (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "frequency (Hz)")
     assert bar.get_ylim()[0] == 0
+
+
+def test_growing_roots_are_drawn_unless_other_roots_are_chosen(command, monkeypatch):
+    """At k2 = 20 the two smallest roots decay, and a pair behind them grows."""
+    rod = "{F: 40, k1: {start: 100, stop: 300, num: 8}, k2: 20, gamma3: 1.0e-4}"
+    _, shown = drawn_of(command, monkeypatch, f"task: spectrum\nparameters: {rod}\n")
+    view = read_view(command.directory / "c.h5")
+    assert (view.variables["growth_rate"].max(axis=-1) > 0).all()
+    assert "the two rightmost roots" in shown
+    assert "smallest" in draw(view, command.directory / "f.png", roots="smallest")
+
+
+def test_what_a_figure_leaves_out_is_said(command, monkeypatch):
+    plane = "{k1: {start: 50, stop: 300, num: 5}, k2: [10, 100, .inf], F: 30, gamma3: 0}"
+    _, shown = drawn_of(command, monkeypatch, f"task: phase_diagram\nparameters: {plane}\n")
+    assert "k2 = inf has no place on an axis and is left out" in shown
+    arm = "{length: [10 cm, 12 cm], radius: [4 mm, 5 mm], young: 100 kPa, viscosity: [1 Pa s, 2 Pa s]}"
+    _, shown = drawn_of(command, monkeypatch, f"task: thresholds\nparameters: {{arm: {arm}}}\n")
+    assert "only for viscosity 1 Pa s (of 2 values)" in shown

@@ -156,7 +156,7 @@ def test_phase_diagram_is_told_by_its_shares_and_where_it_flutters(command):
     )
     shares = re.findall(r"([\d.]+) % \w+", re.search("of the grid: (.*)", told)[1])
     assert sum(map(float, shares)) == pytest.approx(100, abs=0.25)
-    assert "flutter on the rows k1 = 200 to 400; no flutter on the rows k1 = 100 to 140" in told
+    assert "flutter: on 2 of 4 rows, k1 = 200 to 400; none on 2, k1 = 100 to 140" in told
     low, high = map(
         float, re.search(r"\nhopf: on 2 of 4 rows, F = ([\d.]+) to ([\d.]+), k1 = 200 to 400", told).groups()
     )
@@ -186,7 +186,7 @@ def test_a_window_of_flutter_between_two_grid_points_is_flutter_of_its_row(comma
     config = "F: [0, 60, 100], k1: [100, 150, 300], k2: 1.0e4, gamma3: 1.0e-4"
     text = shown(command, f"task: phase_diagram\nparameters: {{{config}}}\n")
     assert "restabilization: on 1 of 3 rows, F = 85.5693, k1 = 150" in text
-    assert "flutter on the rows k1 = 150 to 300; no flutter on the rows k1 = 100\n" in text
+    assert "flutter: on 2 of 3 rows, k1 = 150 to 300; none on 1, k1 = 100\n" in text
 
 
 TWO_WINDOWS = {"k1": 179.13147682127965, "k2": 1731.448934345779, "gamma3": 0.0003002436554066619}

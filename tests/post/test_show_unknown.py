@@ -150,7 +150,7 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     view = view_of_sweep(
         tmp_path, "phase_diagram", **ROWS | {"k1": [100.0, 200.0], "k2": 1e4, "F": [0.0, 60.0]}
     )
-    assert "flutter on the rows k1 = 200; no flutter on the rows k1 = 100" in told(view)
+    assert "flutter: on 1 of 2 rows, k1 = 200; none on 1, k1 = 100" in told(view)
     classes = np.asarray(view.variables["class"]).copy()
     classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
     shown = told(changed(view, **{"class": classes}))

@@ -154,7 +154,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     missing = (
         "; curves are missing, the file is not finished" if lacks_joint_variables_in(view.attributes) else ""
     )
-    return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}", MAP_ASPECT)
+    infinite = "" if keep.all() else f"; {row} = inf has no place on an axis and is left out"
+    return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
 
 
 def _constant_parameters_text(view: View, line: str, row: str) -> str:

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
+from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
 from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE
@@ -199,6 +200,10 @@ def _axes_table(view: View) -> TextTable:
     """
     rows = []
     for name, values in view.quantities.items():
+        if name == "drag":
+            words = [DRAG_NAMES[int(value)] for value in np.unique(values[~np.isnan(values)])]
+            rows.append((name, str(len(words)), words[0], words[-1] if words[1:] else "", ""))
+            continue
         si = ALL_QUANTITIES[name].unit
         unit = view.typed_units.get(name, si)
         rows.append(

@@ -157,7 +157,10 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
     never = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
         with_it, without = (span_text(of_row[done & mask]) for mask in (flutters, never))
-        lines.append(f"flutter on the rows {row} = {with_it}; no flutter on the rows {row} = {without}")
+        having = count_of_total((done & flutters).sum(), done.sum(), "row")
+        lines.append(
+            f"flutter: on {having}, {row} = {with_it}; none on {int((done & never).sum())}, {row} = {without}"
+        )
     return lines
 
 

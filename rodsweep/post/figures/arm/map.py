@@ -27,7 +27,7 @@ from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
 from .panels import PANEL_MAKERS, Panel
-from .quantities import in_typed_unit, quantity_text
+from .quantities import NO_BREAK, in_typed_unit, quantity_text
 
 MAP_KINDS = ("map", "maps")
 """Values of `--what` that request this figure."""
@@ -87,7 +87,19 @@ def draw_arm_map(request: FigureRequest) -> str:
     banded = [DRAG_AXIS] if not y and DRAG_AXIS in first else []
     figure.suptitle(style.heading_text(view, _constant_quantities_text(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
-    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}")
+    cut = _section_text(view, {name: at for name, at in first.items() if name not in banded})
+    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{cut}")
+
+
+def _section_text(view: View, indices: dict[str, int]) -> str:
+    """Clause on the values at which a map is drawn of axes with several values, which it does not show; empty
+    if there is no such axis. indices: index of the drawn value, by name of the axis."""
+    texts = []
+    for name, index in indices.items():
+        values = view.variables[name]
+        if len(values) > 1:
+            texts.append(f"{quantity_text(view, name, float(values[index]))} (of {len(values)} values)")
+    return f"; only for {' and '.join(texts).replace(NO_BREAK, ' ')}" if texts else ""
 
 
 def can_draw_arm_map(request: FigureRequest) -> bool:

@@ -82,7 +82,7 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
 
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
     """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `asked`, or else
-    "smallest" or "rightmost", whichever gives fewer gaps.
+    "smallest" or "rightmost", whichever gives fewer gaps and shows a growing root where one is stored.
 
     If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
     one root, the choice is "all".
@@ -96,7 +96,12 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
         lines = (_followed_roots(view, roots) for view in views)
         return sum(len(with_gaps_between_roots(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
-    return min(("smallest", "rightmost"), key=breaks)
+    def hides_growth(roots: str) -> bool:
+        drawn = (_followed_roots(view, roots).real.max(axis=1) for view in views)
+        stored = (view.by_point("growth_rate").max(axis=1) for view in views)
+        return any(((own <= 0) & (all_ > 0)).any() for own, all_ in zip(drawn, stored, strict=True))
+
+    return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
 
 
 def _followed_roots(view: View, roots: str) -> Complex:
