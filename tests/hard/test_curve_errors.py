@@ -32,7 +32,8 @@ def test_points_of_curves_lie_on_branches_within_their_errors(rod, F, taper, poi
         for name in ("kind", "F", "taper", "error", "period")
     }
     assert len(columns["F"]) >= 2
-    assert (columns["error"] <= 1.1e-7 * columns["F"]).all()
+    # 1e-7 is the accuracy of the mesh; a point's distance from the curve adds to it.
+    assert (columns["error"] <= 2e-7 * columns["F"]).all()
     for kind, at, t, error, period in zip(*columns.values(), strict=True):
         branch = rs.Rod(**rod, taper=float(t)).branch(stop=1.03 * at + 1, accuracy=1e-6, certify=False)
         kinds = [str(each) for each in branch.special_kind[: branch.special_count]]
