@@ -1,5 +1,7 @@
 """Counts, plurals and durations in words, for the command line and `show`."""
 
+from collections.abc import Sequence
+
 SIBILANT_ENDINGS = ("s", "x", "z", "ch", "sh")
 """Endings of nouns whose plural ends in "es"."""
 
@@ -35,6 +37,11 @@ def has_or_have(count: int) -> str:
 def count_of_total(count: int, whole: int, noun: str) -> str:
     """`count` out of the total `whole`, with the noun: `some_of(2, 4, "row")` is "2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"
+
+
+def joined(parts: Sequence[str]) -> str:
+    """The parts as an enumeration: `joined(["a", "b", "c"])` is "a, b and c"."""
+    return " and ".join(filter(None, [", ".join(parts[:-1]), *parts[-1:]]))
 
 
 def duration(seconds: float) -> str:

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from shown import HOPF, STABLE_AGAIN, shown
 import rodsweep as rs
 from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
-from rodsweep.post.summary.ranges import number_with_error
+from rodsweep.post.summary.ranges import axis_values_text, number_with_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdStatus
@@ -283,3 +284,11 @@ def test_a_branch_is_told_to_be_followed_where_the_rod_is_not_crushed(command, r
     rod = f"{{{rod}, k2: 1.0e3, gamma3: 1.0e-3}}"
     text = shown(command, f"task: branch\nparameters: {rod}\nbranch: {{{branch}}}\n")
     assert told in text
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [([1.0, 3.0], "1 to 3"), ([1.0, inf], "1 and inf"), ([inf], "inf"), ([2.0, 3.0, inf], "2 to 3 and inf")],
+)
+def test_ranges_of_a_parameter_contain_infinity(values, text):
+    assert axis_values_text(np.array(values)) == text

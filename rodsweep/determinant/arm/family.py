@@ -227,9 +227,8 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for nearly
     double eigenvalues.
     """
-    shape = family.coefficients.shape[1:]
-    polynomials = np.empty(shape)
-    changes = np.empty(shape)
+    polynomials = np.empty(family.coefficients.shape[1:])
+    changes = np.empty_like(polynomials)
     write_propagators(family, p, polynomials, changes)
     w = guess
     last = math.inf
@@ -247,6 +246,5 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)
-    rounding = rounding_error_by_chain(w, family.largest_w, polynomials, S)
-    e = ARM_ROOT_SETTINGS.residual * abs(D) + rounding
+    e = rounding_error_by_chain(w, family.largest_w, polynomials, S) + ARM_ROOT_SETTINGS.residual * abs(D)
     return w, slope, e / size + ARM_FAMILY_SETTINGS.interpolation_error * (abs(w) + abs(p * slope))

@@ -57,8 +57,9 @@ def rounding_error_by_chain(w: complex, W: float, polynomials: Array, S: float) 
         fill_propagator_value(polynomials[e], powers, C[e])
         apply_propagator(C[e], x[e], x[e + 1])
         scale[e + 1] = scale[e] + divide_by_norm(x[e + 1])
-    after, before = np.zeros((2, 2, MINORS))
+    after = np.zeros((2, MINORS))
     after[0, SM] = 1.0
+    before = np.empty((2, MINORS))
     scale_after = -S
     total = 0.0
     for e in range(elements - 1, -1, -1):

@@ -141,14 +141,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     scale_axis(axes, "y", y)
     edge = _draw_crushing(axes, ratio, *at)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
-    handles: list = palette.legend_entries(pixels)
-    if "curve_number" in view.variables:
-        handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
-    if "cycle_curve_number" in view.variables:
-        handles += draw_cycle_curves(axes, view, line, row)
-    if "cycle_special_kind" in view.variables:
-        handles += mark_cycles_on_rows(axes, view, line, row)
-    handles += edge
+    handles = [*palette.legend_entries(pixels), *_draw_stored_curves(axes, view, palette, line, row), *edge]
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
     missing = (
@@ -156,6 +149,20 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     )
     infinite = "" if keep.all() else f"; {row} = inf has no place on an axis and is left out"
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
+
+
+def _draw_stored_curves(axes: Axes, view: View, palette: Palette, line: str, row: str) -> list[Any]:
+    """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
+    their legend entries. line, row: parameters along a row, and constant on a row.
+    """
+    handles: list = []
+    if "curve_number" in view.variables:
+        handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
+    if "cycle_curve_number" in view.variables:
+        handles += draw_cycle_curves(axes, view, line, row)
+    if "cycle_special_kind" in view.variables:
+        handles += mark_cycles_on_rows(axes, view, line, row)
+    return handles
 
 
 def _constant_parameters_text(view: View, line: str, row: str) -> str:

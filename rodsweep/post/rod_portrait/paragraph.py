@@ -151,9 +151,11 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     ]
     accuracy = results.views["branch"].config["accuracy"]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
-    verb = "begins" if len(curves) == 1 else "begin"
+    begin = "begins at a Hopf point" if len(curves) == 1 else "begin at its Hopf points"
+    if breakings := sum(curve.special[0].kind != "hopf" for curve in curves):
+        begin += f" and {counted(breakings, 'symmetry breaking')}"
     end = f"with {' and '.join(special)}" if special else "without a fold or another change of stability"
-    yield f"{number} {verb} at its Hopf points, {end}."
+    yield f"{number} {begin}, {end}."
     yield from _work_limit_sentence(curves, units)
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)

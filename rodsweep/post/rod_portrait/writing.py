@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from ...wording import joined
 from ..cost_and_provenance import origin_lines
 from ..output_files import atomic_write, require_output_path
 from ..report import rendered_template
@@ -16,8 +17,8 @@ IMAGE_SUFFIXES = (".png", ".pdf", ".svg")
 """Suffixes of image files for a portrait."""
 PAGE_SUFFIX = ".html"
 """Suffix of an HTML page."""
-CAPTION = "thresholds, branches of cycles, modes at the thresholds and three cycles"
-"""Description of the picture on an HTML page."""
+CYCLE_COUNT_WORDS = ("no cycle", "one cycle", "two cycles", "three cycles")
+"""Words for the number of cycles in a portrait."""
 HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 """Tables left out of an HTML page, because the picture shows their content better."""
 
@@ -40,12 +41,25 @@ def write_portrait(results: RodResults, output: Path) -> str:
             stream.write(portrait_page(results))
     else:
         portrait_figure(results).savefig(output)
-    return f"wrote {output}: {CAPTION}"
+    return f"wrote {output}: {portrait_caption(results)}"
+
+
+def portrait_caption(results: RodResults) -> str:
+    """Description of the picture: the results that it shows."""
+    branches = results.branches
+    parts = {
+        "thresholds": True,
+        "branches of cycles": branches is not None and bool(branches.curves),
+        "modes at the thresholds": bool(results.modes),
+        CYCLE_COUNT_WORDS[len(results.cycles)]: bool(results.cycles),
+    }
+    return joined([part for part, is_shown in parts.items() if is_shown])
 
 
 def portrait_page(results: RodResults) -> str:
     """Portrait as the text of an HTML page that needs no network."""
-    picture = vector_picture(portrait_figure(results, with_words=False), 1, CAPTION)
+    caption = portrait_caption(results)
+    picture = vector_picture(portrait_figure(results, with_words=False), 1, caption)
     views = [*results.views.items()]
     at = results.units.load_text
     views += [(f"modes at {at(F)}", view) for F, view in results.modes.values()]
@@ -56,7 +70,7 @@ def portrait_page(results: RodResults) -> str:
         kind=results.rod.kind,
         title=f"{results.rod.kind.capitalize()} with {results.rod.description}",
         paragraph=paragraph(results),
-        pictures=Pictures((CaptionedPicture(CAPTION, picture),)),
+        pictures=Pictures((CaptionedPicture(caption, picture),)),
         tables=[
             (name, [t for t in page_tables(view) if t.name not in HIDDEN_TABLES]) for name, view in views
         ],

@@ -12,7 +12,7 @@ from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
-from .ranges import span_text
+from .ranges import axis_values_text, span_text
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -98,7 +98,7 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
         if rows.any():
             lines.append(
                 f"{words}: on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
-                f"{row} = {span_text(of_row[rows])}"
+                f"{row} = {axis_values_text(of_row[rows])}"
             )
     return lines
 
@@ -140,7 +140,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
             at, later = (span_text(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
             least = "at least " * bool((unknown & ~on_row).any())
             text = f"{word}: on {least}{count_of_total(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
-            text += f", {row} = {span_text(of_row[on_row])}"
+            text += f", {row} = {axis_values_text(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
                 text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
@@ -151,12 +151,12 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
         rows = undecided.any(axis=-1)
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
         on_rows = f"on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
-        lines.append(f"undecided: {on_rows}, {row} = {span_text(of_row[rows])}")
+        lines.append(f"undecided: {on_rows}, {row} = {axis_values_text(of_row[rows])}")
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
     never = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
     if (done & never).any() and (done & flutters).any():
-        with_it, without = (span_text(of_row[done & mask]) for mask in (flutters, never))
+        with_it, without = (axis_values_text(of_row[done & mask]) for mask in (flutters, never))
         having = count_of_total((done & flutters).sum(), done.sum(), "row")
         lines.append(
             f"flutter: on {having}, {row} = {with_it}; none on {int((done & never).sum())}, {row} = {without}"

@@ -44,6 +44,13 @@ def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = 
     return low if low == high else f"{low} to {high}"
 
 
+def axis_values_text(values: np.ndarray) -> str:
+    """Range of the values of a parameter, of any shape, as text: "10 to 1000", or "10 to 1000 and inf"."""
+    is_finite = np.isfinite(values)
+    finite = [span_text(values)] if is_finite.any() else []
+    return " and ".join([*finite, *(["inf"] if np.isinf(values).any() else [])]) or NONE_TEXT
+
+
 def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
     """Ranges of a parameter as text; NONE_TEXT for an empty list. errors: absolute errors of ends of ranges,
     by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS

@@ -8,7 +8,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.rods import has_standard_rods
 from ...wording import counted
-from .ranges import span_text
+from .ranges import axis_values_text
 
 MAX_LISTED_ITEMS = 8
 """Largest number of rods, branches or points that are listed one by one."""
@@ -69,10 +69,7 @@ def region_text(view: View, mask: np.ndarray) -> str:
     """
     ranges = []
     for name, column in varied_parameters_at_points(view).items():
-        values = column[mask.ravel()]
-        is_finite = np.isfinite(values)
-        ends = [span_text(values)] if is_finite.any() else []
-        ranges.append(f"{name} = {' and '.join([*ends, *(['inf'] if not is_finite.all() else [])])}")
+        ranges.append(f"{name} = {axis_values_text(column[mask.ravel()])}")
     return ", ".join(ranges)
 
 

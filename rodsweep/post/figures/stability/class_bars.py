@@ -244,8 +244,7 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
     else:
         found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    x = view.variables[line]
-    ends = uncrushed_interval(build_of_rods(view), rod, (line, x[0], x[-1]))
-    found.append(np.array([end for end, other in zip(ends, (x[0], x[-1]), strict=True) if end != other]))
-    changes = np.concatenate(found)
+    row_ends = view.variables[line][[0, -1]]
+    ends = np.array(uncrushed_interval(build_of_rods(view), rod, (line, *row_ends.tolist())))
+    changes = np.concatenate([*found, ends[ends != row_ends]])
     return np.unique(changes[np.isfinite(changes)])
