@@ -61,6 +61,7 @@ class MixedForm:
 
     @property
     def unknowns(self) -> int:
+        """Number of unknowns in a state X."""
         return self.layout.unknowns
 
     @cached_property

@@ -79,6 +79,7 @@ class Pencil(Elements):
 
     @property
     def unknowns(self) -> int:
+        """Number of rows of the matrices."""
         return 3 * self.node_count
 
     def term_coefficients(self, rod: Rod) -> Array:
