@@ -142,8 +142,9 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
 
 
 def _uncrushed_range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """(smallest and largest value of the parameter in the requested range without crushing, index of the
-    range end at which the rod is crushed: 0, 1, or -1 if the rod is crushed at neither end)."""
+    """Returns (low, high, side). low, high: ends of the part of the requested range in which the force does
+    not crush the rod; the part is empty if low >= high. side: end of the range that was moved because the rod
+    is crushed there: 0 for low, 1 for high, -1 for no end."""
     low = request.start
     high = request.stop
     share = rod.build.relative_crushing_force(rod.taper)

@@ -222,7 +222,7 @@ def symmetry_breaking_between(
 
 def _symmetry_breaking_ahead(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
     """Index of the first symmetry breaking in `known` with the parameter and period, within tolerances, at
-    which the extrapolated asymmetry of the branch vanishes; -1 if there is none, or it does not decrease."""
+    which the extrapolated asymmetry vanishes; -1 if there is none or the asymmetry does not decrease."""
     orbit = start.orbit
     present = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))

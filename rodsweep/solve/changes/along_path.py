@@ -38,7 +38,7 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThresholdList:
-    """All thresholds along a path, by increasing parameter, and whether the list is proved complete."""
+    """All thresholds along a path, by parameter. unstable_at_start, unstable_at_end: -1 if unknown."""
 
     thresholds: tuple[Threshold, ...] = ()
     searched_interval: tuple[float, float] = (math.nan, math.nan)
@@ -97,7 +97,7 @@ class AxisCrossings:
 def find_thresholds(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> ThresholdList:
-    """All thresholds along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
+    """All thresholds along `path` for parameter values from `start` to `stop`; `certify` requests a proof.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
     than `most` crossings. Raises Unsolvable if not even the first interval can be searched, or if no a-priori

@@ -113,7 +113,7 @@ class _CurvesOfKind:
         return sorted(left, key=self._position)[len(left) // 2]
 
     def missing_items(self, seed: int) -> list[int]:
-        """Numbers of the half curves still to be followed for the curve through special point `seed`."""
+        """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
@@ -124,8 +124,8 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Numbers of half curves that may be needed later: from special points on the rows of the needed
-        curves."""
+        """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
+        where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
             (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._position
@@ -218,7 +218,7 @@ def _trace_half_curve(
 
 
 def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row of special point `one` from a curve, in row lengths; inf if not near."""
+    """Distance along the row of special point `one` from a curve of its kind, in row lengths; else inf."""
     if limits.kind != one.kind:
         return math.inf
     row_coordinate = limits.rows.coordinate(one.row_value)

@@ -112,7 +112,7 @@ class SpecialCurveProblem:
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The next point, with prediction error and cosine of the angle between the last two steps; raises
         Unsolvable. behind: points so far. length: arc length; on the first step, change of the row
-        coordinate."""
+        coordinate. On the first step the cosine is 1."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit

@@ -112,8 +112,8 @@ class SecantSearch:
         return None
 
     def _error_after(self, step: float, span: float) -> float:
-        """Distance from the curve after a last, linear step. span: distance between the two cycles of the
-        measured derivative; 0 if the derivative was not measured at this step."""
+        """Estimated distance from the curve after a last, linear step. span: distance between the two cycles
+        of the measured derivative; 0 if the derivative was not measured at this step."""
         if step == 0:
             return 0.0  # even if the curvature is unknown
         if span:

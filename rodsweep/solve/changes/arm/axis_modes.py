@@ -35,7 +35,8 @@ class AxisModes:
     """Modes of the arm at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the
     number of unstable modes.
 
-    The eigenvalues are the leading eigenvalues, or the eigenvalues near the imaginary axis, one of each pair.
+    w: either the leading eigenvalues, with both members of each pair, or the eigenvalues near the imaginary
+    axis, with one member of each pair.
     """
 
     p: float

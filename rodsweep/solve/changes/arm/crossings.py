@@ -36,7 +36,8 @@ class ArmCrossingSettings:
     """Two crossings may be equal if their parameter values differ by at most this multiple of the sum of
     their errors."""
     same_frequency: float = 1e-6
-    """Such crossings are equal if their frequencies differ relatively by at most this."""
+    """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
+    their frequencies is at most this."""
     smallest_interval: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
     smallest_step: float = 1e-12

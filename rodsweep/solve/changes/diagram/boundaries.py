@@ -113,7 +113,7 @@ def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[Bound
 
 def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
-    axis; inf if the curve has no point near the threshold."""
+    axis; inf if the curve has another `eigenvalue_sign` or no point near the threshold."""
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))

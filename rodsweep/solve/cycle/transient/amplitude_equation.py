@@ -78,8 +78,11 @@ class AmplitudeEquation:
         ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_at_linear_rate(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays with the linear rate and the period of the leading mode. times: (k,);
-        states: (k, unknowns)."""
+        """Whether a motion decays to the straight rod: the linear growth is negative, the last return took a
+        period of the leading mode, and one of two conditions holds. First: the states shrink at every return,
+        and the last growth equals the linear growth within `linear_tolerance`. Second: c |z|^2 is within this
+        tolerance by the measured c, and the last growth is not larger than the linear growth, within
+        tolerance and noise. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         margin = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
