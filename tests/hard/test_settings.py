@@ -64,7 +64,7 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
-from rodsweep.solve.spectrum.path.stretch import Stretch
+from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -244,7 +244,7 @@ def followed_cones(accuracy: float) -> Answer:
 
 
 def spectra_along(path: Path, forces: np.ndarray, request: SpectrumRequest) -> dict[str, Any] | None:
-    found = solve_stretch(Stretch(path, forces), request)
+    found = solve_stretch(NeighbouringRods(path, forces), request)
     if found.status.any():
         return None
     answer = {}
@@ -527,7 +527,7 @@ CASES = {
     "HOPF_COEFFICIENT_SETTINGS": HOPF,
     "GENERALISED_HOPF_SETTINGS": BAUTIN_POINT,
     "BOUNDARY_POINT_SETTINGS": BAUTIN_CURVE,
-    "PLANE_SETTINGS": BAUTIN_CURVE,
+    "PLANE_DIFFERENCE_SETTINGS": BAUTIN_CURVE,
     "BAUTIN_SETTINGS": BAUTIN_CURVE,
     "BAUTIN_STEPS": BAUTIN_CURVE,
     "SUBCRITICAL_HOPF_SETTINGS": BESIDE,
@@ -572,7 +572,7 @@ CASES = {
     "ARM_RESOLUTION_SETTINGS": SPECTRA,
     "ARM_ELEMENT_SETTINGS": SPECTRA,
     "HULL_SETTINGS": SPECTRA,
-    "SWEEP_STRETCH_SETTINGS": FOLLOWED,
+    "NEIGHBOURING_RODS_SETTINGS": FOLLOWED,
     "WINDING_SETTINGS": THRESHOLDS,
     "COVERING_SETTINGS": THRESHOLDS,
     "ZERO_FREE_DISC_SETTINGS": THRESHOLDS,
@@ -587,7 +587,7 @@ CASES = {
     "ARM_PATH_SETTINGS": CONE,
     "AXIS_MODE_SETTINGS": SLENDER_CONE,
     "NEAR_AXIS_SETTINGS": SLENDER_CONE,
-    "ARM_STRETCH_SETTINGS": CONE,
+    "ARM_FOLLOWING_SETTINGS": CONE,
     "ARM_FAMILY_SETTINGS": CONE,
     "NO_CROSSING_SETTINGS": CONES,
     "CARRIED_ARM_COUNT_SETTINGS": CONES,

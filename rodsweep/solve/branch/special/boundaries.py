@@ -1,7 +1,5 @@
-"""Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
-
-A curve is followed in two halves, independent work items, from a special point of a row.
-"""
+"""Curves through the folds and torus points on all rows of a phase diagram. Each curve is followed only once,
+in two halves from a special point of a row; each half is a work item."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -32,12 +30,12 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-    line, rows: axes of the parameter along a row and of the row parameter. special_points: points of all
-    rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1
-    to smaller values."""
+    line_axis, row_axis: axes of the parameter along a row and of the row parameter. special_points: points of
+    all rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i
+    + 1 to smaller values."""
 
-    line: PlaneAxis
-    rows: PlaneAxis
+    line_axis: PlaneAxis
+    row_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
@@ -63,7 +61,7 @@ class SpecialBoundaries:
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line, self.rows, self.special_points, results)
+            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, results)
             seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
             yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
@@ -74,7 +72,9 @@ class SpecialBoundaries:
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         index, behind = divmod(item, 2)
         one = self.special_points[index]
-        limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
+        limits = SpecialCurveProblem(
+            one.kind, self.line_axis, self.row_axis, workspace, -1.0 if behind else 1.0
+        )
         return _trace_half_curve(limits, one, located(one.row_index), self.special_points).arrays()
 
     def row_of(self, item: int) -> int:
@@ -86,7 +86,7 @@ class SpecialBoundaries:
         index, behind = divmod(item, 2)
         one = self.special_points[index]
         way = "down" if behind else "up"
-        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row_value:.5g} {way}"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.row_axis.name} = {one.row_value:.5g} {way}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +103,8 @@ class _CurvesOfKind:
     arrays of half curves, by number."""
 
     kind: SpecialKind
-    line: PlaneAxis
-    rows: PlaneAxis
+    line_axis: PlaneAxis
+    row_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
     results: Mapping[int, HalfCurveArrays]
 
@@ -170,7 +170,7 @@ class _CurvesOfKind:
     def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
         ends = curve.points[0], curve.points[-1]
-        return sorted((p.row_coordinate, self.line.coordinate(p.at)) for p in ends)
+        return sorted((p.row_coordinate, self.line_axis.coordinate(p.at)) for p in ends)
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
@@ -179,12 +179,12 @@ class _CurvesOfKind:
         for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x = self.line.coordinate(end.at)
-            y = self.rows.coordinate(end.row_value)
+            x = self.line_axis.coordinate(end.at)
+            y = self.row_axis.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.coordinate(one.row_value) - y) / (last.row_coordinate - y)
-            chord = x + share * (self.line.coordinate(last.at) - x)
-            distance = abs(chord - self.line.coordinate(one.at))
+            share = (self.row_axis.coordinate(one.row_value) - y) / (last.row_coordinate - y)
+            chord = x + share * (self.line_axis.coordinate(last.at) - x)
+            distance = abs(chord - self.line_axis.coordinate(one.at))
             if 0 <= share <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
@@ -198,7 +198,7 @@ def _trace_half_curve(
 ) -> TracedHalfCurve:
     """One half of a curve, from the point in `located` that agrees with special point `one`; `half` is None
     if no point agrees or after a failure. located: points of the row, with cycles. special: all points."""
-    width = abs(problem.line.parameter_slope(one.at))
+    width = abs(problem.line_axis.parameter_per_coordinate(one.at))
     same = [
         point
         for point in located
@@ -221,7 +221,7 @@ def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], on
     """Distance along the row of special point `one` from a curve of its kind, in row lengths; else inf."""
     if limits.kind != one.kind:
         return math.inf
-    row_coordinate = limits.rows.coordinate(one.row_value)
+    row_coordinate = limits.row_axis.coordinate(one.row_value)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
@@ -234,15 +234,15 @@ def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], on
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
             best = min(
                 best,
-                abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)),
+                abs(limits.line_axis.coordinate(crossing.parameter) - limits.line_axis.coordinate(one.at)),
             )
     return best
 
 
 def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
-    x = limits.line.coordinate(one.at)
-    ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))
+    x = limits.line_axis.coordinate(one.at)
+    ends = sorted(limits.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
     on_line = ends[0] - margin <= x <= ends[1] + margin

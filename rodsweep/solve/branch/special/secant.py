@@ -202,7 +202,7 @@ class SecantSearch:
             branch_direction=ahead / np.linalg.norm(ahead),
             row_coordinate=row_coordinate,
             parameter=getattr(orbit.form.rod, scale.parameter_name),
-            row_parameter=getattr(orbit.form.rod, family.rows.name),
+            row_parameter=getattr(orbit.form.rod, family.row_axis.name),
             secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
             normal_derivatives=derivatives,
         )

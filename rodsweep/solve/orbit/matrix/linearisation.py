@@ -59,8 +59,8 @@ class Linearisation:
 
     @cached_property
     def multipliers_over_solved_part(self) -> Complex:
-        """Multipliers over the solved part of the period, (rank,); first computed before another matrix is
-        assembled."""
+        """Multipliers over the solved part of the period, (rank,). Another matrix in the same workspace does
+        not change them."""
         return multipliers_over_solved_part(self._memory.propagator, self.orbit)
 
     def multipliers(self) -> Complex:

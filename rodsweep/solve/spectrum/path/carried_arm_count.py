@@ -16,7 +16,7 @@ from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_po
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.parameter_path import Path
 from .arm_count import confirmed_line
-from .arm_stretch import ArmInterval
+from .arm_interval import ArmInterval
 from .carried_count import leading_eigenvalues
 
 

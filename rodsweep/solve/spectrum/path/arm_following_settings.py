@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmStretchSettings:
+class ArmFollowingSettings:
     """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls of
     spectra.
     """
@@ -44,4 +44,4 @@ class ArmStretchSettings:
     interpolated."""
 
 
-ARM_STRETCH_SETTINGS = ArmStretchSettings()
+ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()
