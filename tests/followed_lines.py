@@ -70,7 +70,7 @@ def dense_count(rod: Rod) -> int | None:
     while count > modes:
         modes = count
         mesh = resolution_for(1.3 * expected_wave_number(modes, wave), 1e-10)
-        if mesh.unknowns > LARGEST or not np.isfinite(real):
+        if mesh.unknown_count > LARGEST or not np.isfinite(real):
             return None
         A, B = whole_matrices(rod, mesh)
         w = inverse_spectrum(A, B)

@@ -57,9 +57,9 @@ class RodOnMesh(ABC):
         return plane_layout(self.mesh.node_count, self.unknown_velocities)
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
         """Number of unknowns in a state."""
-        return self.layout.unknowns
+        return self.layout.unknown_count
 
     @cached_property
     def nodal_rod(self) -> NodalRod:

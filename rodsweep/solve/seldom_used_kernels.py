@@ -72,9 +72,9 @@ def warm_up_uniform() -> None:
     )
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
-    states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknowns))
+    states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknown_count))
     orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
-    memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknowns)
+    memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknown_count)
     variations = np.zeros((1, len(orbit.values) + 1))
     of_rod = orbit.semidiscrete_equations
     reduced_variations(

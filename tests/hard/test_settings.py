@@ -362,7 +362,7 @@ def on_mesh(accuracy: float) -> Answer:
     """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.node_positions
-    rest = beam.strains(np.zeros(beam.layout.unknowns))
+    rest = beam.strains(np.zeros(beam.layout.unknown_count))
     z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
     numbers = [*beam.tip_coordinates(z), *beam.tip_velocity(z, 0.1 * z), beam.elastic_energy(z)]
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
@@ -393,7 +393,7 @@ def motion(accuracy: float) -> Answer:
     """State after a free motion. Its error is that of the scheme's tolerance, some steps' worth."""
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.node_positions
-    rest = beam.strains(np.zeros(beam.layout.unknowns))
+    rest = beam.strains(np.zeros(beam.layout.unknown_count))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
     start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
     destroy_integrators()

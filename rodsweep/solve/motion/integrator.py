@@ -104,7 +104,7 @@ class Integrator:
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
         self.workspace = CallbackWorkspace(mesh)
-        unknowns = plane_layout(mesh.node_count).unknowns
+        unknowns = plane_layout(mesh.node_count).unknown_count
         self.vector = PETSc.Vec().createSeq(unknowns, comm=PETSc.COMM_SELF)
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()

@@ -95,7 +95,7 @@ class OrbitMesh:
     @property
     def unknown_count(self) -> int:
         """Number of unknowns of a state."""
-        return plane_layout(self.element_count * self.order).unknowns
+        return plane_layout(self.element_count * self.order).unknown_count
 
     @property
     def as_array(self) -> Array:

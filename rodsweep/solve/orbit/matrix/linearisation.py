@@ -37,7 +37,9 @@ class Linearisation:
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
         self.orbit = orbit
         self.workspace = workspace
-        self._memory = MatrixMemory(workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknowns)
+        self._memory = MatrixMemory(
+            workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknown_count
+        )
         p = orbit.semidiscrete_equations
         factors = self._memory.factors
         along = (
