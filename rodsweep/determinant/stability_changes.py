@@ -24,8 +24,8 @@ class StabilityChangeSettings(CompiledSettings):
     """Settings for crossings of the imaginary axis between two forces."""
 
     same_crossing_distance: float = 1e-8
-    """Two zeros of D(i eta; F) with a smaller relative distance are the same crossing. Newton's method
-    converges to rounding error, far below this number."""
+    """Two zeros (eta, F) of D(i eta; F) are the same crossing if F and eta each differ by at most this times
+    1 + |value|. Newton's method converges to rounding error, far below this number."""
 
 
 STABILITY_CHANGE_SETTINGS = StabilityChangeSettings()

@@ -46,7 +46,7 @@ class ArmValueSettings(CompiledSettings):
     and 520 crossings of random arms, compared with 34 digits, two exceed the resulting error estimate, by
     less than a factor of 2."""
     max_norm_ratio: float = 1e100
-    """Minors are divided by their norm if the norm is not between 1/large and large."""
+    """Minors are divided by their norm if the norm is not between 1/max_norm_ratio and max_norm_ratio."""
 
 
 ARM_VALUE_SETTINGS = ArmValueSettings()

@@ -166,8 +166,8 @@ class Search:
         self.request_eigenvalues(more)
 
     def needs_eigenvalues_beyond_axis(self, found: Candidates) -> bool:
-        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed: for a count if one
-        can succeed, else while fewer than `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
+        """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `found` grow. False
+        if no count can succeed and `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable

@@ -71,8 +71,8 @@ class AmplitudeEquation:
         return growth + self.growth_excess * duration, self.linear_growth_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
-        """Whether a motion grows or decays slowly and has the period of the leading mode. times: (k,);
-        states: (k, unknowns)."""
+        """Whether a motion has the period of the leading mode, and its growth and linear growth per return
+        are at most `max_slow_growth` in modulus. times: (k,); states: (k, unknowns)."""
         return max(
             map(abs, self.growth_and_linear_growth(times, states))
         ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
@@ -97,7 +97,8 @@ class AmplitudeEquation:
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
-        cycle is near. times: (k,); states: (k, unknowns)."""
+        cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_noise`. times: (k,);
+        states: (k, unknowns)."""
         growth, linear = self.growth_and_linear_growth(times, states)
         known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
