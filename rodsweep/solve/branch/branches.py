@@ -159,7 +159,8 @@ def _uncrushed_range(rod: Rod, request: BranchRequest) -> tuple[float, float, in
 
 
 def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
-    """Smallest taper in [low, high] whose tip the force does not crush; `high` if every tip is crushed."""
+    """Smallest taper in [low, high] whose tip is not crushed by a force larger by `crushing_margin`; `high`
+    if every tip is crushed."""
 
     def holds(taper: float) -> bool:
         share = (1 - BRANCH_SETTINGS.crushing_margin) * rod.build.relative_crushing_force(taper)

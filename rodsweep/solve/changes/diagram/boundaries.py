@@ -93,8 +93,8 @@ class _ChangeBoundaries:
         return _distance_from_curve(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
-        """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. Near a
-        crushed rod a threshold may not be found on its own curve."""
+        """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
+        is needed near a crushed rod, where a threshold may not be found on its own curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
             one.eigenvalue_sign == other.eigenvalue_sign
