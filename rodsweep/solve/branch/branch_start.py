@@ -209,8 +209,8 @@ def _cycle_of_amplitude(
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
-    born = abs(deflection_of(first.orbit)) / scale.deflection_unit
-    return first_measured_cycle(first, scale, border, born, accuracy)
+    arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
+    return first_measured_cycle(first, scale, border, arc_from_start, accuracy)
 
 
 def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:

@@ -48,13 +48,13 @@ BRANCH_MESH_SETTINGS = BranchMeshSettings()
 
 
 def first_measured_cycle(
-    found: ConvergedOrbit, scale: ArcLengthScale, side: Array, born: float, accuracy: float
+    found: ConvergedOrbit, scale: ArcLengthScale, side: Array, arc_from_start: float, accuracy: float
 ) -> BranchCycle:
     """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on
     another mesh if necessary; raises Unsolvable.
 
     scale: units of arc length. side: direction of the branch in components (deflection, log period,
-    parameter), (3,). born: arc length from the special point where the branch starts; parameter and
+    parameter), (3,). arc_from_start: arc length from the special point where the branch starts; parameter and
     multipliers are quadratic in this arc length.
     """
     derivatives = branch_derivatives(
@@ -65,7 +65,9 @@ def first_measured_cycle(
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
-        derivatives, parameter_curvature=derivatives.parameter_rate / born, multiplier_rate=2 * lost / born
+        derivatives,
+        parameter_curvature=derivatives.parameter_rate / arc_from_start,
+        multiplier_rate=2 * lost / arc_from_start,
     )
     calibration = measured_branch_calibration(found, derivatives, accuracy, None)
     cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, found, accuracy)

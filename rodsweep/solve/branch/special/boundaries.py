@@ -72,10 +72,10 @@ class SpecialBoundaries:
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         index, behind = divmod(item, 2)
         one = self.special_points[index]
-        limits = SpecialCurveProblem(
+        problem = SpecialCurveProblem(
             one.kind, self.line_axis, self.row_axis, workspace, -1.0 if behind else 1.0
         )
-        return _trace_half_curve(limits, one, located(one.row_index), self.special_points).arrays()
+        return _trace_half_curve(problem, one, located(one.row_index), self.special_points).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
@@ -217,32 +217,32 @@ def _trace_half_curve(
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 
 
-def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
+def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
     """Distance along the row of special point `one` from a curve of its kind, in row lengths; else inf."""
-    if limits.kind != one.kind:
+    if problem.kind != one.kind:
         return math.inf
-    row_coordinate = limits.row_axis.coordinate(one.row_value)
+    row_coordinate = problem.row_axis.coordinate(one.row_value)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= row_coordinate <= high or not _near_chord(limits, a, b, one):
+        if not low <= row_coordinate <= high or not _near_chord(problem, a, b, one):
             continue
         try:
-            crossing = limits.point_on_row(a, b, row_coordinate)
+            crossing = problem.point_on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
             best = min(
                 best,
-                abs(limits.line_axis.coordinate(crossing.parameter) - limits.line_axis.coordinate(one.at)),
+                abs(problem.line_axis.coordinate(crossing.parameter) - problem.line_axis.coordinate(one.at)),
             )
     return best
 
 
-def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+def _near_chord(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
-    x = limits.line_axis.coordinate(one.at)
-    ends = sorted(limits.line_axis.coordinate(p.parameter) for p in (a, b))
+    x = problem.line_axis.coordinate(one.at)
+    ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
     on_line = ends[0] - margin <= x <= ends[1] + margin
