@@ -127,7 +127,7 @@ class RodOnMesh(ABC):
     def elastic_energy(self, x: Array) -> Array:
         """Elastic energy U of states x, in k3/L, (...).
 
-        For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
+        For a uniform linear rod U = 1/2 int [k1 (h1 - 1)^2 + k2 h2^2 + Pi^2] du.
         """
         S = self.stresses(x)
         c = self.nodal_rod

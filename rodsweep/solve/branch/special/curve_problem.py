@@ -207,7 +207,8 @@ class SpecialCurveProblem:
     def _zero_of_margin(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
     ) -> SolvedPoint:
-        """The point at which a margin is 0; raises Unsolvable. ends: the margin at `inner` and `outer`."""
+        """The point between `inner` and `outer` at which the margin with index `margin` is 0; raises
+        Unsolvable. ends: values of this margin at `inner` and `outer`."""
         found: dict[float, SolvedPoint] = {1.0: outer}
 
         def left(share: float) -> float:
@@ -219,8 +220,7 @@ class SpecialCurveProblem:
         ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether a curve of more than `min_loop_points` points passes its first point on the step to
-        `point`."""
+        """Whether a curve of over `min_loop_points` points passes its first point on the step to `point`."""
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(behind[0])

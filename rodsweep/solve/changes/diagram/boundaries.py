@@ -54,9 +54,9 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a threshold with values of both parameters; None for an overtaking (`leading_eigenvalue`),
-    because no boundary consists of overtakings. kind: value of `ChangeKind`. frequency, growth_rate: Im and
-    Re of the eigenvalue, in 1/tau2."""
+    """The seed of a threshold with values of both parameters; None for an overtaking of a real eigenvalue and
+    a pair, because no boundary consists of overtakings. kind: value of `ChangeKind`. frequency, growth_rate:
+    Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (ChangeKind.onset, ChangeKind.real_again):
