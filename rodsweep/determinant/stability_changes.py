@@ -76,7 +76,8 @@ def onset_between(
 def stability_change_between(
     rods: CoefficientsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
 ) -> ForceChange | None:
-    """The loss or return of stability between the two forces `ends`.
+    """The loss or return of stability between the two forces `ends`: the first crossing if stability is lost,
+    the last crossing if stability returns.
 
     before, after: leading eigenvalues at the first and second force, (modes,). unstable: number of growing
     modes at the unstable force. Returns None unless the number of crossings found is unstable/2.
