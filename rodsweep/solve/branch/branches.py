@@ -142,9 +142,8 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
 
 
 def _uncrushed_range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
-    """Returns (low, high, side). low, high: ends of the part of the requested range in which the force does
-    not crush the rod; the part is empty if low >= high. side: end of the range that was moved because the rod
-    is crushed there: 0 for low, 1 for high, -1 for no end."""
+    """(smallest and largest value of the parameter in the requested range without crushing, index of the
+    range end at which the rod is crushed: 0, 1, or -1 if the rod is crushed at neither end)."""
     low = request.start
     high = request.stop
     share = rod.build.relative_crushing_force(rod.taper)
@@ -159,8 +158,7 @@ def _uncrushed_range(rod: Rod, request: BranchRequest) -> tuple[float, float, in
 
 
 def _smallest_uncrushed_taper(rod: Rod, low: float, high: float) -> float:
-    """Smallest taper in [low, high] whose tip is not crushed by a force larger by `crushing_margin`; `high`
-    if every tip is crushed."""
+    """Smallest taper in [low, high] whose tip the force does not crush; `high` if every tip is crushed."""
 
     def holds(taper: float) -> bool:
         share = (1 - BRANCH_SETTINGS.crushing_margin) * rod.build.relative_crushing_force(taper)
