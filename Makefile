@@ -171,7 +171,7 @@ endef
 	# Compile the formulas now, not in the first run, on two cores.
 	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
 	warm_up cycle.reference_rod & cycle=$$!
-	warm_up spectrum.path.stretch
+	warm_up spectrum.path.neighbouring_rods
 	warm_up seldom_used_kernels
 	wait $$cycle
 	touch $@

@@ -27,7 +27,7 @@ def whole_matrices(rod: Rod, mesh: Resolution | ArmMesh) -> tuple[Array, Array]:
     if isinstance(mesh, ArmMesh):
         pencil = ArmPencil(mesh)
         found = pencil.matrices(rod)
-        A = np.zeros((pencil.unknowns, pencil.unknowns))
+        A = np.zeros((pencil.unknown_count, pencil.unknown_count))
         A[pencil.rows, pencil.columns] = found.A
         return A, found.B
     form = dense_form(rod, assemble_pencil(mesh.element_count, mesh.order))

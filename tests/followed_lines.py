@@ -10,7 +10,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path.stretch import Stretch, follow_stretch
+from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.sweep.points.stretches import STRETCH_POINTS
@@ -23,21 +23,21 @@ CLEAR = 1e-6
 """Distance from the imaginary axis, in units of the box, in which a dense solver cannot count."""
 
 
-def line(name: str, values, **others: float) -> Stretch:
+def line(name: str, values, **others: float) -> NeighbouringRods:
     """Rods that differ in one parameter."""
     values = np.asarray(values, float)
-    return Stretch(Path(Rod(**others, **{name: values[0]}), name), values)
+    return NeighbouringRods(Path(Rod(**others, **{name: values[0]}), name), values)
 
 
-def parts(whole: Stretch) -> list[Stretch]:
+def parts(whole: NeighbouringRods) -> list[NeighbouringRods]:
     """A line cut as a sweep cuts it."""
     return [
-        Stretch(whole.path, whole.values[at : at + STRETCH_POINTS])
+        NeighbouringRods(whole.path, whole.values[at : at + STRETCH_POINTS])
         for at in range(0, len(whole), STRETCH_POINTS)
     ]
 
 
-def random_line(rng: np.random.Generator) -> Stretch:
+def random_line(rng: np.random.Generator) -> NeighbouringRods:
     """A line of 8 to 64 rods along any parameter: soft, rigid, pulled, nearly crushed, without drag."""
     k1, k2 = (10 ** rng.uniform(0, 6) if rng.random() < 0.8 else np.inf for _ in range(2))
     gamma3 = 10 ** rng.uniform(-8, 1) if rng.random() < 0.7 else 0.0
@@ -70,7 +70,7 @@ def dense_count(rod: Rod) -> int | None:
     while count > modes:
         modes = count
         mesh = resolution_for(1.3 * expected_wave_number(modes, wave), 1e-10)
-        if mesh.unknowns > LARGEST or not np.isfinite(real):
+        if mesh.unknown_count > LARGEST or not np.isfinite(real):
             return None
         A, B = whole_matrices(rod, mesh)
         w = inverse_spectrum(A, B)
@@ -81,9 +81,9 @@ def dense_count(rod: Rod) -> int | None:
     return count
 
 
-def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
+def solve_stretch(stretch: NeighbouringRods, request: SpectrumRequest) -> Spectrum:
     """Spectra of all rods of a stretch: followed, or else alone, as in a sweep."""
-    followed = follow_stretch(stretch, request)
+    followed = follow_spectra(stretch, request)
     for i in np.flatnonzero(~followed.is_solved).tolist():
         alone = solve_spectrum(stretch.rod_at(i), request)
         for name in (
@@ -111,7 +111,7 @@ class Comparison:
     """The most unstable modes met."""
     differences: list[str] = field(default_factory=list)
 
-    def add(self, whole: Stretch, modes: int = 4, dense: bool = True, every: int = 1) -> None:
+    def add(self, whole: NeighbouringRods, modes: int = 4, dense: bool = True, every: int = 1) -> None:
         """Compares each `every`-th point of a line with what the solver of single points and LAPACK find."""
         request = SpectrumRequest(modes, 1e-10, certify=True)
         for part in parts(whole):

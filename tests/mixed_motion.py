@@ -24,7 +24,7 @@ def rate(form, X):
 
 def jacobian(form, X):
     """A + B(X, .) of one X, shape (unknowns, unknowns)."""
-    return form.A + form.bilinear(X[None], np.eye(form.unknowns)).T
+    return form.A + form.bilinear(X[None], np.eye(form.unknown_count)).T
 
 
 def reaction(form, X):

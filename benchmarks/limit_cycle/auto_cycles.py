@@ -73,7 +73,7 @@ def continue_cycles(program: Path, first: Orbit, setting: AutoSetting, step: flo
 
     step: difference of F between two cycles. Raises RuntimeError if AUTO fails.
     """
-    unknowns = first.form.unknowns
+    unknowns = first.form.unknown_count
     constants = AUTO_CONSTANTS.format(
         unknowns=unknowns,
         intervals=setting.intervals,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .exponents import EXPONENT_SETTINGS
-from .parameter_plane import CENTRAL_STENCIL, PLANE_SETTINGS, Plane
+from .parameter_plane import CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS, Plane
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,7 +134,7 @@ class Boundary:
             stencil, h = (
                 self.plane.difference_stencil(v[0], v[1], i)
                 if i < 2
-                else (CENTRAL_STENCIL, PLANE_SETTINGS.difference_step)
+                else (CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.difference_step)
             )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:

@@ -14,7 +14,7 @@ from .value import DeterminantValue, scaled_determinant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneSettings:
+class PlaneDifferenceSettings:
     """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
     end_tolerance: float = 1e-12
@@ -26,7 +26,7 @@ class PlaneSettings:
     """Largest step of a difference, as a fraction of the distance along the axis to a crushed rod."""
 
 
-PLANE_SETTINGS = PlaneSettings()
+PLANE_DIFFERENCE_SETTINGS = PlaneDifferenceSettings()
 
 
 CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
@@ -50,7 +50,10 @@ class PlaneAxis:
         """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`. x just beyond an end is moved
         to the end.
         """
-        if -PLANE_SETTINGS.end_tolerance < x < 0 or 1 < x < 1 + PLANE_SETTINGS.end_tolerance:
+        if (
+            -PLANE_DIFFERENCE_SETTINGS.end_tolerance < x < 0
+            or 1 < x < 1 + PLANE_DIFFERENCE_SETTINGS.end_tolerance
+        ):
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
@@ -62,15 +65,15 @@ class PlaneAxis:
             return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
         return (value - self.start) / (self.stop - self.start)
 
-    def parameter_slope(self, value: float) -> float:
+    def parameter_per_coordinate(self, value: float) -> float:
         """d(parameter)/dx where the parameter has `value`."""
         return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
 
-    def path_variable_slope(self, value: float) -> float:
+    def path_variable_per_coordinate(self, value: float) -> float:
         """dp/dx where the parameter has `value`, with the path variable p: 1/k for a stiffness k, else the
         parameter.
         """
-        along = self.parameter_slope(value)
+        along = self.parameter_per_coordinate(value)
         return -along / value**2 if PARAMETERS[self.name].has_inverse_coordinate else along
 
 
@@ -132,7 +135,7 @@ class Plane:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
         (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
         """
-        h = self.difference_step_at(x, y, which, PLANE_SETTINGS.difference_step)
+        h = self.difference_step_at(x, y, which, PLANE_DIFFERENCE_SETTINGS.difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid_at(*back) else ONE_SIDED_STENCIL), h
 
@@ -163,7 +166,7 @@ class Plane:
         coordinate of `axis`).
         """
         value = determinant_along_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
-        return value, value.D_p * axis.path_variable_slope(getattr(rod, axis.name))
+        return value, value.D_p * axis.path_variable_per_coordinate(getattr(rod, axis.name))
 
     def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:
         """A difference step along axis number `which` at (x, y): the smaller of `largest` and the fraction
@@ -177,8 +180,8 @@ class Plane:
             return largest
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
-        slope = rate * axis.parameter_slope(getattr(rod, axis.name))
-        return min(largest, PLANE_SETTINGS.step_to_crushing * (force - rod.F) / slope)
+        slope = rate * axis.parameter_per_coordinate(getattr(rod, axis.name))
+        return min(largest, PLANE_DIFFERENCE_SETTINGS.step_to_crushing * (force - rod.F) / slope)
 
     def is_valid_at(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates (x, y) is valid."""

@@ -24,8 +24,8 @@ class StabilityChangeSettings(CompiledSettings):
     """Settings for crossings of the imaginary axis between two forces."""
 
     same_crossing_distance: float = 1e-8
-    """Two zeros of D(i eta; F) with a smaller relative distance are the same crossing. Newton's method
-    converges to rounding error, far below this number."""
+    """Two zeros (eta, F) of D(i eta; F) are the same crossing if F and eta each differ by at most this times
+    1 + |value|. Newton's method converges to rounding error, far below this number."""
 
 
 STABILITY_CHANGE_SETTINGS = StabilityChangeSettings()
@@ -76,7 +76,8 @@ def onset_between(
 def stability_change_between(
     rods: CoefficientsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
 ) -> ForceChange | None:
-    """The loss or return of stability between the two forces `ends`.
+    """The loss or return of stability between the two forces `ends`: the first crossing if stability is lost,
+    the last crossing if stability returns.
 
     before, after: leading eigenvalues at the first and second force, (modes,). unstable: number of growing
     modes at the unstable force. Returns None unless the number of crossings found is unstable/2.

@@ -24,8 +24,8 @@ from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
 
 
 def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
-    """The material of a rod at the nodes of a mesh; compliance, drag and rest of an arm have the shape
-    (3, nodes + 1).
+    """The material of a rod at the nodes of a mesh; compliance, drag and rest_strain are constants, (3,), for
+    a uniform rod of linear material, and (3, nodes + 1) for any other arm.
 
     Elements of the mesh must end at the breaks of the arm's profile.
     """

@@ -24,8 +24,8 @@ from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING_STRESS_INDEX = 0
 BENDING_STRESS_INDEX = 2
-"""STRETCHING, BENDING: indices of the stretching stress S1 and the bending stress S3, the components of S
-that are discontinuous at a jump."""
+"""Indices of the stretching stress S1 and of the bending stress S3, the components of S that are
+discontinuous at a jump."""
 
 
 @compiled

@@ -77,14 +77,14 @@ class Beam(RodOnMesh):
     def state_derivative(self, z: Array) -> Array:
         """dz/dt of states z, both (..., unknowns), with time in tau2."""
         out = np.empty(z.shape)
-        flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
+        flat = z.reshape(-1, self.unknown_count), out.reshape(-1, self.unknown_count)
         write_rates(*flat, self.sqrt_compliance, self.nodal_rod, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
         """Jacobians d(dz/dt)/dz, (..., unknowns, unknowns), of states z, (..., unknowns), with time in
         tau2."""
-        size = self.unknowns
+        size = self.unknown_count
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)
         matrices = out.reshape(-1, size, size)

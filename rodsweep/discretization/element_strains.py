@@ -35,8 +35,8 @@ def index_before_jump(node: int, order: int) -> int:
 def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> None:
     """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, elements (order + 1)).
 
-    S: stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S. order: order of the
-    elements.
+    S: stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S; at a jump, the
+    strains of both sides are written. order: order of the elements.
     """
     for a in range(len(S)):
         for k in range(S.shape[1]):

@@ -57,9 +57,9 @@ class RodOnMesh(ABC):
         return plane_layout(self.mesh.node_count, self.unknown_velocities)
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
         """Number of unknowns in a state."""
-        return self.layout.unknowns
+        return self.layout.unknown_count
 
     @cached_property
     def nodal_rod(self) -> NodalRod:
@@ -127,7 +127,7 @@ class RodOnMesh(ABC):
     def elastic_energy(self, x: Array) -> Array:
         """Elastic energy U of states x, in k3/L, (...).
 
-        For a uniform linear rod U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2.
+        For a uniform linear rod U = 1/2 int [k1 (h1 - 1)^2 + k2 h2^2 + Pi^2] du.
         """
         S = self.stresses(x)
         c = self.nodal_rod

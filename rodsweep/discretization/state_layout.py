@@ -34,7 +34,7 @@ class StateLayout:
     unknown_velocities: tuple[int, ...] = ()
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
         """Number of unknowns in a state."""
         return self.components * self.node_count + len(self.unknown_velocities) * (self.node_count + 1)
 
@@ -94,7 +94,7 @@ class StateLayout:
 
     def state_with_stresses(self, values: dict[str, Array]) -> Array:
         """A vector (unknowns,) with the given stresses: {name: values, (nodes,)}; all other entries are 0."""
-        vector = np.zeros(self.unknowns)
+        vector = np.zeros(self.unknown_count)
         for name, numbers in values.items():
             self.stress_field(vector, name)[:] = numbers
         return vector

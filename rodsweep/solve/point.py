@@ -25,7 +25,7 @@ def outcome_or_failure(
     more_failures: tuple[type[Exception], ...] = (),
 ) -> Outcome:
     """Result of `solve()`, or of `failed(cause)` after an exception in `FAILURES` or `more_failures`; the
-    field `seconds` is set to the duration."""
+    field `seconds` is set to the duration. Any other exception is raised."""
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
@@ -38,7 +38,8 @@ def outcome_or_failure(
 
 def cause_of(error: BaseException) -> str:
     """Last line of the message of `error`, or of the exception that caused `error`; PETSc writes the cause in
-    the last line. Of Python's own arithmetic errors it is said what they mean."""
+    the last line. For a ZeroDivisionError or OverflowError, a sentence says that a number of the rod
+    overflows or underflows, and contains this line in brackets."""
     cause = error.__cause__ or error
     text = (str(cause) or type(cause).__name__).splitlines()[-1]
     if isinstance(cause, ZeroDivisionError | OverflowError):

@@ -22,8 +22,8 @@ from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
 from .spectrum.path.carried_count import widest_gap
+from .spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 from .spectrum.path.prediction import Track
-from .spectrum.path.stretch import Stretch, follow_stretch
 from .spectrum.spectrum import SpectrumRequest
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -56,7 +56,7 @@ def warm_up_arms() -> None:
     length."""
     path = Path(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
-    follow_stretch(Stretch(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
+    follow_spectra(NeighbouringRods(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
     search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, max_thresholds=1)
     for arm in (SAMPLE_CONE, SAMPLE_SEGMENTS):
         solve_thresholds(arm, search)
@@ -72,9 +72,9 @@ def warm_up_uniform() -> None:
     )
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
-    states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknowns))
+    states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknown_count))
     orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
-    memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknowns)
+    memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknown_count)
     variations = np.zeros((1, len(orbit.values) + 1))
     of_rod = orbit.semidiscrete_equations
     reduced_variations(

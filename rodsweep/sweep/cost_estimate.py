@@ -196,9 +196,9 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
     accuracy `accuracy`.
     """
     if not rod.is_uniform_and_linear:
-        return arm_mesh(rod, modes, accuracy).unknowns
+        return arm_mesh(rod, modes, accuracy).unknown_count
     _, wave = most_amplified_wave(rod)
-    return resolution_for(expected_wave_number(modes, wave), accuracy).unknowns
+    return resolution_for(expected_wave_number(modes, wave), accuracy).unknown_count
 
 
 def sampled_points(points: Points) -> NDArray[np.int64]:

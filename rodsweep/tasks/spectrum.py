@@ -151,7 +151,7 @@ class SpectrumTask(CertifiedTask):
         return estimate_followed(alone, self.stretches, self.points, options.modes)
 
     def solver(self) -> Solver:
-        from ..solve.spectrum.path.stretch import warm_up as warm_up_following
+        from ..solve.spectrum.path.neighbouring_rods import warm_up as warm_up_following
         from ..solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
         from ..solve.spectrum.status import SpectrumStatus
         from ..solve.spectrum.two_meshes import solve_on_two_meshes
@@ -177,13 +177,13 @@ class SpectrumTask(CertifiedTask):
         (n,).
         """
         from ..determinant.parameter_path import Path
-        from ..solve.spectrum.path.stretch import Stretch, follow_stretch
+        from ..solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 
         stretches = self.stretches
         assert stretches is not None
         varied = self.points.varying_parameters[stretches.axis]
         path = Path(self.points.rod(int(indices[0])), varied)
-        found = follow_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
+        found = follow_spectra(NeighbouringRods(path, self.points.values_of(indices)[varied]), request)
         return StretchResult(spectrum_values(found.spectra), found.is_solved)
 
 

@@ -8,7 +8,7 @@ from surveyed import RODS
 from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
 from rodsweep.determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.solve.spectrum.path.arm_stretch import follow_interval
+from rodsweep.solve.spectrum.path.arm_interval import follow_interval
 from rodsweep.solve.spectrum.search import SpectrumRequest
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)

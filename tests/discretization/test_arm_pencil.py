@@ -68,7 +68,7 @@ def test_mesh_ends_elements_at_breaks_and_gets_finer():
     assert {0.0, 0.3, 1.0} <= set(mesh.edges)
     for _ in range(6):
         finer = finer_arm_mesh(rod, mesh)
-        assert finer.unknowns > mesh.unknowns
+        assert finer.unknown_count > mesh.unknown_count
         assert set(mesh.edges) <= set(finer.edges)
         mesh = finer
 

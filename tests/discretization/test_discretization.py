@@ -43,7 +43,7 @@ def test_basis_reproduces_polynomials_and_their_slopes(p):
 def dense(rod, elements, order):
     """All finite eigenvalues of the pencil by LAPACK, largest real part first."""
     pencil = assemble_pencil(elements, order)
-    A = np.zeros((pencil.unknowns,) * 2)
+    A = np.zeros((pencil.unknown_count,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness_entries(rod)
     T = np.linalg.solve(A, np.diag(pencil.mass_diagonal(rod)))[
         : 2 * pencil.node_count, : 2 * pencil.node_count
@@ -66,7 +66,7 @@ def test_pencil_at_rest_is_symmetric_and_negative():
     """At F = 0 the operator is self-adjoint and negative definite in the Gamma inner product (Sec. VI)."""
     pencil = assemble_pencil(2, 7)
     rod = Rod(F=0.0, k1=50.0, k2=30.0, gamma3=0.5)
-    A = np.zeros((pencil.unknowns,) * 2)
+    A = np.zeros((pencil.unknown_count,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness_entries(rod)
     n = pencil.node_count
     sign = np.where(np.arange(3 * n) < 2 * n, 1.0, -1.0)[:, None]  # the third row is a constraint
@@ -89,9 +89,9 @@ def test_resolution_grows_with_waves_and_digits():
     for wave in (5, 20, 60, 200, 1000):
         resolution = resolution_for(wave, 1e-10)
         assert resolution.order <= RESOLUTION_SETTINGS.max_order + 1
-        assert resolution.unknowns > last
-        assert finer_resolution(resolution).unknowns >= 1.2 * resolution.unknowns
-        last = resolution.unknowns
+        assert resolution.unknown_count > last
+        assert finer_resolution(resolution).unknown_count >= 1.2 * resolution.unknown_count
+        last = resolution.unknown_count
 
 
 @pytest.mark.parametrize(("elements", "order"), [(1, 15), (3, 6)])

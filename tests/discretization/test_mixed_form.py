@@ -38,7 +38,7 @@ GAMMA1 = 0.7
 
 def some_state(form, seed=1, imaginary=False):
     """Stresses that bend the rod by about a radian, velocities of the size that such stresses cause."""
-    X = np.random.default_rng(seed).standard_normal((2, form.unknowns))
+    X = np.random.default_rng(seed).standard_normal((2, form.unknown_count))
     X[:, form.stress_count :] *= 100
     return X[0] + 1j * X[1] if imaginary else X[0]
 
@@ -100,7 +100,7 @@ def test_longitudinal_modes_are_in_the_spectrum():
 def test_A_is_affine_in_F_with_the_slope_A_F(rod):
     here = mixed_form(rod.with_values(gamma1=GAMMA1), 2, 6)
     there = mixed_form((replace(rod, F=rod.F - 7.5)).with_values(gamma1=GAMMA1), 2, 6)
-    A_F = here.times_force_derivative_of_A(np.eye(here.unknowns)).T
+    A_F = here.times_force_derivative_of_A(np.eye(here.unknown_count)).T
     assert np.abs(here.A - 7.5 * A_F - there.A).max() <= 1e-14 * np.abs(here.A).max()
     assert np.abs(A_F).max() > 0
 
@@ -109,7 +109,7 @@ def test_A_is_affine_in_F_with_the_slope_A_F(rod):
 @MESHES
 def test_straight_rod_is_at_rest_and_its_mirror_images_move_as_such(rod, elements, order):
     form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
-    assert np.abs(mixed.rate(form, np.zeros(form.unknowns))).max() == 0
+    assert np.abs(mixed.rate(form, np.zeros(form.unknown_count))).max() == 0
     X, R = some_state(form), form.reflection_signs
     assert mixed.rate(form, R * X) == pytest.approx(R * mixed.rate(form, X), rel=1e-13, abs=1e-10)
 
@@ -136,7 +136,7 @@ def test_jacobian_is_the_derivative_of_the_rate(rod, elements, order):
     form, step = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order), 1e-30
     X = some_state(form)
     J = mixed.jacobian(form, X)
-    for k, direction in enumerate(1j * step * np.eye(form.unknowns)):
+    for k, direction in enumerate(1j * step * np.eye(form.unknown_count)):
         column = mixed.rate(form, X + direction).imag / step
         assert np.abs(J[:, k] - column).max() <= 1e-13 * np.abs(column).max()
 
@@ -188,7 +188,7 @@ def test_energy_law_holds_on_the_mesh_to_rounding(rod, elements, order):
     form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
     X = consistent(form, some_state(form))
     equation, stresses = mixed.rate(form, X), slice(form.stress_count)
-    change = np.zeros(form.unknowns)
+    change = np.zeros(form.unknown_count)
     change[stresses] = equation[stresses] / form.M[stresses]
     power = mixed.energy(form, X + 1e-30j * change).imag / 1e-30
     terms = np.abs(form.stresses_and_velocities(X)[0][:, :-1].ravel() * equation[stresses]).sum()
@@ -231,8 +231,10 @@ def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, ord
         np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count),
     )
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
-    exact = beam.tip_velocity(np.zeros(beam.layout.unknowns), root * S)[1]
-    assert form.tip_y_row @ np.append(S, np.zeros(form.unknowns - len(S))) == pytest.approx(exact, rel=1e-12)
+    exact = beam.tip_velocity(np.zeros(beam.layout.unknown_count), root * S)[1]
+    assert form.tip_y_row @ np.append(S, np.zeros(form.unknown_count - len(S))) == pytest.approx(
+        exact, rel=1e-12
+    )
 
 
 @RODS

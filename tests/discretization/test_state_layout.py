@@ -19,7 +19,7 @@ EACH = pytest.mark.parametrize("form", FORMS.values(), ids=FORMS.keys())
 
 
 def states(layout, *many):
-    return np.random.default_rng(5).standard_normal((*many, layout.unknowns))
+    return np.random.default_rng(5).standard_normal((*many, layout.unknown_count))
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_a_symmetry_is_a_matrix_and_is_undone(layout):
     turn, _ = np.linalg.qr(np.random.default_rng(1).standard_normal((layout.components,) * 2))
     if layout.unknown_velocities:  # what leaves Omega alone
         turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, -1.0]])
-    symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknowns)
+    symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknown_count)
     S = symmetry.matrix(layout)
     assert symmetry.apply(x, layout) == pytest.approx(x @ S.T)
     assert symmetry.apply_inverse(P, layout) == pytest.approx(np.linalg.solve(S, P))

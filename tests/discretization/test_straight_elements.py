@@ -23,7 +23,7 @@ PARTS = pytest.mark.parametrize("components, parity", [(LONGITUDINAL, 1), (TRANS
 
 def vectors(form, parity, seed=0):
     """Two complex random vectors of the components of a parity."""
-    real, imag = np.random.default_rng(seed).normal(size=(2, 2, form.unknowns))
+    real, imag = np.random.default_rng(seed).normal(size=(2, 2, form.unknown_count))
     return np.where(form.reflection_signs == parity, real + 1j * imag, 0)
 
 

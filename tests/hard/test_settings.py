@@ -64,7 +64,7 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import FAILURES
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
-from rodsweep.solve.spectrum.path.stretch import Stretch
+from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
@@ -244,7 +244,7 @@ def followed_cones(accuracy: float) -> Answer:
 
 
 def spectra_along(path: Path, forces: np.ndarray, request: SpectrumRequest) -> dict[str, Any] | None:
-    found = solve_stretch(Stretch(path, forces), request)
+    found = solve_stretch(NeighbouringRods(path, forces), request)
     if found.status.any():
         return None
     answer = {}
@@ -362,7 +362,7 @@ def on_mesh(accuracy: float) -> Answer:
     """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.node_positions
-    rest = beam.strains(np.zeros(beam.layout.unknowns))
+    rest = beam.strains(np.zeros(beam.layout.unknown_count))
     z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
     numbers = [*beam.tip_coordinates(z), *beam.tip_velocity(z, 0.1 * z), beam.elastic_energy(z)]
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
@@ -393,7 +393,7 @@ def motion(accuracy: float) -> Answer:
     """State after a free motion. Its error is that of the scheme's tolerance, some steps' worth."""
     beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
     u = beam.mesh.node_positions
-    rest = beam.strains(np.zeros(beam.layout.unknowns))
+    rest = beam.strains(np.zeros(beam.layout.unknown_count))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
     start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
     destroy_integrators()
@@ -527,7 +527,7 @@ CASES = {
     "HOPF_COEFFICIENT_SETTINGS": HOPF,
     "GENERALISED_HOPF_SETTINGS": BAUTIN_POINT,
     "BOUNDARY_POINT_SETTINGS": BAUTIN_CURVE,
-    "PLANE_SETTINGS": BAUTIN_CURVE,
+    "PLANE_DIFFERENCE_SETTINGS": BAUTIN_CURVE,
     "BAUTIN_SETTINGS": BAUTIN_CURVE,
     "BAUTIN_STEPS": BAUTIN_CURVE,
     "SUBCRITICAL_HOPF_SETTINGS": BESIDE,
@@ -572,7 +572,7 @@ CASES = {
     "ARM_RESOLUTION_SETTINGS": SPECTRA,
     "ARM_ELEMENT_SETTINGS": SPECTRA,
     "HULL_SETTINGS": SPECTRA,
-    "SWEEP_STRETCH_SETTINGS": FOLLOWED,
+    "NEIGHBOURING_RODS_SETTINGS": FOLLOWED,
     "WINDING_SETTINGS": THRESHOLDS,
     "COVERING_SETTINGS": THRESHOLDS,
     "ZERO_FREE_DISC_SETTINGS": THRESHOLDS,
@@ -587,7 +587,7 @@ CASES = {
     "ARM_PATH_SETTINGS": CONE,
     "AXIS_MODE_SETTINGS": SLENDER_CONE,
     "NEAR_AXIS_SETTINGS": SLENDER_CONE,
-    "ARM_STRETCH_SETTINGS": CONE,
+    "ARM_FOLLOWING_SETTINGS": CONE,
     "ARM_FAMILY_SETTINGS": CONE,
     "NO_CROSSING_SETTINGS": CONES,
     "CARRIED_ARM_COUNT_SETTINGS": CONES,

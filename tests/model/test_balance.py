@@ -157,7 +157,7 @@ def collocated(beam, z):
 
 
 def rough(beam):
-    return np.random.default_rng(3).standard_normal(beam.layout.unknowns)
+    return np.random.default_rng(3).standard_normal(beam.layout.unknown_count)
 
 
 def test_compiled_rate_is_the_balance_at_the_nodes():

@@ -66,12 +66,12 @@ def break_it():
 BROKEN_STRETCH = f"""
 {WHEN_SOLVERS_ARE_LOADED}
 def break_it():
-    import rodsweep.solve.spectrum.path.stretch as stretch
+    import rodsweep.solve.spectrum.path.neighbouring_rods as following
 
     def broken(*words):
         raise IndexError("a bug")
 
-    stretch.follow_stretch, stretch.warm_up = broken, lambda: None
+    following.follow_spectra, following.warm_up = broken, lambda: None
 """
 
 

@@ -65,8 +65,8 @@ ARM_FAMILY_SETTINGS = ArmFamilySettings()
 class ArmFamily(NamedTuple):
     """Propagators of all arms with p from `p_low` to `p_high`, for |w| <= W, as Chebyshev series in p.
 
-    scale: the series are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`. coefficients:
-    Chebyshev coefficients, (nodes, elements, terms, PADDED).
+    largest_w: W. scale: the series are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`.
+    coefficients: Chebyshev coefficients, (nodes, elements, terms, PADDED).
     """
 
     p_low: float

@@ -39,7 +39,7 @@ class ArmValueSettings(CompiledSettings):
     """Settings for D from propagators."""
 
     max_norm_ratio: float = 1e100
-    """Minors are divided by their norm if the norm is not between 1/large and large."""
+    """Minors are divided by their norm if the norm is not between 1/max_norm_ratio and max_norm_ratio."""
 
 
 ARM_VALUE_SETTINGS = ArmValueSettings()

@@ -240,5 +240,6 @@ def cover_with_boxes(
 
 @compiled
 def _box_distance(zero: LocatedZero, eta: float, p: float, half: tuple[float, float]) -> float:
-    """Distance of a zero from the centre (eta, p) of a box, in units of the half-widths `half`."""
+    """Distance of a zero from the centre (eta, p) of a box: the larger of the distances in eta and p, in
+    units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])

@@ -36,8 +36,8 @@ class DominanceSettings(CompiledSettings):
     """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
     leaves no gap between discs."""
     end_rounding: float = 1e-15
-    """A step ends at the end of the segment if the relative distance to the end is below this number, the
-    size of rounding errors."""
+    """A step ends at the end of the segment if the distance to the end, divided by the length of the segment,
+    is at most this number, the size of rounding errors."""
     largest_factor_change: float = 0.5
     """Dominance is proved only on discs over which no factor of A changes by more than this fraction; the
     phase of each factor then changes by less than a right angle."""

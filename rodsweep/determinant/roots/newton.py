@@ -33,7 +33,8 @@ class RootNewtonSettings(CompiledSettings):
     converged_step: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
     jacobian_step: float = 1e-5
-    """Relative step of the differences in the Jacobian of a double eigenvalue, which need not be accurate."""
+    """Steps of the differences in the Jacobian of a double eigenvalue, divided by |x| for x and by the reach
+    for p. The Jacobian need not be accurate."""
     stagnant_step: float = 1e-9
     """Newton's method has also converged if |step| is below this number times |p| and more than half of the
     previous |step|: such a step is rounding error."""

@@ -34,8 +34,8 @@ class RootSettings(CompiledSettings):
     """Two computed roots may be the same root of D if their distance is at most this number times the sum of
     their errors."""
     same_root_fraction: float = 0.25
-    """Two such roots are the same root of D if their distance is below this fraction of the estimated
-    distance 2 |D'/D''| of the next root."""
+    """Two roots that may be the same by `same_root_distance` are the same root of D if their distance is
+    below this fraction of the estimated distance 2 |D'/D''| of the next root."""
 
 
 ROOT_SETTINGS = RootSettings()

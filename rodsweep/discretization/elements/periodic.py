@@ -203,7 +203,7 @@ def series_maxima(c: Complex, samples: Array) -> Array:
 
 @compiled_for_vectors
 def series_minima(c: Complex, samples: Array) -> Array:
-    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), like `series_maxima`; c: (N, m), samples: (n, m)."""
+    """Minima, (m,), of Re sum_k c_k exp(2 pi i k t), like `series_maxima`; c: (harmonics, m)."""
     return -series_maxima(-c, -samples)
 
 

@@ -53,7 +53,7 @@ class Resolution:
     order: int
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
         """Number of unknowns y, theta and s on this mesh."""
         return 3 * self.element_count * self.order
 

@@ -56,7 +56,7 @@ class ArmPencil:
         self.mesh = mesh
         self.order = mesh.order
         self.node_count = mesh.node_count
-        self.unknowns = mesh.unknowns
+        self.unknown_count = mesh.unknown_count
         edges = np.array(mesh.edges)
         h = mesh.lengths
         x, w = gauss_lobatto_rule(mesh.order)
@@ -110,7 +110,7 @@ class ArmPencil:
         Entries in the row or column of the clamp have the index nnz.
         """
         n = self.node_count
-        size = self.unknowns
+        size = self.unknown_count
         y = self._y_indices
         theta = np.where(y < 0, -1, y + n)
         s = 2 * n + np.arange(n).reshape(self.mesh.element_count, self.order)

@@ -30,7 +30,7 @@ class ArmMesh(Elements):
     """Elements for an `ArmPencil`; an edge must lie at every jump of a coefficient of the arm."""
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
         """Total number of unknowns y, theta and s."""
         return 3 * self.node_count
 

@@ -64,7 +64,7 @@ class DenseForm:
 def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
     """The dense eigenproblem of the rod `rod` on the mesh of `pencil`."""
     found = pencil.matrices(rod)
-    A = np.zeros((pencil.unknowns, pencil.unknowns))
+    A = np.zeros((pencil.unknown_count, pencil.unknown_count))
     A[pencil.rows, pencil.columns] = found.A
     return DenseForm(
         rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.displacement_factors

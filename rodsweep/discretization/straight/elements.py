@@ -115,7 +115,7 @@ class StraightElements:
 
     def assemble(self, parts: Values) -> Values:
         """Sum of element contributions, (elements, local), as a vector (unknowns,)."""
-        x = np.zeros(self.form.unknowns + 1, parts.dtype)
+        x = np.zeros(self.form.unknown_count + 1, parts.dtype)
         np.add.at(x, self.numbering.state_indices, parts)
         return x[:-1]
 

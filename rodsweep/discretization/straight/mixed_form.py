@@ -57,11 +57,12 @@ class MixedForm:
     @property
     def stress_count(self) -> int:
         """Number of unknown stresses."""
-        return plane_layout(self.mesh.node_count).unknowns
+        return plane_layout(self.mesh.node_count).unknown_count
 
     @property
-    def unknowns(self) -> int:
-        return self.layout.unknowns
+    def unknown_count(self) -> int:
+        """Number of unknowns in a state X."""
+        return self.layout.unknown_count
 
     @cached_property
     def nodal_rod(self) -> NodalRod:
@@ -212,8 +213,8 @@ class MixedForm:
         T = self.law.tangent[:, None, :N]
         Sigma = self.nodal_rod.tip_stress[:, None, None]
         s = np.arange(self.stress_count).reshape(PLANE_COMPONENT_COUNT, N)
-        v = np.arange(self.stress_count, self.unknowns).reshape(PLANE_COMPONENT_COUNT, N + 1)[:, :N]
-        matrix = np.zeros((self.unknowns, self.unknowns))
+        v = np.arange(self.stress_count, self.unknown_count).reshape(PLANE_COMPONENT_COUNT, N + 1)[:, :N]
+        matrix = np.zeros((self.unknown_count, self.unknown_count))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
         matrix[s[:, None], v[None]] = W * ad(E, each)
         own = each * np.swapaxes(T, 0, 1)

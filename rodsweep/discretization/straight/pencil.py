@@ -78,7 +78,8 @@ class Pencil(Elements):
     nodal_masses: Array
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
+        """Number of rows of the matrices."""
         return 3 * self.node_count
 
     def term_coefficients(self, rod: Rod) -> Array:
@@ -94,8 +95,8 @@ class Pencil(Elements):
         """The six constant matrices as dense flat matrices in column-major order, as LAPACK expects, (6,
         unknowns^2).
         """
-        whole = np.zeros((6, self.unknowns**2))
-        whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.term_entries
+        whole = np.zeros((6, self.unknown_count**2))
+        whole[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.term_entries
         return whole
 
     def matrices(self, rod: Rod) -> PencilMatrices:
@@ -106,7 +107,7 @@ class Pencil(Elements):
 
     def mass_diagonal(self, rod: Rod) -> Array:
         """Diagonal of the matrix B of the rod `rod`, (unknowns,)."""
-        B = np.zeros(self.unknowns)
+        B = np.zeros(self.unknown_count)
         B[: self.node_count] = 1.0
         B[self.node_count : 2 * self.node_count] = (
             rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2

@@ -68,7 +68,7 @@ class WholeRodMatrices:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, and 0 in all other
         entries.
         """
-        x = np.zeros(self.form.unknowns, values.dtype)
+        x = np.zeros(self.form.unknown_count, values.dtype)
         x[self.state_indices] = values
         return x
 

@@ -64,20 +64,20 @@ def pointer(context: Any, address: Any) -> Any:
 
 @compiled
 def doubles_at(address: int, size: int) -> Any:
-    """Array of doubles at the memory address `address`, (size,)."""
+    """View of the doubles at the memory address `address`, (size,)."""
     return numba.carray(pointer(address), (size,), np.float64)
 
 
 @compiled
 def double_array_at(address: int, shape: Any) -> Any:
-    """Array of doubles at the memory address `address`, of the given `shape`. `doubles_at(...).reshape` would
-    take as long as one evaluation of the rod's equations with ten nodes."""
+    """View of the doubles at the memory address `address`, of the given `shape`. `doubles_at(...).reshape`
+    would take as long as one evaluation of the rod's equations with ten nodes."""
     return numba.carray(pointer(address), shape, np.float64)
 
 
 @compiled
 def integers_at(address: int, size: int) -> Any:
-    """Array of 64-bit integers at the memory address `address`, (size,)."""
+    """View of the 64-bit integers at the memory address `address`, (size,)."""
     return numba.carray(pointer(address), (size,), np.int64)
 
 

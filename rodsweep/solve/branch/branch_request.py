@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import inf
 
 WORK_UNIT = 1e9
-"""Unit of `BranchRequest.work`, in multiplications."""
+"""Unit of `BranchRequest.work`: number of multiplications in the eliminations of Newton matrices."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,5 +25,6 @@ class BranchRequest:
 
     @property
     def max_work(self) -> float:
-        """Largest number of multiplications of Newton's matrices for the branches of a rod."""
+        """Largest number of multiplications in the eliminations of all Newton matrices for one rod; inf
+        without a limit."""
         return inf if self.work is None else WORK_UNIT * self.work

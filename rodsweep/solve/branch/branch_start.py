@@ -41,8 +41,8 @@ class BranchStartSettings:
     |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
     inaccurate."""
     min_deflection_amplitude: float = 0.1
-    """Amplitude (largest tip y, in L) of the cycle whose deflection is `min_deflection_unit` in a
-    `ArcLengthScale`."""
+    """The unit of deflection of an `ArcLengthScale` is at least the deflection that a cycle of this amplitude
+    (largest tip y, in L) has by linear theory."""
     allowed_amplitude_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
@@ -209,8 +209,8 @@ def _cycle_of_amplitude(
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
-    born = abs(deflection_of(first.orbit)) / scale.deflection_unit
-    return first_measured_cycle(first, scale, border, born, accuracy)
+    arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
+    return first_measured_cycle(first, scale, border, arc_from_start, accuracy)
 
 
 def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:

@@ -219,7 +219,7 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
 
 def _end_error_sign(point: SpecialPoint) -> int:
     """Sign of the error of a special point in `certain_range`: 1 (the interval is shortened), or -1 at an end
-    of the parameter range, where the branch has a cycle exactly at the end."""
+    of the parameter range, where the branch has a cycle exactly at the end (the interval is extended)."""
     return -1 if point.reason is EndReason.range_end else 1
 
 

@@ -78,9 +78,9 @@ class BranchDerivatives:
         return float(self.unit_tangent[2])
 
     def arc_length_for_parameter_change(self, off: float) -> float:
-        """Arc length over which the scaled parameter coordinate changes by `off`. Near a fold the parameter
-        may never change by `off`; near a fold the result has the modulus 2 sqrt(|off/curvature|), an upper
-        bound of the arc length."""
+        """Signed arc length over which the scaled parameter coordinate changes by `off`: off /
+        `parameter_rate`. Near a fold, where the parameter may never change by `off`: an upper bound of this
+        length with the same sign, of modulus 2 sqrt(|off / `parameter_curvature`|)."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * off):
             return off / self.parameter_rate
@@ -119,12 +119,12 @@ class BranchCalibration:
         )
 
     def largest_weighted_error(self, accuracy: float) -> float:
-        """The error that must not exceed the relative accuracy: the larger of the parameter error and the
-        largest error at equal parameter, divided by max(1, sensitivity/max_sensitivity of the settings)."""
+        """The number that must not exceed the accuracy: the larger of the parameter error, and the largest
+        weighted error at equal parameter divided by max(1, sensitivity / `max_sensitivity`)."""
         return self._limiting_errors.errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh for a relative accuracy of the cycle; the next finer mesh if none suffices."""
+        """The cheapest mesh for a `largest_weighted_error` within the accuracy, else the next finer mesh."""
         return self._limiting_errors.cheapest_mesh(accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:

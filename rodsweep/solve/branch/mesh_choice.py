@@ -48,13 +48,13 @@ BRANCH_MESH_SETTINGS = BranchMeshSettings()
 
 
 def first_measured_cycle(
-    found: ConvergedOrbit, scale: ArcLengthScale, side: Array, born: float, accuracy: float
+    found: ConvergedOrbit, scale: ArcLengthScale, side: Array, arc_from_start: float, accuracy: float
 ) -> BranchCycle:
     """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on
     another mesh if necessary; raises Unsolvable.
 
     scale: units of arc length. side: direction of the branch in components (deflection, log period,
-    parameter), (3,). born: arc length from the special point where the branch starts; parameter and
+    parameter), (3,). arc_from_start: arc length from the special point where the branch starts; parameter and
     multipliers are quadratic in this arc length.
     """
     derivatives = branch_derivatives(
@@ -65,7 +65,9 @@ def first_measured_cycle(
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
-        derivatives, parameter_curvature=derivatives.parameter_rate / born, multiplier_rate=2 * lost / born
+        derivatives,
+        parameter_curvature=derivatives.parameter_rate / arc_from_start,
+        multiplier_rate=2 * lost / arc_from_start,
     )
     calibration = measured_branch_calibration(found, derivatives, accuracy, None)
     cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, found, accuracy)
@@ -91,7 +93,7 @@ def is_measurement_due(point: BranchCycle) -> bool:
 
 
 def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
-    """The same cycle with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
+    """The cycle `point` with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
     accuracy of the cycle."""
     before = point.calibration.at_equal_parameter
     return with_calibration(
@@ -102,8 +104,8 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
 
 
 def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
-    """The same cycle, solved to a relative accuracy, with the errors of `calibration`, which was measured or
-    interpolated at this cycle. In the result the number of unmeasured steps is 0."""
+    """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
+    or interpolated at this cycle. In the result the number of unmeasured steps is 0."""
     cycle = cycle_with_calibrated_errors(
         calibration.at_equal_parameter, point.cycle.converged_orbit, accuracy
     )
@@ -115,9 +117,10 @@ def with_calibration(point: BranchCycle, calibration: BranchCalibration, accurac
 def solve_on_sufficient_mesh(
     point: BranchCycle, accuracy: float, condition: BorderCondition | None = None
 ) -> BranchCycle:
-    """The same cycle with measured errors within the relative accuracy, on a mesh chosen for this accuracy;
-    raises Unsolvable if no allowed mesh suffices. condition: equation that defines the same cycle on every
-    mesh; by default the condition that its arc length is unchanged."""
+    """The cycle `point` with measured errors within the relative accuracy, on a mesh chosen for this
+    accuracy; raises Unsolvable if no allowed mesh suffices. A sufficient mesh is replaced only by a much
+    cheaper mesh. condition: equation that defines the same cycle on every mesh; by default the condition that
+    its arc length is unchanged."""
     condition = condition or point.arc_length_condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
@@ -143,7 +146,7 @@ def solve_on_sufficient_mesh(
 def solved_on_mesh(
     point: BranchCycle, mesh: OrbitMesh, condition: BorderCondition, accuracy: float
 ) -> BranchCycle:
-    """The same cycle solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
+    """The cycle `point` solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
     found = condition.solve_on_mesh(

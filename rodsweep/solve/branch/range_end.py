@@ -78,7 +78,7 @@ def _range_end_passed_before_fold(
 ) -> tuple[int, float]:
     """Returns (index, length): index in `ends` of the range end that the branch is expected to pass between
     `start` and `end` by the cubic through both cycles, and the arc length from `start` at which it passes;
-    (-1, 0.0) if there is none."""
+    (-1, 0.0) if the cubic passes no range end or if no fold lies between the two cycles."""
     if start.parameter_rate * end.parameter_rate >= 0:
         return -1, 0.0
     index = 1 if start.parameter_rate > 0 else 0

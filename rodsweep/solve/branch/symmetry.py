@@ -140,7 +140,7 @@ def first_asymmetric_cycle(
     breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> BranchCycle:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
-    relative accuracy; raises Unsolvable. The cycle has a larger largest tip y than its mirror image."""
+    relative accuracy; raises Unsolvable. The tip's y reaches a larger maximum than on the mirror image."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.special_point.orbit)
@@ -222,7 +222,7 @@ def symmetry_breaking_between(
 
 def _symmetry_breaking_ahead(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
     """Index of the first symmetry breaking in `known` with the parameter and period, within tolerances, at
-    which the extrapolated asymmetry of the branch vanishes; -1 if there is none, or it does not decrease."""
+    which the extrapolated asymmetry vanishes; -1 if no entry fits or the asymmetry does not decrease."""
     orbit = start.orbit
     present = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))

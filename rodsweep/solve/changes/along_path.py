@@ -30,7 +30,7 @@ class ThresholdSettings:
     """Anchors are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
     merge_distance: float = 1e-5
-    """Undecided boxes of the covering are merged if the relative gap between them is at most this."""
+    """Undecided boxes of the covering are merged if gap/(parameter at its start) is at most this."""
 
 
 THRESHOLD_SETTINGS = ThresholdSettings()
@@ -38,7 +38,7 @@ THRESHOLD_SETTINGS = ThresholdSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThresholdList:
-    """All thresholds along a path, by increasing parameter, and whether the list is proved complete."""
+    """All thresholds along a path, by parameter. unstable_at_start, unstable_at_end: -1 if unknown."""
 
     thresholds: tuple[Threshold, ...] = ()
     searched_interval: tuple[float, float] = (math.nan, math.nan)
@@ -97,7 +97,7 @@ class AxisCrossings:
 def find_thresholds(
     path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
 ) -> ThresholdList:
-    """All thresholds along `path` for parameter values from `start` to `stop`, proved complete if `certify`.
+    """All thresholds along `path` for parameter values from `start` to `stop`; `certify` requests a proof.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
     than `most` crossings. Raises Unsolvable if not even the first interval can be searched, or if no a-priori

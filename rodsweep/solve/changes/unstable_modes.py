@@ -30,8 +30,8 @@ class UnstableModeCountSettings:
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
     min_crossing_distance: float = 1e-3
-    """Modes are not counted between two crossings with a relative distance below this, because a pair is then
-    too close to the imaginary axis."""
+    """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this,
+    because a pair is then too close to the imaginary axis."""
 
 
 UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()
@@ -136,8 +136,8 @@ class ModeCounter:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
         the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
-        unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` are those of
-        this call only."""
+        unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` afterwards holds the
+        doubts of this call only."""
         self.doubts = []
         out: list[Threshold] = []
         start = ends[0]

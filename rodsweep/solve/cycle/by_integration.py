@@ -172,7 +172,7 @@ class _MarchedMotion:
         The motion is integrated to these times, because cubic interpolation is less accurate."""
         times = section_crossings(self.beam, run)[0]
         row = tip_angle_row(self.beam)
-        states = np.empty((len(times), self.beam.unknowns))
+        states = np.empty((len(times), self.beam.unknown_count))
         for i, rough in enumerate(times):
             before = int(np.searchsorted(run.times, rough, side="right")) - 1
             left = float(rough - run.times[before])

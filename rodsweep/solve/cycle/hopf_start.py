@@ -94,8 +94,9 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     """The nearest Hopf point below the force of the rod at which the leading mode becomes unstable; None if
-    not found. Raises Unsolvable if a leading eigenvalue is unknown, or if the unstable mode does not
-    oscillate."""
+    not found. The leading growth rate is evaluated at decreasing forces (`force_scan_ratio`), so two Hopf
+    points between successive forces are missed. Raises Unsolvable if a leading eigenvalue is unknown, or if
+    the unstable mode does not oscillate."""
     F = rod.F
     above = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:

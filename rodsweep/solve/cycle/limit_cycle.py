@@ -238,7 +238,7 @@ def _with_cycle_quantities(cycle: Cycle, found: RefinedCycle, request: CycleRequ
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The outcome `cycle` with multipliers of the solved cycle `found`: the largest modulus, the stored list
-    (cut or padded, small ones NO_MULTIPLIER), and their errors."""
+    (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
     mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
     mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(

@@ -166,7 +166,8 @@ def cycle_from_neighbour(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
     """The cycle of a rod that differs from the neighbour's rod in the parameter `name` only; raises
-    Unsolvable.
+    Unsolvable. The errors are scaled from the neighbour's calibration, or measured if the calibration no
+    longer applies or the scaled errors exceed the accuracy.
 
     form: the rod, on any mesh. accuracy: requested relative accuracy. workspace: memory of Newton's matrices.
     """
@@ -191,7 +192,8 @@ def _cycle_on_next_mesh(
     neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
     """The cycle of the rod in `form` on the neighbour's `next_mesh`, with a matrix for multipliers and for
-    the tangent along the parameter `name`; raises Unsolvable. accuracy: requested relative accuracy."""
+    the tangent along the parameter `name`; raises Unsolvable. If Newton's method fails from the prediction,
+    the branch is first followed in steps on a coarser mesh. accuracy: requested relative accuracy."""
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:

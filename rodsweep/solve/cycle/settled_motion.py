@@ -8,8 +8,9 @@ from .status import MarchedStatus
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that has settled on a cycle. z: present state, (unknowns,). returns_per_period: number of
-    returns of the tip to theta = 0 per period. last_time_step: last time step, in tau2."""
+    """A motion that has settled on a cycle. state: present state of the beam, (unknowns,).
+    returns_per_period: number of returns of the tip to theta = 0 per period. last_time_step: last time step,
+    in tau2."""
 
     state: Array
     returns_per_period: int

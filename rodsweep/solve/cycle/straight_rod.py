@@ -87,7 +87,7 @@ class StraightRodStability:
 def straight_rod_stability(
     rod: Rod, near: Complex | None = None, certify: bool = True
 ) -> StraightRodStability:
-    """The leading eigenvalue of a rod with its error estimate.
+    """The leading eigenvalue of a rod with its error estimate; NaN, with a message, after a failure.
 
     near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
     possible. certify: whether to prove that no other eigenvalue has a larger growth rate.

@@ -41,7 +41,7 @@ END_BY_STOP_REASON = {
     CurveStop.no_further_solution: BautinEnd.not_found,
     CurveStop.max_solutions: BautinEnd.list_full,
 }
-"""`BautinEnd` for each `CurveStop` except `margin`, which means an end of a parameter's range."""
+"""`BautinEnd` for each `CurveStop` except `zero_margin`, which means an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

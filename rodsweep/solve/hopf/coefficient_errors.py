@@ -46,7 +46,7 @@ class HopfCoefficientSettings:
     """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
     high modes of rods soft in shear; where a flutter window closes the value is 1."""
     force_step: float = 1e-5
-    """Relative force step of the difference quotient for the second derivative of w(F)."""
+    """Force step of the difference quotient for the second derivative of w(F), divided by |F|."""
     cached_searches: int = 8
     """Number of searches for Hopf points in the cache; rods that differ only in gamma1 share a search."""
 

@@ -90,8 +90,8 @@ class Criticality:
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     """All Hopf points of `rod` for forces up to `request.F_max`, or to just below the crushing force if
-    smaller, and the coefficients of the first `request.crossings`. The force of `rod` is ignored; a failure
-    is returned as a status, never raised."""
+    smaller, and the coefficients of the first `request.max_hopf_points` of these points. The force of `rod`
+    is ignored; a failure is returned as a status, never raised."""
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Criticality:

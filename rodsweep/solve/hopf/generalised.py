@@ -206,7 +206,7 @@ class HopfCurve:
         way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))
         values = [axis.value(float(x)) for axis, x in zip(axes, there.v[:2], strict=True)]
         errors = [
-            abs(axis.parameter_slope(value)) * (abs(float(off)) + there.error)
+            abs(axis.parameter_per_coordinate(value)) * (abs(float(off)) + there.error)
             for axis, value, off in zip(axes, values, way[:2], strict=True)
         ]
         return GeneralisedHopfPoint(

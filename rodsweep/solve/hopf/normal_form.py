@@ -71,8 +71,9 @@ HARMONIC_WAVE_NUMBER_RATIO = 2
 class NormalForm:
     """Normal form of a rod on a mesh, about the straight rod, for one eigenvalue w with Im w > 0.
 
-    w in 1/tau2, slope = dw/dF, c in 1/(tau2 L^2). q, p, h20 (complex) and h11 (real): coefficients of the
-    state X of `form`, (unknowns,). At a Hopf point w = i Im w up to the error of the mesh.
+    w in 1/tau2, eigenvalue_slope = dw/dF in L^2/(k3 tau2), landau = c in 1/(tau2 L^2). q, p, h20 (complex)
+    and h11 (real): coefficients of the state X of `form`, (unknowns,). At a Hopf point w = i Im w up to the
+    error of the mesh.
     """
 
     form: MixedForm
@@ -111,8 +112,8 @@ class NormalForm:
     def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
 
-        The eigenvalue at F is approximated by w + slope (F - self.F). If the square is negative, no cycle
-        exists.
+        The eigenvalue at F is approximated by w + eigenvalue_slope (F - self.F). If the square is negative,
+        no cycle exists.
         """
         w = self.w + self.eigenvalue_slope * (F - self.F)
         squared = -w.real / self.landau.real

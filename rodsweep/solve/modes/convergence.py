@@ -65,7 +65,7 @@ def converged_modes(
             mesh = replace(mesh, order=mesh.order + MODE_MESH_SETTINGS.order_increase)
         else:
             mesh = finer_mesh(rod, mesh)
-        if mesh.unknowns > MODE_MESH_SETTINGS.max_unknowns:
+        if mesh.unknown_count > MODE_MESH_SETTINGS.max_unknowns:
             break
         fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
         result = _with_errors_from_coarse(coarse, fine, gaps)

@@ -106,7 +106,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
         )
         last = mesh
         mesh = replace(mesh, order=order)
-        if step and mesh.unknowns > GROWTH_SETTINGS.max_unknowns:
+        if step and mesh.unknown_count > GROWTH_SETTINGS.max_unknowns:
             break
         pencil = pencil_on(mesh)
         before = abscissa

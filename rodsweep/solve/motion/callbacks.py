@@ -134,7 +134,7 @@ class CallbackWorkspace:
     """Arrays and context record used by the callbacks of one TS, for one mesh and any rod."""
 
     def __init__(self, mesh: Mesh) -> None:
-        n = plane_layout(mesh.node_count).unknowns
+        n = plane_layout(mesh.node_count).unknown_count
         self.base = np.zeros(n)
         self._mesh = mesh  # the callbacks read the mesh's arrays by address, so the mesh must stay alive
         self._arrays = mesh.matrices._asdict() | {
@@ -169,7 +169,7 @@ class CallbackWorkspace:
         )
         self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
-        root = beam.layout.unknowns**0.5
+        root = beam.layout.unknown_count**0.5
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
         self._set_context_fields(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
         self._set_context_fields({"small_error": error * root, "rounding": floor * root})

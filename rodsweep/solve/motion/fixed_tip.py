@@ -83,7 +83,7 @@ class _BentRod:
     def __init__(self, beam: Beam) -> None:
         self.mesh = beam.mesh
         self._straight_beam = beam
-        self.h1, self.h2 = beam.strains(np.zeros(beam.unknowns))[:2]
+        self.h1, self.h2 = beam.strains(np.zeros(beam.unknown_count))[:2]
         size = beam.mesh.node_count + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))

@@ -104,7 +104,7 @@ class Integrator:
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
         self.workspace = CallbackWorkspace(mesh)
-        unknowns = plane_layout(mesh.node_count).unknowns
+        unknowns = plane_layout(mesh.node_count).unknown_count
         self.vector = PETSc.Vec().createSeq(unknowns, comm=PETSc.COMM_SELF)
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()
@@ -152,9 +152,8 @@ class Integrator:
         returned as a `RunEnding`, never raised.
 
         step: the first time step, or every time step of a scheme with equal steps, in tau2; 0 for the
-        default.
-        Tolerances are relative to the largest component of z, so that small and large motions are integrated
-        with the same relative accuracy.
+        default. Tolerances are relative to the largest component of z, so that small and large motions are
+        integrated with the same relative accuracy.
         """
         ts = self.ts
         scheme = self.scheme

@@ -31,12 +31,12 @@ def leading_mode(beam: Beam) -> LeadingMode:
     """The leading mode of the straight rod, from the transverse block of the Jacobian; the axial block is
     decoupled."""
     layout = beam.layout
-    rest = np.zeros(layout.unknowns)
+    rest = np.zeros(layout.unknown_count)
     J = layout.transverse_unknowns(layout.transverse_unknowns(beam.jacobian(rest)).T).T
     values, vectors = np.linalg.eig(J)
     # The second key selects the member of a complex pair with Im w > 0.
     k = int(np.lexsort((values.imag, values.real))[-1])
-    z = np.zeros(layout.unknowns, complex)
+    z = np.zeros(layout.unknown_count, complex)
     layout.transverse_unknowns(z)[:] = vectors[:, k]
     # The tip's y is linear in z about the straight rod, so the tip's 'velocity' along z is its deflection.
     tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))

@@ -145,10 +145,10 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
 
 @compiled
 def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
-    """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores it in
-    the context record `c`. at: address of scratch memory, into which PETSc writes
-    the addresses of three arrays. snes: handle of the stage's solver. X: handle of a vector
-    with any value of x.
+    """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores the
+    constant and the shift in the context record `c`. at: address of scratch memory, into which PETSc writes
+    the addresses of three arrays. snes: handle of the stage's solver. X: handle of a vector with any value of
+    x.
 
     In every time scheme the slope dx/dt is affine in x. The residual without f at any x and the shift, which
     PETSc passes with the matrix, therefore determine the equation.

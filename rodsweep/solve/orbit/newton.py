@@ -168,7 +168,9 @@ def largest_multiplier_difference(multipliers: Complex, others: Complex) -> floa
 def relative_change(orbit: Orbit, step: Array) -> float:
     """Largest relative change of n2, m3 and the period in the Newton step `step`, (N,): the largest change of
     each quantity, divided by the largest modulus of this quantity; inf if the step is not finite."""
-    return float(largest_relative_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.node_count))
+    return float(
+        largest_relative_change(orbit.values, step, orbit.form.unknown_count, orbit.form.mesh.node_count)
+    )
 
 
 @compiled_for_vectors

@@ -123,7 +123,7 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
 
 @compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Array:
-    """Compiled `tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
+    """Compiled `normalised_tangent`: derivative of the normalised values, (N + 1,). values, tangent: orbit
     values and derivative of the orbit values, (N,)."""
     squared = moment_inner_product(values, values, r)
     change = 2 * moment_inner_product(values, tangent, r)

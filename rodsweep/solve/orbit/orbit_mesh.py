@@ -95,7 +95,7 @@ class OrbitMesh:
     @property
     def unknown_count(self) -> int:
         """Number of unknowns of a state."""
-        return plane_layout(self.element_count * self.order).unknowns
+        return plane_layout(self.element_count * self.order).unknown_count
 
     @property
     def as_array(self) -> Array:
@@ -176,8 +176,9 @@ def cheapest_stage_count(accuracy: float) -> int:
 
 def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
-    the tails of the nearby orbit `orbit`; not coarser than `min_order` and `min_intervals`, and finer than
-    the mesh of `orbit` at most by `max_order_increase` and `max_interval_ratio`."""
+    the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_order` and
+    `min_intervals`, and finer than the mesh of `orbit` at most by `max_order_increase` and
+    `max_interval_ratio`."""
     present = mesh_of(orbit)
     tails = tails_of(orbit)
     aim_space = (

@@ -48,13 +48,13 @@ class Symmetry:
     def reversal_mask(self, layout: StateLayout) -> Array:
         """1 for components of a state that change sign under S, 0 for components that S leaves unchanged,
         (unknowns,)."""
-        return (1 - self.apply(np.ones(layout.unknowns), layout)) / 2
+        return (1 - self.apply(np.ones(layout.unknown_count), layout)) / 2
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_matrix(symmetry: Symmetry, layout: StateLayout) -> Array:
     """The cached matrix that `Symmetry.matrix` returns, (unknowns, unknowns)."""
-    return np.ascontiguousarray(symmetry.apply(np.eye(layout.unknowns), layout).T)
+    return np.ascontiguousarray(symmetry.apply(np.eye(layout.unknown_count), layout).T)
 
 
 NO_SYMMETRY = Symmetry(np.eye(3), 1)

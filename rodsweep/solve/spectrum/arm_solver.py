@@ -20,7 +20,7 @@ class ArmSolver(ShiftInvertSolver):
 
     def __init__(self, mesh: ArmMesh):
         self.pencil = ArmPencil(mesh)
-        n = self.pencil.unknowns
+        n = self.pencil.unknown_count
         super().__init__(self.pencil, np.full(self.pencil.node_count, 1 / self.pencil.node_count))
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 

@@ -43,8 +43,8 @@ class CandidateSettings(CompiledSettings):
     by |w|. A count at a distant line needs fewer nodes than at a near line. A line at `last_line_distance`
     follows in case another eigenvalue lies between w and the first line."""
     min_gap: float = 1e-6
-    """Two real parts are treated as equal if the relative gap between them is at most this: no line is drawn
-    between them."""
+    """No line is drawn between two real parts if their distance, divided by the modulus of the left real
+    part, is at most this."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_errors: float = 3.0

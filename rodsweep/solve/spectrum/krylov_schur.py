@@ -42,7 +42,7 @@ class UniformSolver(ShiftInvertSolver):
         if self.is_dense:
             self.dense_terms = self.pencil.dense_terms()
         self.loaded_gamma3 = -1.0
-        self.mass_diagonal: Array = np.ones(self.pencil.unknowns)
+        self.mass_diagonal: Array = np.ones(self.pencil.unknown_count)
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
         rod, deflection_ratio = _equivalent_filament(rod)

@@ -117,7 +117,7 @@ class UniformProblem(TransverseProblem):
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
         least the next finer mesh after `mesh`."""
         asked = resolution_for(float(waves.max()), accuracy)
-        return max(asked, finer_resolution(mesh), key=lambda each: each.unknowns)
+        return max(asked, finer_resolution(mesh), key=lambda each: each.unknown_count)
 
     def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`."""

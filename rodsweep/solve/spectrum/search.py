@@ -94,7 +94,7 @@ class Search:
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
         for turn in range(SEARCH_SETTINGS.max_meshes):
-            too_fine = self.mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns
+            too_fine = self.mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns
             if too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
                 break
             tight = self.needs_vectors or turn > 0
@@ -166,8 +166,8 @@ class Search:
         self.request_eigenvalues(more)
 
     def needs_eigenvalues_beyond_axis(self, found: Candidates) -> bool:
-        """Whether all modes in `found` grow, and eigenvalues with Re w <= 0 are needed: for a count if one
-        can succeed, else while fewer than `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
+        """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `found` grow. False
+        if no count can succeed and `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
@@ -183,8 +183,8 @@ class Search:
     def request_eigenvalues(self, requested: int) -> None:
         """Requests `requested` eigenvalues, and refines the mesh until it has enough unknowns for them."""
         while (
-            requested > self.mesh.unknowns // SEARCH_SETTINGS.min_unknowns_per_mode
-            and self.mesh.unknowns <= RESOLUTION_SETTINGS.max_unknowns
+            requested > self.mesh.unknown_count // SEARCH_SETTINGS.min_unknowns_per_mode
+            and self.mesh.unknown_count <= RESOLUTION_SETTINGS.max_unknowns
         ):
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.requested_count = requested

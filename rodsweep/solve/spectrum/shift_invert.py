@@ -92,7 +92,7 @@ class PencilPattern(Protocol):
         """Number of nodes without the clamp."""
 
     @property
-    def unknowns(self) -> int:
+    def unknown_count(self) -> int:
         """Number of rows of the pencil."""
 
 
@@ -117,7 +117,7 @@ class ShiftInvertSolver(ABC):
 
     def __init__(self, pattern: PencilPattern, mass: Array):
         self.node_count = pattern.node_count
-        n = pattern.unknowns
+        n = pattern.unknown_count
         package = sparse_package()
         self.is_dense = n <= KRYLOV_SETTINGS.max_dense_unknowns or package is None
         self.is_diagonal_entry = pattern.rows == pattern.columns

@@ -75,7 +75,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     best: Spectrum | None = None
     for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
-        if mesh.unknowns > RESOLUTION_SETTINGS.max_unknowns:
+        if mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
             break
         found = _leading_eigenvalues(problem, mesh, modes)
         if len(found.w) >= modes and len(before.w):
@@ -133,7 +133,7 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) 
             leading, before, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=by_rounding
         ):
             return _MeshEigenvalues(raw[order], order)
-        if 2 * requested > mesh.unknowns // TWO_MESH_SETTINGS.min_unknowns_per_mode:
+        if 2 * requested > mesh.unknown_count // TWO_MESH_SETTINGS.min_unknowns_per_mode:
             return _MeshEigenvalues(raw[:0], order[:0])
         before = leading
         requested = 2 * requested

@@ -55,7 +55,7 @@ def branch_of_auto(program, rod, setting, place):
     first = newton(near.on_mesh(uniform_mesh(1, order), 40, 5), 1e-10, memory).orbit
     (place / "rod").write_bytes(rod_file(first.form))
     (place / "start").write_bytes(start_file(first, 4 * intervals))
-    unknowns = first.form.unknowns
+    unknowns = first.form.unknown_count
     constants = CONSTANTS.format(
         unknowns=unknowns, intervals=intervals, most=most, step=step, longest=4 * step
     )

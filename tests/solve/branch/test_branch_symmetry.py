@@ -113,7 +113,7 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_cycle(here, ROUGH).orbit
     p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.node_count
-    V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
+    V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknown_count)
 
     def rate(_, x):
         write_rates_of_state(x, F, V, G, p)

@@ -65,7 +65,7 @@ def on_mesh(name, **changed):
 
 def moving(form, size, seed=0):
     """(state, V, G) of a random state."""
-    x = size * np.random.default_rng(seed).standard_normal(form.unknowns)
+    x = size * np.random.default_rng(seed).standard_normal(form.unknown_count)
     V, G = np.empty((2, 3, form.mesh.node_count + 1))
     write_balance(x, V, G, form.nodal_rod, form.mesh.matrices)
     return x, V, G
@@ -75,11 +75,11 @@ def moving(form, size, seed=0):
 def test_the_jacobian_is_the_derivative_of_the_rate(name):
     form = on_mesh(name)
     beam = Beam(form.rod, form.mesh)
-    z = 0.3 * np.random.default_rng(1).standard_normal(beam.unknowns)
+    z = 0.3 * np.random.default_rng(1).standard_normal(beam.unknown_count)
     h = 1e-6
     differences = [
         (beam.state_derivative(z + h * e) - beam.state_derivative(z - h * e)) / (2 * h)
-        for e in np.eye(beam.unknowns)
+        for e in np.eye(beam.unknown_count)
     ]
     J = beam.jacobian(z)
     assert np.abs(J - np.array(differences).T).max() < 1e-8 * np.abs(J).max()
@@ -272,7 +272,7 @@ def test_a_jump_of_factor_one_is_none():
 
 def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     form = on_mesh("swelling segments", F=40.0)
-    x = 20.0 * np.random.default_rng(3).standard_normal(form.unknowns)
+    x = 20.0 * np.random.default_rng(3).standard_normal(form.unknown_count)
     S = form.stresses(x)
     ((before, behind),) = stresses_beside_jumps(form.nodal_rod, S)
     (node,), (sides,) = form.nodal_rod.jumps, form.nodal_rod.jump_sides

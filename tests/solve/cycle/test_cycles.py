@@ -387,7 +387,7 @@ def test_extrema_are_those_of_a_dense_path():
 
 def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
-    m, stages = measures_of(CyclePath(half)), half.stage_states.reshape(-1, half.form.unknowns)
+    m, stages = measures_of(CyclePath(half)), half.stage_states.reshape(-1, half.form.unknown_count)
     power, weights = (
         np.empty((2, len(stages))),
         np.outer(interval_lengths(12), half.collocation.weights).ravel(),

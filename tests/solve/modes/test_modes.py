@@ -764,7 +764,7 @@ def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
 def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     """Y(1) = 0 is met at single points only: a made-up vector has it."""
     rod, pencil = rod_of(*FIG_2A), assemble_pencil(1, 12)
-    vectors = np.ones((pencil.unknowns, 3), complex)
+    vectors = np.ones((pencil.unknown_count, 3), complex)
     vectors[pencil.node_count - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
         scale = factors_to_unit_tip(*fields_of_vectors(vectors, pencil.displacement_factors(rod)))

@@ -38,14 +38,14 @@ def evolve(beam, z, duration, scheme=None):
 def bent(beam, size=1.0):
     """A state far from rest, smooth in u."""
     u = beam.mesh.node_positions
-    E = beam.strains(np.zeros(beam.layout.unknowns))
+    E = beam.strains(np.zeros(beam.layout.unknown_count))
     wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
     return beam.state_of_strains(E + size * (1 - u) * wave)
 
 
 def rough(beam):
     """A state that no mesh resolves."""
-    return bent(beam) + 0.01 * np.random.default_rng(1).standard_normal(beam.layout.unknowns)
+    return bent(beam) + 0.01 * np.random.default_rng(1).standard_normal(beam.layout.unknown_count)
 
 
 def injected_and_dissipated(beam, z):
@@ -254,7 +254,7 @@ def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
 def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
     beam, shift = Beam(ROD, uniform_mesh(1, 8)), 1e3
     made = integrator(beam.mesh, TimeScheme())
-    z, rows = bent(beam), list(range(beam.layout.unknowns))
+    z, rows = bent(beam), list(range(beam.layout.unknown_count))
     made.workspace.set_rod_and_tolerances(beam, 1e-8, 1e-8)
     made.workspace.base[:] = z
     state, slope = made.vector.duplicate(), made.vector.duplicate()

@@ -49,7 +49,7 @@ def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_posit
     beam = Beam(RUBBER, motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy))
     h, verdicts = 1e-3, []
     for bending in (1.0, 10.0, 14.0, 17.0, 20.0, 30.0):
-        z = np.zeros(beam.unknowns)
+        z = np.zeros(beam.unknown_count)
         beam.layout.stress_field(z, "m3")[3] = bending
         U = {(i, j): moved_energy(beam, z, i * h, j * h) for i in (-1, 0, 1) for j in (-1, 0, 1)}
         a = U[1, 0] - 2 * U[0, 0] + U[-1, 0]

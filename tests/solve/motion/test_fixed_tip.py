@@ -35,7 +35,7 @@ def test_the_tip_is_at_its_place(rod, place):
 def test_stretch_and_shear_are_those_of_the_straight_rod(rod):
     beam = beam_of(rod)
     held = beam.strains(bent_state_with_tip_at(beam, 0.4, 0.3))
-    assert held[:2] == pytest.approx(beam.strains(np.zeros(beam.unknowns))[:2], abs=1e-12)
+    assert held[:2] == pytest.approx(beam.strains(np.zeros(beam.unknown_count))[:2], abs=1e-12)
 
 
 @EACH_ROD
@@ -60,7 +60,7 @@ def test_a_mirrored_place_gives_the_mirrored_shape():
 @EACH_ROD
 def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
     beam = beam_of(rod)
-    length = beam.tip_coordinates(np.zeros(beam.unknowns))[0]
+    length = beam.tip_coordinates(np.zeros(beam.unknown_count))[0]
     x, y = beam.tip_coordinates(bent_state_with_tip_at(beam, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
         (

@@ -37,13 +37,13 @@ RODS = {
 def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
     form = StressForm(rod.with_values(gamma1=0.7), uniform_mesh(1, 8))
-    states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
+    states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknown_count))
     return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
 
 def velocities(orbit):
     """V of all stages, (K, s, 3, 9)."""
-    V, (n, G) = np.empty((*orbit.stage_states.shape[:2], 3, 9)), (orbit.form.unknowns, np.empty((3, 9)))
+    V, (n, G) = np.empty((*orbit.stage_states.shape[:2], 3, 9)), (orbit.form.unknown_count, np.empty((3, 9)))
     for place in np.ndindex(V.shape[:2]):
         write_rates_of_state(
             orbit.stage_states[place], np.empty(n), V[place], G, orbit.semidiscrete_equations
@@ -69,7 +69,7 @@ def dense_matrix(orbit, k):
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     orbit = orbit_with(rod, stages)
-    p, n = orbit.semidiscrete_equations, orbit.form.unknowns
+    p, n = orbit.semidiscrete_equations, orbit.form.unknown_count
     factors = MatrixMemory(NewtonWorkspace(), INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
@@ -120,7 +120,10 @@ def balances(orbit, name, change):
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     orbit = orbit_with(rod, 4)
-    along, columns = parameter_derivatives(orbit.form, name), np.empty((INTERVALS, 4, 3, orbit.form.unknowns))
+    along, columns = (
+        parameter_derivatives(orbit.form, name),
+        np.empty((INTERVALS, 4, 3, orbit.form.unknown_count)),
+    )
     p, V = orbit.semidiscrete_equations, np.empty((INTERVALS, 4, 3, 9))
     write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, columns)
     right = columns[:, :, 2]
@@ -159,7 +162,7 @@ def whole_matrix(matrix):
 @pytest.mark.parametrize("period, growth", [(0.03, 1e5), (0.05, 1e12)])
 def test_steps_keep_their_digits_however_much_perturbations_grow(period, growth):
     form = StressForm(RODS["soft"].with_values(F=150.0, gamma1=0.7), uniform_mesh(1, 8))
-    states = 0.3 * np.random.default_rng(3).normal(size=(61, form.unknowns))
+    states = 0.3 * np.random.default_rng(3).normal(size=(61, form.unknown_count))
     states -= 150 * form.layout.state_with_stresses(
         {"n1": np.ones(8)}
     )  # beside the straight rod, which is unstable

@@ -59,7 +59,7 @@ def test_multipliers_over_legs_keep_their_digits_below_a_product_of_1e15():
     """Each leg is similar to a diagonal matrix, so that the product has known eigenvalues."""
     n, legs, rng = 12, 4, np.random.default_rng(2)
     layout = plane_layout(4)
-    assert layout.unknowns == n
+    assert layout.unknown_count == n
     bases = [np.eye(n) + 0.3 * rng.standard_normal((n, n)) / np.sqrt(n) for _ in range(legs)]
     growths = 10.0 ** rng.uniform(-1, 1, (legs, n)) * np.geomspace(1e15, 1e-7, n) ** (1 / legs)
     turned = [*bases[1:], REFLECTION.matrix(layout) @ bases[0]]

@@ -17,7 +17,7 @@ from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
 def test_an_orbit_from_another_rank_is_the_same_to_the_last_bit(symmetry):
     """On its own mesh, of which the other rank has a copy, and on a finer one."""
     form = StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(2, 9))
-    states = np.random.default_rng(0).normal(size=(1 + 4 * 3, form.unknowns))
+    states = np.random.default_rng(0).normal(size=(1 + 4 * 3, form.unknown_count))
     orbit = Orbit.from_states(form, symmetry, 0.02, states, 3)
     sent = pickle.loads(pickle.dumps(orbit))
     own, finer = mesh_of(orbit), mesh_of(orbit).finer

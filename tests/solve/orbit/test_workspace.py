@@ -25,7 +25,7 @@ MOMENT = np.array([1.0, 0.0, 0.0])
 def orbit_with(stages):
     """Any states: what is tested holds for orbits and for what is none."""
     form = StressForm(ROD, uniform_mesh(1, 8))
-    states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
+    states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknown_count))
     return Orbit.from_states(form, REFLECTION, PERIOD, states, stages)
 
 

@@ -12,9 +12,9 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_count
 from rodsweep.solve.spectrum.path.arm_count import confirmed_count_at
-from rodsweep.solve.spectrum.path.arm_spectra import follow_stretch_of_arms
+from rodsweep.solve.spectrum.path.arm_spectra import follow_spectra_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
-from rodsweep.solve.spectrum.path.stretch import Stretch
+from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)
@@ -43,7 +43,7 @@ def agrees(found, i, rod):
 def test_followed_spectra_are_those_of_single_points(name):
     """The taper passes 1, where the rod is uniform, and F and k1 a double eigenvalue and a Hopf point."""
     values = np.array(LINES[name])
-    stretch = Stretch(Path(Rod(**{**CONE, name: float(values[0])}), name), values)
+    stretch = NeighbouringRods(Path(Rod(**{**CONE, name: float(values[0])}), name), values)
     found = solve_stretch(stretch, REQUEST)
     for i in np.linspace(0, len(values) - 1, COMPARED).astype(int):
         agrees(found, i, stretch.rod_at(int(i)))
@@ -51,7 +51,7 @@ def test_followed_spectra_are_those_of_single_points(name):
 
 def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
     rod = Rod(F=10.0, k1=300.0, k2=1e3, gamma3=1e-3, build=Build("neo_hookean", "swelling"))
-    stretch = Stretch(Path(rod, "F"), np.linspace(10, 200, 10))
+    stretch = NeighbouringRods(Path(rod, "F"), np.linspace(10, 200, 10))
     found = solve_stretch(stretch, REQUEST)
     assert found.certified.all()
     for i in (0, 9):
@@ -62,7 +62,7 @@ def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
 
 def test_a_cone_is_followed_and_proved_without_single_points():
     path = Path(Rod(**CONE), "F")
-    reached = follow_stretch_of_arms(path, np.linspace(5, 14, 32), REQUEST)
+    reached = follow_spectra_of_arms(path, np.linspace(5, 14, 32), REQUEST)
     assert len(reached.is_accepted) == 32
     assert reached.is_accepted.all()
 
@@ -73,7 +73,7 @@ def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
     count = arm_count.count_right_of
     monkeypatch.setattr(arm_count, "count_right_of", lambda *words: counted.append(words[0]) or count(*words))
     path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(20, 60, 160)
-    followed = [follow_stretch_of_arms(path, part, REQUEST) for part in np.split(values, 2)]
+    followed = [follow_spectra_of_arms(path, part, REQUEST) for part in np.split(values, 2)]
     accepted, unstable = (
         np.concatenate([getattr(part, name) for part in followed])
         for name in ("is_accepted", "unstable_count")
@@ -100,7 +100,7 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
         "confirmed_count_at",
         lambda *words: single.append(words[2]) or confirmed_count_at(*words),
     )
-    followed = follow_stretch_of_arms(path, values, REQUEST)
+    followed = follow_spectra_of_arms(path, values, REQUEST)
     assert followed.is_accepted.all()
     assert len(single) == len(values)
 
@@ -112,7 +112,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
         rod = random_arm(rng)
         values = np.linspace(0.4, 1.0, 24) * rod.F
         path = Path(rod.with_values(F=float(values[0])), "F")
-        reached = follow_stretch_of_arms(path, values, REQUEST)
+        reached = follow_spectra_of_arms(path, values, REQUEST)
         if reached is None:
             continue
         for i in np.flatnonzero(reached.is_accepted)[::8]:

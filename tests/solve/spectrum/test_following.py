@@ -14,7 +14,7 @@ from rodsweep.determinant.certificate.winding_number import count_right_of, phas
 from rodsweep.determinant.moving_line import IntervalEnd, examine_rectangle, proves_no_crossing
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Coefficients, Rod
-from rodsweep.solve.spectrum.path import stretch as stretch_of
+from rodsweep.solve.spectrum.path import neighbouring_rods
 from rodsweep.solve.spectrum.path.prediction import extrapolate_hermite
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -198,11 +198,11 @@ def test_a_count_that_disagrees_stops_what_is_followed(monkeypatch):
     """Where no strip is proved every point is counted; where that fails too each point begins anew."""
     whole = line("F", np.linspace(10, 40, 12), k1=1e4, k2=1e4, gamma3=1e-4)
     usual = solve_stretch(whole, REQUEST)
-    monkeypatch.setattr(stretch_of, "carry_count", lambda *words: 0)
+    monkeypatch.setattr(neighbouring_rods, "carry_count", lambda *words: 0)
     counted = solve_stretch(whole, REQUEST)
     assert counted.certified.all()
     assert (counted.elements == 0).all()
-    monkeypatch.setattr(stretch_of, "count_right_of", lambda at, rod: SimpleNamespace(number=None))
+    monkeypatch.setattr(neighbouring_rods, "count_right_of", lambda at, rod: SimpleNamespace(number=None))
     anew = solve_stretch(whole, REQUEST)
     assert anew.certified.all()
     for found in (counted, anew):

@@ -46,7 +46,7 @@ NEAR_AXIS_SETTINGS = NearAxisSettings()
 
 def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
     """The known eigenvalues, followed by further eigenvalues close to the imaginary axis with Im w up to
-    `top`, one of each conjugate pair, (n,).
+    `top`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`.
 
     known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm.
     """

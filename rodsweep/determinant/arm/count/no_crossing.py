@@ -39,8 +39,8 @@ from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 class ArmsOfInterval(NamedTuple):
     """Some arms of an interval: the middle arm, then the arms at both ends, then further arms.
 
-    known_eigenvalues: followed from arm to arm; known_errors: their errors; (n, m) each. squares,
-    weights: as in `ArmSamples`, (n, 4, points) and (points,). W, propagators: propagators of the arms, valid
+    known_eigenvalues: followed from arm to arm; known_errors: their errors; (n, m) each. squares, weights: as
+    in `ArmSamples`, (n, 4, points) and (points,). largest_w, propagators: W, and the propagators of the arms
     for |w| <= W, (n, elements, terms, PADDED).
     """
 

@@ -21,7 +21,7 @@ would lose the second solution in the rounding errors of the growing exponential
 Elements are solved by collocation at their Gauss points, for one power of w after another: the terms of the
 propagator satisfy C_n' = A_0 C_n + A_1 C_(n-1). `ARM_ELEMENT_SETTINGS.lane_count` elements are solved
 together. The last axis of arrays, WIDTH, combines the initial value, one of `MINORS`, and the element; loops
-over it are vector instructions. STAGES, LANES and MAX_TERMS are the settings of these names."""
+over it are vector instructions. STAGES, LANES, MAX_TERMS: settings `stages`, `lane_count`, `max_terms`."""
 
 from typing import NamedTuple
 

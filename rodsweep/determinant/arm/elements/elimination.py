@@ -1,4 +1,5 @@
-"""Elimination of the minors theta^m and y^m from the collocation equations of an element."""
+"""Elimination of the minors theta^m and y^m from the collocation equations of an element. STAGES: number of
+Gauss points of an element."""
 
 import numpy as np
 

@@ -58,7 +58,7 @@ class ArcLengthScale:
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
         """Derivative of `components` at an orbit, (3,), along a change of orbit values and parameter
         coordinate, (N + 1,)."""
-        deflection = float(deflection_row(orbit) @ change[: orbit.form.unknowns]) / self.deflection_unit
+        deflection = float(deflection_row(orbit) @ change[: orbit.form.unknown_count]) / self.deflection_unit
         return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate_unit])
 
 

@@ -1,7 +1,5 @@
-"""Curves through the folds and torus points on all rows of a phase diagram; each curve is followed only once.
-
-A curve is followed in two halves, independent work items, from a special point of a row.
-"""
+"""Curves through the folds and torus points on all rows of a phase diagram. Each curve is followed only once,
+in two halves from a special point of a row; each half is a work item."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -32,12 +30,12 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 @dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-    line, rows: axes of the parameter along a row and of the row parameter. special_points: points of all
-    rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i + 1
-    to smaller values."""
+    line_axis, row_axis: axes of the parameter along a row and of the row parameter. special_points: points of
+    all rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i
+    + 1 to smaller values."""
 
-    line: PlaneAxis
-    rows: PlaneAxis
+    line_axis: PlaneAxis
+    row_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
@@ -63,7 +61,7 @@ class SpecialBoundaries:
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line, self.rows, self.special_points, results)
+            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, results)
             seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
             yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
@@ -74,8 +72,10 @@ class SpecialBoundaries:
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
         index, behind = divmod(item, 2)
         one = self.special_points[index]
-        limits = SpecialCurveProblem(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
-        return _trace_half_curve(limits, one, located(one.row_index), self.special_points).arrays()
+        problem = SpecialCurveProblem(
+            one.kind, self.line_axis, self.row_axis, workspace, -1.0 if behind else 1.0
+        )
+        return _trace_half_curve(problem, one, located(one.row_index), self.special_points).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
@@ -86,7 +86,7 @@ class SpecialBoundaries:
         index, behind = divmod(item, 2)
         one = self.special_points[index]
         way = "down" if behind else "up"
-        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.rows.name} = {one.row_value:.5g} {way}"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.row_axis.name} = {one.row_value:.5g} {way}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +103,8 @@ class _CurvesOfKind:
     arrays of half curves, by number."""
 
     kind: SpecialKind
-    line: PlaneAxis
-    rows: PlaneAxis
+    line_axis: PlaneAxis
+    row_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
     results: Mapping[int, HalfCurveArrays]
 
@@ -113,7 +113,7 @@ class _CurvesOfKind:
         return sorted(left, key=self._position)[len(left) // 2]
 
     def missing_items(self, seed: int) -> list[int]:
-        """Numbers of the half curves still to be followed for the curve through special point `seed`."""
+        """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
         ahead = 2 * seed
         behind = 2 * seed + 1
         if ahead not in self.results:
@@ -124,8 +124,8 @@ class _CurvesOfKind:
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
-        """Numbers of half curves that may be needed later: from special points on the rows of the needed
-        curves."""
+        """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
+        where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
             (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._position
@@ -170,7 +170,7 @@ class _CurvesOfKind:
     def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
         ends = curve.points[0], curve.points[-1]
-        return sorted((p.row_coordinate, self.line.coordinate(p.at)) for p in ends)
+        return sorted((p.row_coordinate, self.line_axis.coordinate(p.at)) for p in ends)
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
@@ -179,12 +179,12 @@ class _CurvesOfKind:
         for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x = self.line.coordinate(end.at)
-            y = self.rows.coordinate(end.row_value)
+            x = self.line_axis.coordinate(end.at)
+            y = self.row_axis.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.rows.coordinate(one.row_value) - y) / (last.row_coordinate - y)
-            chord = x + share * (self.line.coordinate(last.at) - x)
-            distance = abs(chord - self.line.coordinate(one.at))
+            share = (self.row_axis.coordinate(one.row_value) - y) / (last.row_coordinate - y)
+            chord = x + share * (self.line_axis.coordinate(last.at) - x)
+            distance = abs(chord - self.line_axis.coordinate(one.at))
             if 0 <= share <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
@@ -198,7 +198,7 @@ def _trace_half_curve(
 ) -> TracedHalfCurve:
     """One half of a curve, from the point in `located` that agrees with special point `one`; `half` is None
     if no point agrees or after a failure. located: points of the row, with cycles. special: all points."""
-    width = abs(problem.line.parameter_slope(one.at))
+    width = abs(problem.line_axis.parameter_per_coordinate(one.at))
     same = [
         point
         for point in located
@@ -217,32 +217,32 @@ def _trace_half_curve(
     return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
 
 
-def _row_distance(limits: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row of special point `one` from a curve, in row lengths; inf if not near."""
-    if limits.kind != one.kind:
+def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
+    """Distance along the row of special point `one` from a curve of its kind, in row lengths; else inf."""
+    if problem.kind != one.kind:
         return math.inf
-    row_coordinate = limits.rows.coordinate(one.row_value)
+    row_coordinate = problem.row_axis.coordinate(one.row_value)
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= row_coordinate <= high or not _near_chord(limits, a, b, one):
+        if not low <= row_coordinate <= high or not _near_chord(problem, a, b, one):
             continue
         try:
-            crossing = limits.point_on_row(a, b, row_coordinate)
+            crossing = problem.point_on_row(a, b, row_coordinate)
         except Unsolvable:
             continue
         if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
             best = min(
                 best,
-                abs(limits.line.coordinate(crossing.parameter) - limits.line.coordinate(one.at)),
+                abs(problem.line_axis.coordinate(crossing.parameter) - problem.line_axis.coordinate(one.at)),
             )
     return best
 
 
-def _near_chord(limits: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+def _near_chord(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
-    x = limits.line.coordinate(one.at)
-    ends = sorted(limits.line.coordinate(p.parameter) for p in (a, b))
+    x = problem.line_axis.coordinate(one.at)
+    ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
     on_line = ends[0] - margin <= x <= ends[1] + margin

@@ -76,19 +76,19 @@ END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_mode
 
 @dataclass(frozen=True, slots=True)
 class SpecialCurveProblem:
-    """Curves of folds or torus points in a plane, as a problem of `follow_curve`. line, rows: axes of the
-    parameter along a row and of the row parameter. row_direction: 1 or -1, sign of the first step in the row
-    parameter."""
+    """Curves of folds or torus points in a plane, as a problem of `follow_curve`. line_axis, row_axis: axes
+    of the parameter along a row and of the row parameter. row_direction: 1 or -1, sign of the first step in
+    the row parameter."""
 
     kind: SpecialKind
-    line: PlaneAxis
-    rows: PlaneAxis
+    line_axis: PlaneAxis
+    row_axis: PlaneAxis
     workspace: NewtonWorkspace
     row_direction: float = 1.0
 
     def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
         """(points of the curve from `special` on row `row`, reason for its end); raises Unsolvable."""
-        first = first_point_of_curve(special, self.line.name, self.rows, row, self.workspace)
+        first = first_point_of_curve(special, self.line_axis.name, self.row_axis, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
         return with_parameter_errors(curve.solutions), self._end_reason(curve)
 
@@ -106,13 +106,13 @@ class SpecialCurveProblem:
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
-        words = f"{self.rows.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
+        words = f"{self.row_axis.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
         report(lambda: SolvePosition(words))
 
     def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The next point, with prediction error and cosine of the angle between the last two steps; raises
         Unsolvable. behind: points so far. length: arc length; on the first step, change of the row
-        coordinate."""
+        coordinate. On the first step the cosine is 1."""
         last = behind[-1]
         if len(behind) == 1:
             start = last.orbit
@@ -135,7 +135,7 @@ class SpecialCurveProblem:
         return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: SolvedPoint) -> CycleFamily:
-        return CycleFamily.near_point(self.kind, self.rows, point, self.workspace)
+        return CycleFamily.near_point(self.kind, self.row_axis, point, self.workspace)
 
     def _predicted_orbit(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
@@ -155,7 +155,7 @@ class SpecialCurveProblem:
             rod = known[-1].orbit.form.rod
             at = float(np.dot(weights, [point.parameter for point in known]))
             at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
-            values = {**rod.values, self.line.name: at, self.rows.name: self.rows.value(at_row)}
+            values = {**rod.values, self.line_axis.name: at, self.row_axis.name: self.row_axis.value(at_row)}
             load = rod.build.crushing_ratio(values["F"], values["k1"], values["taper"])
             return 1 - END_SETTINGS.crushing_margin / 2 - load
 
@@ -171,13 +171,13 @@ class SpecialCurveProblem:
         at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
         at = float(np.dot(weights, [point.parameter for point in points]))
         orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
-        changed = {self.line.name: at, self.rows.name: self.rows.value(at_row)}
+        changed = {self.line_axis.name: at, self.row_axis.name: self.row_axis.value(at_row)}
         return orbit_with_parameters(orbit, changed), at_row
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
         `Build.crushing_ratio` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
-        x = self.line.coordinate(point.parameter)
+        x = self.line_axis.coordinate(point.parameter)
         y = point.row_coordinate
         rod = point.orbit.form.rod
         crushing = 1 - END_SETTINGS.crushing_margin - rod.build.crushing_ratio(rod.F, rod.k1, rod.taper)
@@ -207,7 +207,8 @@ class SpecialCurveProblem:
     def _zero_of_margin(
         self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
     ) -> SolvedPoint:
-        """The point at which a margin is 0; raises Unsolvable. ends: the margin at `inner` and `outer`."""
+        """The point between `inner` and `outer` at which the margin with index `margin` is 0; raises
+        Unsolvable. ends: values of this margin at `inner` and `outer`."""
         found: dict[float, SolvedPoint] = {1.0: outer}
 
         def left(share: float) -> float:
@@ -219,8 +220,7 @@ class SpecialCurveProblem:
         ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
-        """Whether a curve of more than `min_loop_points` points passes its first point on the step to
-        `point`."""
+        """Whether a curve of over `min_loop_points` points passes its first point on the step to `point`."""
         last = behind[-1]
         step = point.step_from(last)
         back = point.step_from(behind[0])

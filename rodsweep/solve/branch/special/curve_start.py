@@ -35,13 +35,13 @@ CURVE_START_SETTINGS = CurveStartSettings()
 
 
 def first_point_of_curve(
-    special: SpecialPoint, line: str, rows: PlaneAxis, row: float, workspace: NewtonWorkspace
+    special: SpecialPoint, line_name: str, row_axis: PlaneAxis, row: float, workspace: NewtonWorkspace
 ) -> SolvedPoint:
     """The first point of a curve of special points, from the point `special` located on a row; raises
     Unsolvable.
 
-    line: name of the parameter along a row. rows: axis of the row parameter. row: value of the row parameter.
-    workspace: memory of Newton's matrices.
+    line_name: name of the parameter along a row. row_axis: axis of the row parameter. row: value of the row
+    parameter. workspace: memory of Newton's matrices.
     """
     orbit = special.orbit
     if orbit is None:
@@ -55,10 +55,10 @@ def first_point_of_curve(
     )
     orbit = rough.interpolated_orbit(orbit)
     least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
-    scale = ArcLengthScale.at_orbit(orbit, line, least)
+    scale = ArcLengthScale.at_orbit(orbit, line_name, least)
     matrix = BorderedMatrix(orbit, scale, workspace)
     ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
-    row_coordinate = rows.coordinate(row)
+    row_coordinate = row_axis.coordinate(row)
     start = SolvedPoint(
         orbit=orbit,
         scale=scale,
@@ -67,5 +67,5 @@ def first_point_of_curve(
         parameter=special.at,
         row_parameter=row,
     )
-    family = CycleFamily.near_point(special.kind, rows, start, workspace)
+    family = CycleFamily.near_point(special.kind, row_axis, start, workspace)
     return family.corrected_point_with_error(orbit, row_coordinate, ALONG_BRANCH)

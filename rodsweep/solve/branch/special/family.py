@@ -36,13 +36,13 @@ from .secant import SecantSearch
 class CycleFamily:
     """Two-parameter family of the cycles near a point of a curve of special points.
 
-    kind: fold or torus. rows: axis of the row parameter. scale: units of arc length. border: direction of the
-    branch in components (deflection, log period, parameter), (3,). has_small_cycles: whether the fold test
-    function is divided by the deflection, because a Hopf point is near. workspace: memory of Newton's
+    kind: fold or torus. row_axis: axis of the row parameter. scale: units of arc length. border: direction of
+    the branch in components (deflection, log period, parameter), (3,). has_small_cycles: whether the fold
+    test function is divided by the deflection, because a Hopf point is near. workspace: memory of Newton's
     matrices."""
 
     kind: SpecialKind
-    rows: PlaneAxis
+    row_axis: PlaneAxis
     scale: ArcLengthScale
     border: Array
     has_small_cycles: bool
@@ -50,16 +50,16 @@ class CycleFamily:
 
     @classmethod
     def near_point(
-        cls, kind: SpecialKind, rows: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
+        cls, kind: SpecialKind, row_axis: PlaneAxis, point: SolvedPoint, workspace: NewtonWorkspace
     ) -> "CycleFamily":
-        """The family of the cycles near `point` of a curve of special points of the kind `kind`. rows,
+        """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis,
         workspace: as in the class."""
         small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
-        return cls(kind, rows, point.scale, point.branch_direction, small, workspace)
+        return cls(kind, row_axis, point.scale, point.branch_direction, small, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
         """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
-        return orbit_with_parameters(orbit, {self.rows.name: self.rows.value(row_coordinate)})
+        return orbit_with_parameters(orbit, {self.row_axis.name: self.row_axis.value(row_coordinate)})
 
     def test_function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
         """The test function of this kind of special points, for cycles near the orbit of `matrix`."""

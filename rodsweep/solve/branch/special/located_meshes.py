@@ -13,9 +13,9 @@ def first_mesh(calibration: BranchCalibration, aim: float) -> OrbitMesh:
     after the special point.
 
     The number of stages is at least the number with the smallest cost at this accuracy. With s' instead of s
-    stages an error e in time becomes about e^(s'/s) on the same intervals, as in `wanted_mesh`. The intervals
-    are therefore chosen for the larger error that s stages may have: with the intervals that s stages need,
-    the first mesh of a cone had 3.8 times the necessary number, and 2.3 GB of factors.
+    stages an error e in time becomes about e^(s'/s) on the same intervals, as in `mesh_from_tails`. The
+    intervals are therefore chosen for the larger error that s stages may have: with the intervals that s
+    stages need, the first mesh of a cone had 3.8 times the necessary number, and 2.3 GB of factors.
     """
     planned = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * aim
     mesh = calibration.cheapest_mesh_for_parameter(planned)

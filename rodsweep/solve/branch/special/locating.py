@@ -51,9 +51,10 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, found: Conver
 
 
 def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
-    """Value of the test function of torus points, symmetry breakings or period doublings; raises Unsolvable
-    for torus points if all multipliers are real. h: multipliers over the solved part of the period,
-    (multipliers,)."""
+    """Value of the test function of torus points, symmetry breakings or period doublings. h: multipliers over
+    the solved part of the period, (multipliers,). Torus point: |m| - 1 for the complex multiplier m nearest
+    to the unit circle; raises Unsolvable if all multipliers are real. Otherwise: the smallest |m + 1|,
+    negative if an odd number of real multipliers is less than -1."""
     real = np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)
     if kind != SpecialKind.torus:
         # The product of h + 1 changes sign only where a real multiplier crosses -1.

@@ -152,6 +152,7 @@ class SolvedPoint:
 
     orbit: Orbit
     scale: ArcLengthScale
+    """Units of arc length, from the orbit of this point."""
     branch_direction: Array
     """Direction of the branch along the row, (3,), a unit vector in components (deflection, log period,
     parameter)."""

@@ -112,8 +112,8 @@ class SecantSearch:
         return None
 
     def _error_after(self, step: float, span: float) -> float:
-        """Distance from the curve after a last, linear step. span: distance between the two cycles of the
-        measured derivative; 0 if the derivative was not measured at this step."""
+        """Estimated distance from the curve after a last, linear step. span: distance between the two cycles
+        of the measured derivative; 0 if the derivative was not measured at this step."""
         if step == 0:
             return 0.0  # even if the curvature is unknown
         if span:
@@ -202,7 +202,7 @@ class SecantSearch:
             branch_direction=ahead / np.linalg.norm(ahead),
             row_coordinate=row_coordinate,
             parameter=getattr(orbit.form.rod, scale.parameter_name),
-            row_parameter=getattr(orbit.form.rod, family.rows.name),
+            row_parameter=getattr(orbit.form.rod, family.row_axis.name),
             secant_error=self._parameter_error(distance_error + AUGMENTED_SETTINGS.tolerance),
             normal_derivatives=derivatives,
         )

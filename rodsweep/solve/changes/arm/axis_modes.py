@@ -35,7 +35,8 @@ class AxisModes:
     """Modes of the arm at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the
     number of unstable modes.
 
-    The eigenvalues are the leading eigenvalues, or the eigenvalues near the imaginary axis, one of each pair.
+    w: either the leading eigenvalues, with both members of each pair, or the eigenvalues near the imaginary
+    axis, with one member of each pair.
     """
 
     p: float
@@ -106,7 +107,8 @@ class AxisModesOfPath:
             return None
 
     def _compute_modes(self, p: float, beside: Complex | None) -> AxisModes:
-        """The modes at path variable p; raises Unsolvable. beside: as in `modes_at`."""
+        """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
+        leading modes; raises Unsolvable. beside: as in `modes_at`."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
         near = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
         growing = 0 if near is None else near.unstable_count

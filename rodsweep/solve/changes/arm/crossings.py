@@ -36,7 +36,8 @@ class ArmCrossingSettings:
     """Two crossings may be equal if their parameter values differ by at most this multiple of the sum of
     their errors."""
     same_frequency: float = 1e-6
-    """Such crossings are equal if their frequencies differ relatively by at most this."""
+    """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
+    their frequencies is at most this."""
     smallest_interval: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
     smallest_step: float = 1e-12
@@ -146,8 +147,6 @@ class CrossingSearch:
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
         after a crossing do not confirm the crossing. length: length of the path.
-
-
         """
         parts: list[tuple[float, float]] = []
         start = left.p
@@ -229,7 +228,7 @@ class CrossingSearch:
         self, p: float, w: complex, slope: complex, blur: float, grows: bool
     ) -> Threshold | None:
         """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
-        opposite to `grows`, as of another pair. slope: dw/dp. blur: error of p."""
+        opposite to `grows`: w is then another pair. slope: dw/dp. blur: error of p."""
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
         kind = ChangeKind.hopf if grows != self.problem.path.is_compliance_path else ChangeKind.hopf_reverse

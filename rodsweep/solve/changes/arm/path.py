@@ -190,7 +190,7 @@ class ArmPath(PathProblem):
         return ArmProblem(self.path.rod_at(p)).count(line, known)
 
     def counted_unstable_modes(self, p: float, known: Complex, error: Array) -> int | None:
-        """Number of unstable modes at p by a count; None if undecided.
+        """Number of unstable modes at p, known already or by a count; None if the count is undecided.
 
         known: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
         error: errors of these eigenvalues, (n,).

@@ -54,9 +54,9 @@ class Seed:
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
-    """The seed of a threshold with values of both parameters; None for an overtaking (`leading_eigenvalue`),
-    because no boundary consists of overtakings. kind: value of `ChangeKind`. frequency, growth_rate: Im and
-    Re of the eigenvalue, in 1/tau2."""
+    """The seed of a threshold with values of both parameters; None for an overtaking of a real eigenvalue and
+    a pair, because no boundary consists of overtakings. kind: value of `ChangeKind`. frequency, growth_rate:
+    Im and Re of the eigenvalue, in 1/tau2."""
     if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
         return Seed(values, 0.0, frequency)
     if kind in (ChangeKind.onset, ChangeKind.real_again):
@@ -93,8 +93,8 @@ class _ChangeBoundaries:
         return _distance_from_curve(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
-        """Whether two curves are identical because they share an end; near a crushed rod a threshold may not
-        be found on its own curve."""
+        """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
+        is needed near a crushed rod, where a threshold may not be found on its own curve."""
         ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
         return (
             one.eigenvalue_sign == other.eigenvalue_sign
@@ -113,7 +113,7 @@ def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[Bound
 
 def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
-    axis; inf if the curve has no point near the threshold."""
+    axis; inf if the curve has another `eigenvalue_sign` or no point near the threshold."""
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))

@@ -157,7 +157,7 @@ def _fold_at(boundary: Boundary, there: BoundarySolution, axis: int, along: floa
     """The fold of coordinate `axis` at a point of a boundary. along: error of the point along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
-    units = [abs(a.parameter_slope(x)) for a, x in zip(axes, (first, second), strict=True)]
+    units = [abs(a.parameter_per_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]
     # Along the curve the extremal coordinate is stationary at the fold, the other coordinate is not.
     errors = [unit * (there.error if i == axis else there.error + along) for i, unit in enumerate(units)]
     growth_rate, frequency = boundary.eigenvalue(there.v[2])

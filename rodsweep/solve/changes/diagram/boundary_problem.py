@@ -138,7 +138,8 @@ class BoundaryCurveProblem:
         return BoundaryPoint.oriented(found, behind[-1].tangent)
 
     def is_closed_by(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
-        """Whether the curve passes its first point within the step from the last of `behind` to `there`."""
+        """Whether the curve has at least `min_loop_points` points and passes its first point, in the same
+        direction, within the step from the last of `behind` to `there`."""
         first = behind[0]
         last = behind[-1]
         step = float(np.linalg.norm(there.v - last.v))

@@ -62,7 +62,8 @@ class Calibration:
     error_growth: Array = field(default_factory=lambda: np.ones(2))
     """Estimated growth factors of the errors in space and in time since the measurement, (2,)."""
     extrema_growth: float = 1.0
-    """Estimated growth factor of the errors of extrema since the measurement, if larger than both."""
+    """Estimated growth factor of the errors of the extrema other than the largest y since the measurement;
+    used only if larger than both factors in `error_growth`."""
 
     def arrays(self) -> dict[str, Array]:
         """All fields except the growth factors as named arrays, for a checkpoint."""
@@ -137,7 +138,8 @@ class Calibration:
         return CycleErrors(*stated.tolist())
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh on which the rates predict the relative accuracy; else the next finer mesh."""
+        """The cheapest mesh with the present elements and stages for which the convergence rates predict
+        errors within a fraction of the relative accuracy; the next finer mesh if no such mesh is allowed."""
         present = self.mesh
         allowed = ORBIT_MESH_SETTINGS
         lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_order_decrease)
@@ -193,8 +195,8 @@ def calibration_of(
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
     orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If the mesh of `before` has
     the same elements but another order, the errors on both meshes give the rate in space; if the number of
-    intervals differs, the order in time. Otherwise the rates of `before` are kept. None: rates from the
-    coefficients and the stages."""
+    intervals differs, the order in time. Otherwise the rates of `before` are kept. If `before` is None, the
+    rates are estimated from the orbit's coefficients and the number of stages."""
     tails = tails_and_size(orbit)
     if before is None:
         decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay

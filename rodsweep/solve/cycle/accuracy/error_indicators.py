@@ -45,7 +45,7 @@ def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
 
 
 def _decay_in_one_part(partial: Complex) -> float:
-    """Smallest |ln h| of the nontrivial multipliers h; 1 if there is none. partial: multipliers over the
-    solved part of the period, with the trivial multiplier, (rank,)."""
+    """Smallest |ln h| of the nontrivial multipliers h; 1 without a nontrivial multiplier. partial:
+    multipliers over the solved part of the period, with the trivial multiplier, (rank,)."""
     exponents = np.sort(np.abs(np.log(partial[partial != 0])))[1:]  # the exponent of the trivial one is 0
     return float(exponents[0]) if len(exponents) else 1.0

@@ -71,15 +71,18 @@ class AmplitudeEquation:
         return growth + self.growth_excess * duration, self.linear_growth_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
-        """Whether a motion grows or decays slowly and has the period of the leading mode. times: (k,);
-        states: (k, unknowns)."""
+        """Whether a motion has the period of the leading mode, and its growth and linear growth per return
+        are at most `max_slow_growth` in modulus. times: (k,); states: (k, unknowns)."""
         return max(
             map(abs, self.growth_and_linear_growth(times, states))
         ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_at_linear_rate(self, times: Array, states: Array) -> bool:
-        """Whether a motion decays with the linear rate and the period of the leading mode. times: (k,);
-        states: (k, unknowns)."""
+        """Whether a motion decays to the straight rod: the linear growth is negative, the last return took a
+        period of the leading mode, and one of two conditions holds. First: the states shrink at every return,
+        and the last growth equals the linear growth within `linear_tolerance`. Second: c |z|^2 is within this
+        tolerance by the measured c, and the last growth is not larger than the linear growth, within
+        tolerance and noise. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         margin = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
@@ -94,7 +97,8 @@ class AmplitudeEquation:
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
-        cycle is near. times: (k,); states: (k, unknowns)."""
+        cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_noise`. times: (k,);
+        states: (k, unknowns)."""
         growth, linear = self.growth_and_linear_growth(times, states)
         known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (

@@ -32,7 +32,8 @@ NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()
 
 def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
     """Approximate orbit of the rod in `form` from the last period of the motion `run` of `beam`, on the mesh
-    of `beam`.
+    of `beam`. The orbit starts at the largest y of the tip, and is symmetric if the `relative_asymmetry` of
+    the motion is small.
 
     period: in tau2. turns: number of returns of the tip to theta = 0 per period. If the rod in `form` is a
     limiting rod, for example an inextensible rod, `beam` is a nearby rod.

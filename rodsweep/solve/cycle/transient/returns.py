@@ -118,7 +118,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
                 high = middle
         times.append(run.times[k] + h * low)
         states.append(np.array(_hermite_weights(low)) @ cubic)
-    return np.array(times), np.array(states).reshape(len(times), beam.layout.unknowns)
+    return np.array(times), np.array(states).reshape(len(times), beam.layout.unknown_count)
 
 
 def _hermite_weights(x: float) -> tuple[float, float, float, float]:

@@ -48,7 +48,8 @@ class TimeSchemeSettings:
 
     @property
     def fast_growth_scheme(self) -> TimeScheme:
-        """Time scheme of the first run of a fast-growing motion, whose measured growth is not used."""
+        """Time scheme of the first run of a fast-growing motion. A large tolerance suffices, because the
+        growth in this run is not used."""
         return TimeScheme("arkimex", "4", tolerance=self.fast_growth_tolerance)
 
     @property

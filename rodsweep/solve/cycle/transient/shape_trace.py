@@ -86,7 +86,7 @@ class ShapeTrace:
             min(int(self.run_times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
         )
         run_of = np.searchsorted([times[0] for times in self.run_times], due, side="right") - 1
-        states = np.empty((len(due), self.beam.unknowns))
+        states = np.empty((len(due), self.beam.unknown_count))
         for number, (times, steps) in enumerate(zip(self.run_times, self.run_states, strict=True)):
             within = run_of == number
             if within.any():

@@ -37,7 +37,9 @@ class Linearisation:
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
         self.orbit = orbit
         self.workspace = workspace
-        self._memory = MatrixMemory(workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknowns)
+        self._memory = MatrixMemory(
+            workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknown_count
+        )
         p = orbit.semidiscrete_equations
         factors = self._memory.factors
         along = (
@@ -59,8 +61,8 @@ class Linearisation:
 
     @cached_property
     def multipliers_over_solved_part(self) -> Complex:
-        """Multipliers over the solved part of the period, (rank,); first computed before another matrix is
-        assembled."""
+        """Multipliers over the solved part of the period, (rank,). Another matrix in the same workspace does
+        not change them."""
         return multipliers_over_solved_part(self._memory.propagator, self.orbit)
 
     def multipliers(self) -> Complex:

@@ -11,7 +11,7 @@ from ....determinant.arm.family import propagators_at
 from ....determinant.arm.hull.region import hull_at
 from ....determinant.parameter_path import Path
 from ..candidates import lines_for_count
-from .arm_stretch import ArmInterval
+from .arm_interval import ArmInterval
 from .carried_count import leading_eigenvalues
 from .prediction import Track
 

@@ -16,7 +16,7 @@ from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_po
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
 from ....determinant.parameter_path import Path
 from .arm_count import confirmed_line
-from .arm_stretch import ArmInterval
+from .arm_interval import ArmInterval
 from .carried_count import leading_eigenvalues
 
 
@@ -116,7 +116,8 @@ def _longest_chain(
 def _confirmed_line_at(
     path: Path, found: ArmInterval, followed: FollowedEigenvalues, at: tuple[int, float], modes: int
 ) -> float | None:
-    """`confirmed_line` at a point, for the line at most. at: (index of the point, real part of the line)."""
+    """Result of `confirmed_line` at a point, with `rightmost` = real part of the given line. at: (index of
+    the point, real part of the line)."""
     i, line = at
     here = followed.w[i], followed.error[i]
     return confirmed_line(path, found, float(found.p[i]), here, modes, line)

@@ -13,8 +13,8 @@ from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
 from .arm_count import confirmed_count_at
 from .arm_following import follow_eigenvalues_of_arms
-from .arm_stretch import ArmInterval, follow_interval
-from .arm_stretch_settings import ARM_STRETCH_SETTINGS
+from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_interval import ArmInterval, follow_interval
 from .carried_count import assess_points, leading_eigenvalues
 from .prediction import KnownRoots, Track, slice_track, start_track
 
@@ -32,7 +32,7 @@ class FollowedArms:
         complete at each point.
         """
         self.path = path
-        self.request = SpectrumRequest(modes, ARM_STRETCH_SETTINGS.accuracy, certify=True)
+        self.request = SpectrumRequest(modes, ARM_FOLLOWING_SETTINGS.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
         self._proved_by_p: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
@@ -105,7 +105,7 @@ class FollowedArms:
             growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
             # More modes may grow at p than at the nearest point.
             while requested < (
-                needed := min(max(modes, growing + ARM_STRETCH_SETTINGS.modes_beyond_growing), followed)
+                needed := min(max(modes, growing + ARM_FOLLOWING_SETTINGS.modes_beyond_growing), followed)
             ):
                 requested = needed
                 here, known = self._track_from_nearest_point(one, p, requested)
@@ -129,7 +129,7 @@ class FollowedArms:
         start = float(one.p[i])
         if p == start and modes <= self.request.modes:
             return slice_track(one.track, i, i + 1), int(one.proved_modes[i])
-        for steps in ARM_STRETCH_SETTINGS.steps_from_nearest:
+        for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
             track = start_track(one.track.w[i], len(grid))
             known = np.zeros(len(grid), np.int64)

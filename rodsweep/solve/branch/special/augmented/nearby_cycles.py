@@ -1,5 +1,5 @@
-"""Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function of
-`functions`. A new matrix is assembled only if the corrections converge slowly."""
+"""Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function from the
+module `functions`. A new matrix is assembled only if the corrections converge slowly."""
 
 from typing import Protocol
 

@@ -32,7 +32,7 @@ from ..candidates import line_for_proof
 from ..search import Search
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
-from .arm_stretch_settings import ARM_STRETCH_SETTINGS
+from .arm_following_settings import ARM_FOLLOWING_SETTINGS
 from .prediction import Track, slice_track, start_track
 
 
@@ -73,7 +73,7 @@ def follow_interval(
     best: ArmInterval | None = None
     for further in (
         number
-        for number in ARM_STRETCH_SETTINGS.further_modes
+        for number in ARM_FOLLOWING_SETTINGS.further_modes
         if before is None or number >= before.further_modes
     ):
         if best is not None and not (
@@ -83,14 +83,14 @@ def follow_interval(
             break
         found = (
             _follow_with_further_modes(path, p, request, further, before)
-            if len(p) >= ARM_STRETCH_SETTINGS.min_points
+            if len(p) >= ARM_FOLLOWING_SETTINGS.min_points
             else None
         )
         if found is not None and (best is None or _is_better_interval(found, best, request.modes)):
             best = found
         enough = best is not None and best.proved_points(
             request.modes
-        ) >= ARM_STRETCH_SETTINGS.min_proved_fraction * len(best.p)
+        ) >= ARM_FOLLOWING_SETTINGS.min_proved_fraction * len(best.p)
         if best is not None and enough and not _follows_too_few_modes(best):
             break
     return best
@@ -99,7 +99,7 @@ def follow_interval(
 def _follows_too_few_modes(found: ArmInterval) -> bool:
     """Whether too few modes are followed to prove all growing modes complete at every point."""
     growing = (found.track.w.real > 0).sum(axis=1).max()
-    return bool(growing + ARM_STRETCH_SETTINGS.modes_beyond_growing > found.track.w.shape[1])
+    return bool(growing + ARM_FOLLOWING_SETTINGS.modes_beyond_growing > found.track.w.shape[1])
 
 
 def _is_better_interval(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
@@ -147,17 +147,20 @@ def _follow_with_further_modes(
     if first is not None and before is not None:
         inside = int(((p >= before.family.p_low) & (p <= before.family.p_high)).sum())
         if (
-            inside >= ARM_STRETCH_SETTINGS.min_points
-            and ARM_STRETCH_SETTINGS.min_reused_w_factor * np.abs(first).max() <= before.family.largest_w
+            inside >= ARM_FOLLOWING_SETTINGS.min_points
+            and ARM_FOLLOWING_SETTINGS.min_reused_w_factor * np.abs(first).max() <= before.family.largest_w
         ):
             made = (before.family, before.hulls)
             n = inside
         else:
             n = min(
                 n,
-                max(ARM_STRETCH_SETTINGS.max_points_growth * len(before.p), ARM_STRETCH_SETTINGS.min_points),
+                max(
+                    ARM_FOLLOWING_SETTINGS.max_points_growth * len(before.p),
+                    ARM_FOLLOWING_SETTINGS.min_points,
+                ),
             )
-    while first is not None and made is None and n >= ARM_STRETCH_SETTINGS.min_points:
+    while first is not None and made is None and n >= ARM_FOLLOWING_SETTINGS.min_points:
         made = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
         n = n if made is not None else n // 2
@@ -188,17 +191,17 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     try:
         if not has_smooth_coefficients(path, low, high):
             return None
-        places = np.linspace(low, high, ARM_STRETCH_SETTINGS.hull_arms)
+        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hull_arms)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
-        W = ARM_STRETCH_SETTINGS.largest_w_factor * float(np.abs(first).max())
-        line = min(ARM_STRETCH_SETTINGS.largest_w_factor * float(first[modes - 1].real), 0.0)
+        W = ARM_FOLLOWING_SETTINGS.largest_w_factor * float(np.abs(first).max())
+        line = min(ARM_FOLLOWING_SETTINGS.largest_w_factor * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
             for k in COMPLETENESS_SETTINGS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
-        near = [end for end in ends if end <= ARM_STRETCH_SETTINGS.largest_w_factor * W]
+        near = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.largest_w_factor * W]
         family = interpolated_family(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None

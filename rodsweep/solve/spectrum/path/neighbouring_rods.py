@@ -22,14 +22,14 @@ from ..search import Search, SpectrumRequest
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
-from .arm_spectra import follow_stretch_of_arms
+from .arm_spectra import follow_spectra_of_arms
 from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
 from .following import follow_eigenvalues
 from .prediction import Track, slice_track, start_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SweepStretchSettings:
+class NeighbouringRodsSettings:
     """Settings for eigenvalues followed along neighbouring rods of a sweep."""
 
     further_modes: int = 2
@@ -37,11 +37,11 @@ class SweepStretchSettings:
     these additional modes."""
 
 
-SWEEP_STRETCH_SETTINGS = SweepStretchSettings()
+NEIGHBOURING_RODS_SETTINGS = NeighbouringRodsSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class NeighbouringRods:
     """Neighbouring rods of a sweep that differ in one parameter: `path` names the parameter, `values`, (n,),
     are its values.
     """
@@ -72,8 +72,8 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True)
-class FollowedStretch:
-    """Spectra of the rods of a stretch. is_solved: whether the spectrum of each rod is known, (n,); the
+class FollowedSpectra:
+    """Spectra of `NeighbouringRods`. is_solved: whether the spectrum of each rod is known, (n,); the
     remaining rods must be solved one by one.
     """
 
@@ -81,18 +81,18 @@ class FollowedStretch:
     is_solved: NDArray[np.bool_]
 
 
-def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretch:
+def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> FollowedSpectra:
     """The leading `request.modes` eigenvalues, with certificates, of the rods to which eigenvalues are
     followed and proved complete.
     """
     began = time.perf_counter()
-    n = len(stretch)
+    n = len(rods)
     columns = _unsolved_fields(n, request.modes)
     solved = np.zeros(n, np.bool_)
     start = 0
     patience = 1
     while start < n:
-        found = _followed_eigenvalues(stretch, start, request)
+        found = _followed_eigenvalues(rods, start, request)
         if found is None:
             # If no proof succeeds, for example without a bound, following is tried less and less often.
             start += patience
@@ -100,14 +100,14 @@ def follow_stretch(stretch: Stretch, request: SpectrumRequest) -> FollowedStretc
             continue
         here = slice(start, start + len(found.is_accepted))
         columns["eigenvalues"][here] = found.w
-        columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, stretch.path.rod)
+        columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, rods.path.rod)
         columns["unstable_count"][here] = found.unstable_count
         columns["certified"][here] = True
         solved[here] = found.is_accepted
         start = here.stop
         patience = 1
     seconds = np.full(n, (time.perf_counter() - began) / max(1, int(solved.sum())))
-    return FollowedStretch(Spectrum(seconds=seconds, **columns), solved)
+    return FollowedSpectra(Spectrum(seconds=seconds, **columns), solved)
 
 
 def _unsolved_fields(n: int, modes: int) -> dict[str, Any]:
@@ -125,23 +125,25 @@ def _unsolved_fields(n: int, modes: int) -> dict[str, Any]:
     }
 
 
-def _followed_eigenvalues(stretch: Stretch, start: int, request: SpectrumRequest) -> FollowedPoints | None:
+def _followed_eigenvalues(
+    rods: NeighbouringRods, start: int, request: SpectrumRequest
+) -> FollowedPoints | None:
     """Eigenvalues followed from the rod with index `start` as far as possible, with counts; None if the first
     rod fails, or for a uniform rod of nonlinear material, which is solved as an equivalent linear rod."""
-    rod = stretch.path.rod
-    varies = stretch.path.name == "taper"
+    rod = rods.path.rod
+    varies = rods.path.name == "taper"
     if rod.is_uniform and not (rod.is_uniform_and_linear or varies):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
     if varies or not rod.is_uniform_and_linear:
-        return follow_stretch_of_arms(stretch.path, stretch.path_variables[start:], request)
-    seed = _first_eigenvalues(stretch.rod_at(start), request)
+        return follow_spectra_of_arms(rods.path, rods.path_variables[start:], request)
+    seed = _first_eigenvalues(rods.rod_at(start), request)
     if seed is None:
         return None
     first, complete = seed
     modes = request.modes
-    rest = Stretch(stretch.path, stretch.values[start:])
+    rest = NeighbouringRods(rods.path, rods.values[start:])
     track = start_track(first, len(rest))
-    n = follow_eigenvalues(track, rest.coefficients, rest.path_variables, stretch.path.direction, modes)
+    n = follow_eigenvalues(track, rest.coefficients, rest.path_variables, rods.path.direction, modes)
     if n == 0:
         return None
     track = slice_track(track, 0, n)
@@ -151,7 +153,9 @@ def _followed_eigenvalues(stretch: Stretch, start: int, request: SpectrumRequest
     return FollowedPoints(*leading_eigenvalues(reached, modes), unstable, good)
 
 
-def _proved_counts_along(stretch: Stretch, track: Track, modes: int, complete: int) -> NDArray[np.int64]:
+def _proved_counts_along(
+    rods: NeighbouringRods, track: Track, modes: int, complete: int
+) -> NDArray[np.int64]:
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
 
@@ -159,19 +163,19 @@ def _proved_counts_along(stretch: Stretch, track: Track, modes: int, complete: i
     point. If a proof does not carry the number to the next point, a new count there is tried.
     """
     n = len(track.w)
-    coefficients = stretch.coefficients[:n]
-    p = stretch.path_variables[:n]
+    coefficients = rods.coefficients[:n]
+    p = rods.path_variables[:n]
     known = np.zeros(n, np.int64)
     known[0] = complete
     at = 0
     while True:
         rest = slice_track(track, at, n)
-        at += carry_count(rest, coefficients[at:], p[at:], stretch.path.direction, modes, known[at:])
+        at += carry_count(rest, coefficients[at:], p[at:], rods.path.direction, modes, known[at:])
         if at == n - 1:
             break
         gap = widest_gap(track, at + 1, modes)
         line = float(line_in_gap(track, at + 1, gap)[0]) if gap else 0.0
-        if not gap or count_right_of(line, stretch.rod_at(at + 1)).number != gap:
+        if not gap or count_right_of(line, rods.rod_at(at + 1)).number != gap:
             break
         at += 1
         known[at] = gap
@@ -183,7 +187,7 @@ def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int
     follow, (m,), without unpaired complex eigenvalues. complete: number of eigenvalues proved complete.
     """
     try:
-        modes = request.modes + SWEEP_STRETCH_SETTINGS.further_modes
+        modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes
         search = Search(rod, replace(request, modes=modes - 1, certify=True), requested=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
@@ -206,4 +210,6 @@ def warm_up() -> None:
     """Loads compiled code and creates the solver objects, so that the first sweep takes no extra time."""
     warm_up_search()
     path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
-    follow_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))
+    follow_spectra(
+        NeighbouringRods(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True)
+    )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmStretchSettings:
+class ArmFollowingSettings:
     """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls of
     spectra.
     """
@@ -14,8 +14,8 @@ class ArmStretchSettings:
     first number, fewer than `min_proved_fraction` of the points are proved or too few growing modes are
     followed."""
     min_proved_fraction: float = 0.5
-    """More modes are followed if the fraction of the points whose modes are proved complete is below this,
-    unless counts follow, provided that more modes prove a further point."""
+    """More modes are followed if the modes are proved complete at less than this fraction of the points, no
+    counts follow, and more modes would prove a further point."""
     min_unproved_points: int = 64
     """Minimum number of points without a proof for which hulls are computed at more arms."""
     hull_arms_for_unproved: int = 49
@@ -44,4 +44,4 @@ class ArmStretchSettings:
     interpolated."""
 
 
-ARM_STRETCH_SETTINGS = ArmStretchSettings()
+ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()
