@@ -118,7 +118,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
         *draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
     ]
     draw_straight_rod(upper, rod)
-    if not rod.hidden:
+    if not rod.hidden_count:
         for ranges, (colour, word) in (
             (rod.coexistence, COEXISTENCE_LOOK),
             (rod.two_cycles, TWO_CYCLES_LOOK),

@@ -22,7 +22,7 @@ from ....config.arm.axes import CHANGED_PARAMETER
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ....sweep.points.points import ParameterLine
-from ...hopf_points import LocatedChange, StoredChanges
+from ...hopf_points import LocatedThreshold, StoredThresholds
 from ..style import (
     LABELS,
     draw_coloured_cells,
@@ -207,8 +207,8 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, other = points.names
-    stored = StoredChanges(view, name)
+    stored = StoredThresholds(view, name)
     for value, at in zip(points.y, points.point_indices, strict=True):
         row = ParameterLine(name, points.common_parameters | {other: float(value)}, points.x, at)
-        located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedChange))
+        located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

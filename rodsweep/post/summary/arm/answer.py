@@ -39,7 +39,7 @@ def arm_answer(view: View, done: np.ndarray) -> Lines:
 
 
 def _validity_lines(view: View, done: np.ndarray) -> Lines:
-    """Answer about the points in `done` to which the model applies, or else about all; a line on validity."""
+    """Line on validity; answer for the points in `done` within the model (for all points if none is)."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return (
