@@ -155,7 +155,8 @@ class ParameterLine:
 def lines_along(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
     """Yields the lines of points along the parameter `name`, in the order of their first points.
 
-    Points at which the parameter is inf are left out. columns: each parameter at every point, (points,).
+    Points at which the parameter is inf or NaN are left out. columns: each parameter at every point,
+    (points,).
     """
     x = columns[name]
     others = [other for other in columns if other != name]
