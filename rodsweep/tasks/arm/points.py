@@ -84,7 +84,7 @@ class RepeatedOutcome:
 
 def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     """Number of the rod at each point of a grid over an arm's quantities, (points,); equal rods have equal
-    numbers. None if all rods differ.
+    numbers. None if all rods differ, and for points that are not such a grid.
 
     Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes no
     parameter if the arm has no load or a load relative to flutter.

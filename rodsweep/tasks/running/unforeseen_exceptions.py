@@ -157,7 +157,8 @@ class TracebackLog:
         self.append_exception(points, error)
 
     def append_exception(self, place: str, error: Exception) -> None:
-        """Appends the exception of points or of a work item to the log.
+        """Appends the exception of points or of a work item to the log, unless this rank has logged
+        MAX_LOGGED_EXCEPTIONS. If `strict`, raises the exception again.
 
         place: text naming the points or the work item. If this rank has logged the same traceback before,
         only the last line of the traceback is appended.
