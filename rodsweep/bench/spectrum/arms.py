@@ -82,9 +82,8 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem.
-    peers: contenders of the peers. rounds: number of timed rounds.
-    """
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the eigenproblem.
+    peers: contenders of the peers. rounds: number of timed rounds."""
     measurements = []
     for name, rod in ARM_RODS.items():
         judge = partial(_error_field, exact_arm_spectrum(rod))

@@ -68,7 +68,8 @@ class Effect:
 
     name: str
     value: Array
-    """Ratio of the neglected effect to an effect in the model; nan for an arm at rest."""
+    """Ratio of the neglected effect to an effect in the model; nan if unknown, as inertia of an arm at
+    rest."""
     limit: float
     """The model does not apply if `value` is larger than this."""
     viscosity_factor: Array
@@ -84,7 +85,8 @@ class Effect:
 
     @property
     def validity(self) -> NDArray[np.int8]:
-        """`Validity` of the model in view of this effect, integers, (...,); `applies` for an arm at rest."""
+        """`Validity` of the model in view of this effect, integers, (...,); `applies` where `value` is
+        nan."""
         return (self.value_over_limit > DOUBTFUL_RATIO).astype(np.int8) + (self.value_over_limit > 1.0)
 
 
