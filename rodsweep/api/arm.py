@@ -35,8 +35,8 @@ EXCLUSIVE_QUANTITIES = (
     (("segments",), (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of mutually exclusive sets of quantities. If `Arm.replace` is called with a quantity of one set, all
-quantities of the second set are removed."""
+"""Pairs of mutually exclusive sets of quantities. If `Arm.replace` is called with a quantity of either set,
+all quantities of the other set are removed."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)

@@ -154,9 +154,9 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
         dimensions = (*points, *variable.extra)
         if variable.name not in data or data[variable.name].dims != dimensions:
             raise InputError(
-                f"the data are not a whole result: they lack {variable.name} with the dimensions "
-                f"{', '.join(dimensions)}; give the whole result and select points with at={{...}}, or draw "
-                "a selection with xarray's own plot"
+                f"the data are not a complete result: they lack {variable.name} with the dimensions "
+                f"{', '.join(dimensions)}; give the complete result and select points with at={{...}}, or "
+                "draw a selection with xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
     typed = {

@@ -92,7 +92,7 @@ def brief_text(printed: PrintedAnswer) -> str:
 def brief_html(printed: PrintedAnswer) -> str:
     """Short HTML of an answer, with the content of `brief_text`."""
     parts = [_html_heading(printed)]
-    if pairs := _number_pairs(printed):
+    if pairs := _main_number_texts(printed):
         parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
     columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
     if columns:
@@ -152,7 +152,7 @@ def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     )
 
 
-def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
+def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     """(name, value, error with sign, unit), as texts, for each main number of the task that has a value."""
     pairs = []
     for name in printed.headline.numbers:
@@ -168,7 +168,7 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
     value.
     """
     room = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
-    pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
+    pairs = _main_number_texts(printed)[: max(room, MIN_ROWS)]
     if not pairs:
         return []
     cells = [column_cells((), column) for column in zip(*pairs, strict=True)]
@@ -180,7 +180,8 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     """Returns (columns of the main list, number of rows of the complete list).
 
     room: maximum number of rows in a column. A column consists of the cells name, unit, and values; errors
-    form a separate column. Columns that would make a line longer than WIDTH are omitted.
+    form a separate column. The first column that would make a line longer than LINE_WIDTH, and all later
+    columns, are omitted. Returns ([], 0) for a task without a main list.
     """
     digits = printed.rod.list_texts.get(printed.headline.table)
     if digits is None:
@@ -203,7 +204,8 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
 
 
 def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
-    """Lines of the main list, after an empty line. room: maximum number of lines."""
+    """Lines of the main list, after an empty line; empty if the list has no rows. room: desired maximum
+    number of lines; at least MIN_ROWS rows are printed."""
     rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
     columns, count = _brief_cells(printed, rows)
     if count == rows + 1:  # the line "and 1 more" has room for the row
