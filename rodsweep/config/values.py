@@ -146,9 +146,8 @@ class Axis(StrictSection):
 
     @property
     def is_logarithmic(self) -> bool:
-        """Whether the axis has log spacing, or is a list of positive values over more than a decade, inf left
-        out.
-        """
+        """Whether the axis has log spacing, or is a list of positive values whose finite values span more
+        than a decade."""
         if self.values is None:
             return self.spacing == "log"
         finite = [value for value in self.values if value < inf]
