@@ -89,11 +89,11 @@ class JoinedFile:
     def _is_rounding_error(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
-        """Whether the difference of two values of the variable `name` is taken for rounding error.
+        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR.
 
-        Never for `status`, nor if there are neither different BLAS kernels nor stretches; otherwise always
-        for error estimates and numbers that are not floating-point. first, second: the values. sources:
-        headers of their files.
+        Always True for error estimates and values that are not floating-point; always False for `status`, and
+        without stretches if one BLAS kernel computed all points. first, second: the values. sources: headers
+        of their files.
         """
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
