@@ -147,7 +147,7 @@ class Arm(SlenderArm):
         Thresholds, criticality, branches of cycles, loads with two stable states, modes at the thresholds,
         and three cycles. The arm needs no load; the kind of a given load, pressure or force, is used for all
         loads in the portrait. F_max: largest dimensionless load, that is, the load divided by the arm's
-        `load_scale`.
+        `load_scale`. accuracy and progress are as for `SoftRod.portrait`.
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest

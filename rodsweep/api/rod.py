@@ -108,7 +108,8 @@ class SoftRod:
 
     @property
     def _given_material(self) -> dict[str, Any]:
-        """The keys of the section `material` that differ from their defaults, with their values."""
+        """The keys of the section `material` that differ from their defaults, with their values; empty if
+        none differs."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @refusing_wrong_arguments("rod.spectrum(modes=4)")
@@ -150,7 +151,9 @@ class SoftRod:
         """All results for the rod up to `F_max`, in a picture and a paragraph.
 
         Thresholds, criticality, branches of cycles, ranges with two stable states, modes at the thresholds,
-        and three cycles. Instead of a result that cannot be solved, the portrait states the reason.
+        and three cycles. Instead of a result that cannot be solved, the portrait states the reason. accuracy:
+        relative accuracy of the cycles, or None for the defaults. progress: whether to display progress;
+        None: only in a terminal or a notebook.
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest

@@ -100,7 +100,8 @@ class Page:
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Requests the shape with the tip held at `tip`, in L ("bent"), or the motion after release."""
+        """Requests the shape with the tip held at `tip`, in L, or the motion after the tip is released. kind:
+        the kind of question, one of TIP_KINDS; questions of the other kinds are cancelled."""
         for other in kinds.TIP_KINDS:
             if other != kind:
                 self._cancel_question(other)

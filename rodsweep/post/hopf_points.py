@@ -127,7 +127,8 @@ class StoredThresholds:
         return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 
     def thresholds_on(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
-        """Thresholds on a line of points, in increasing order of the parameter.
+        """Thresholds on a line of points, in increasing order of the parameter; an empty list for a line
+        without points.
 
         Two neighbouring points bracket a change of stability if their growth rates differ in sign and the
         number of located changes of stability between them is even, because a search failed.

@@ -73,8 +73,8 @@ class FigureChoices(TypedDict, total=False):
 
 def _draw_and_describe(request: FigureRequest) -> str:
     """Writes the figure and returns a description of the figure. If quantities of an arm vary and no other
-    kind of figure is requested, the figure shows results over these quantities.
-    """
+    kind of figure is requested, the figure shows results over these quantities. InputError if roots are
+    requested for another task than spectrum."""
     if can_draw_arm_map(request):
         return draw_arm_map(request)
     first = request.views[0]

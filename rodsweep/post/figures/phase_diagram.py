@@ -162,8 +162,8 @@ def _is_crushed_at_k1(view: View, line: str, row: str) -> bool:
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
     """Covers the region x > y, in which the force x crushes the rod with k1 = y, and draws the line x = y;
-    returns a list with the legend entry. x, y: values along the axes.
-    """
+    returns a list with the legend entry, empty if no point of the plane is crushed. x, y: values along the
+    axes, increasing."""
     if x[-1] <= y[0]:
         return []
     ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)

@@ -67,7 +67,7 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        """Creates, continues or extends the file; moves other journals away. May raise InputError."""
+        """Creates, replaces, continues or extends the file, or refuses it; moves other journals away."""
         if fresh or not self.path.exists():
             self._create(fresh)
         else:

@@ -102,7 +102,8 @@ class _Guard:
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
     def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Result of a stretch; after an unforeseen exception every point is left to be solved alone."""
+        """Result of a stretch of points, at `indices`. After an unforeseen exception the result has fill
+        values, and states of every point that the point must be solved alone."""
         assert self.guarded.stretched is not None
         try:
             return self.guarded.stretched[1](indices)

@@ -185,7 +185,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 
     Along each row the growth rate is interpolated linearly between the points of the file and the located
     Hopf points; between rows, linearly on the scale of y. A contour therefore passes through the located Hopf
-    points of every row.
+    points of every row. Without a change of sign of the growth rate, the list is empty.
     """
     (x, x_back), (y, y_back) = (axis_coordinates(values) for values in (points.x, points.y))
     to_scale = np.log if is_logarithmic(points.x) else np.asarray

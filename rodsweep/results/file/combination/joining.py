@@ -235,7 +235,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
 
 
 def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
-    """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
+    """Copy of the plan with the attributes and status flags of the first file, and the joined config."""
     text = config_yaml(config)
     resolved = resolved_config(config)
     if max(len(text), len(str(resolved))) > MAX_ATTRIBUTE_LENGTH:

@@ -193,7 +193,8 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
 
 
 def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
-    """Marks points without a known amplitude at the top of a panel; returns the statuses of these points."""
+    """Marks points without a known amplitude at the top of a panel, in the colour of the branch; returns the
+    statuses of these points. Points with status missing are not marked."""
     lost = ~np.isin(branch.status_names, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
