@@ -75,8 +75,8 @@ class Arm(SlenderArm):
     def replace(self, **changed: GivenQuantity | None) -> "Arm":
         """A copy of the arm with changed quantities.
 
-        A new force removes the pressure; width and height remove the radius; segments remove radius, width,
-        height and length.
+        The value None removes a quantity. A new force removes the pressure; width and height remove the
+        radius; segments remove radius, width, height and length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE_QUANTITIES:

@@ -40,8 +40,8 @@ ENGINE = "h5netcdf"
 @one_at_a_time
 @refusing_wrong_arguments('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
-    """The Dataset of a complete result file, read into memory, including the points that a running sweep has
-    already solved.
+    """The Dataset of a result file, read into memory. The points that a running or interrupted sweep has
+    already solved are included.
 
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """

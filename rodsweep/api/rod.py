@@ -42,12 +42,11 @@ ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa",
 class SoftRod:
     """A slender soft rod in a viscous fluid with a follower force at its tip, in units of its length and k3.
 
-    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which solve for F or vary F.
-    k1: stretch stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid rod. gamma3: rotational drag,
-    gamma2 L^2. gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not
-    given. taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean".
-    section: "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to
-    lists.
+    F: follower force, in k3/L^2; not needed for thresholds, criticality and branch, which solve for F or vary
+    F. k1, k2: stretch and shear stiffness, in k3/L^2, inf for a rigid rod. gamma3: rotational drag, in gamma2
+    L^2. gamma1: axial drag, in gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not given.
+    taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean". section:
+    "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to lists.
 
     Every task is a method with the task's name. It takes the options of the config as keywords, with the same
     defaults, and returns an `Answer`. Raises InputError, with the command line's message, for values outside

@@ -100,8 +100,8 @@ class Page:
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Requests the shape with the tip held at `tip`, in L, or the motion after the tip is released. kind:
-        the kind of question, one of TIP_KINDS; questions of the other kinds are cancelled."""
+        """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
+        released there (kind "motion"). A question of the other kind is cancelled."""
         for other in kinds.TIP_KINDS:
             if other != kind:
                 self._cancel_question(other)

@@ -45,7 +45,8 @@ class PrintedAnswer:
     numbers: tuple[Column, ...]
     """Variables with a single value, as columns with one row."""
     absent_names: tuple[str, ...]
-    """Names of the variables that have no value for this rod."""
+    """Names of the variables that have no value for this rod; empty unless the status is 0, that is,
+    success."""
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
     row_counts: Mapping[str, int]
