@@ -103,9 +103,8 @@ class StoredAnswers:
         return values
 
     def _matching_points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
-        """Indices of the points of the file that have the parameters of `state`; the parameters in `free` may
-        have any value.
-        """
+        """Indices, (n,), of the points of the file that have the parameters of `state`; the parameters in
+        `free` may have any value."""
         same = np.ones(self.data["status"].size, dtype=bool)
         for name, text in state.values.items():
             if name not in free:

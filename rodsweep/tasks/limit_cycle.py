@@ -1,4 +1,5 @@
-"""The task limit_cycle: the limit cycle of the nonlinear rod at every point, or its return to rest."""
+"""The task limit_cycle: the limit cycle of the nonlinear rod at every point, or the return of the rod to
+rest."""
 
 from dataclasses import dataclass, replace
 from math import isfinite, nan

@@ -68,7 +68,7 @@ FAILED_COLUMNS = dict.fromkeys(
 
 @dataclass(frozen=True, eq=False)
 class AccurateCycle:
-    """Reference cycle on a mesh with errors of REFERENCE_ACCURACY.
+    """Reference cycle on a mesh with the relative accuracy REFERENCE_ACCURACY.
 
     orbit: the cycle. period: in tau2. tip_y_max: largest y of the tip in L.
     """
@@ -112,7 +112,7 @@ class SweptRod:
 
 def swept_rod(point: Rod, accuracy: float) -> SweptRod:
     """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
-    of the cycles."""
+    relative accuracy of the cycles."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:

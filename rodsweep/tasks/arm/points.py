@@ -163,7 +163,8 @@ class SkippingSolver:
     layout: Layout
 
     def solver_of_all_points(self) -> Solver:
-        """The solver of all points, with or without a rod."""
+        """The solver of all points. It solves points with a rod, and gives fill values to the other
+        points."""
         statuses = (*self.rod_solver.statuses, *NoRodStatus)
         return self.rod_solver.with_wrapper(
             self._solve, self._solve_stretch, record=self._record, statuses=statuses

@@ -42,7 +42,7 @@ PlanMaker = Callable[[Config, Points], Plan]
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """`plan` of the joined file. point_maps: map from the points of each source to the points of the plan."""
+    """File joined from `sources`. point_maps: map from the points of each source to the points of `plan`."""
 
     plan: Plan
     sources: Sequence[ResultHeader]
@@ -193,8 +193,8 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
     """Config of the first file, for grids with the axes of the joined points. meant:
-    `Config.settings_of_results` of the first file's config.
-    """
+    `Config.settings_of_results` of the first file's config; its options of the task replace those of the
+    config."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
