@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
-from ..results.file.view import sentences_in
+from ..results.file.view import status_sentences_in
 from .scales import SCALES
 from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, flag_words
@@ -142,7 +142,7 @@ class StoredAnswers:
         found: AnswerVariables = {str(name): array.values for name, array in point.variables.items()}
         u = point["u"].values
         return found | {
-            "status": status, "sentence": sentences_in(self.data.attrs).get(status, ""),
+            "status": status, "sentence": status_sentences_in(self.data.attrs).get(status, ""),
             "message": f"stored in {self.path.name}",
             "units": {str(name): array.attrs["units"] for name, array in point.data_vars.items()},
             "x": (1 - F / k1) * u, "y": np.zeros(len(u)),

@@ -50,10 +50,10 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
     if not indices.size:
         return Estimate(0.0)
     builds = [points.build_of(int(index)) for index in indices]
-    return Estimate(float(np.mean(each)) * points.count, doubt=_doubt(builds, values | {"F": F}, taper))
+    return Estimate(float(np.mean(each)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper))
 
 
-def _doubt(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
+def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
     """Kind of rods among the sampled rods whose branches may take many times as long as estimated; empty if
     there are none.
 

@@ -101,7 +101,7 @@ class Estimate:
     unknowns: tuple[int, int] | None = None
     """Smallest and largest number of unknowns of the sampled points' meshes; None if the numbers are not
     estimated."""
-    too_large_count: int = 0
+    too_large_mesh_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
     doubt: str = ""
     """Kind of rods whose time and memory may be many times as large as estimated; empty if the estimate is

@@ -20,7 +20,7 @@ from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
-from .request import FigureLook, FigureRequest, Shapes
+from .request import FigureLook, FigureRequest, ShapeFunction
 from .spectrum import draw_spectrum
 from .style import FIGURE_STYLE, PRINT_STYLE
 from .thresholds import draw_thresholds
@@ -90,7 +90,7 @@ def draw(
     output: Path,
     *,
     look: FigureLook = DEFAULT_LOOK,
-    shapes: Shapes | None = None,
+    shapes: ShapeFunction | None = None,
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[FigureChoices],
 ) -> str:
