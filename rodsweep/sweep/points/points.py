@@ -115,12 +115,13 @@ class Points:
         each = zip(self.names, self.columns, places, strict=True)
         return {name: column[index_on_axis] for name, column, index_on_axis in each}
 
-    def rod(self, index: int, **beside: float) -> Rod:
+    def rod(self, index: int, **given: float) -> Rod:
         """Rod of the point at a flat index; raises Crushed.
 
-        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL_VALUES.
+        The values in `given` replace the values of the point. A parameter with neither value has the value in
+        NEUTRAL_VALUES.
         """
-        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **beside}
+        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **given}
         return Rod(**parameters, build=self.build_of(index))
 
     @property
