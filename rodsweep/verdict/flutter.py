@@ -37,7 +37,8 @@ class ThresholdsWithDrag:
 
     @property
     def is_usable(self) -> bool:
-        """Whether the thresholds found are those of the arm, though perhaps not proved complete."""
+        """Whether the search gave thresholds. The search may have ended early, the list may be incomplete,
+        and the thresholds may miss the accuracy; see `doubt`."""
         return self.thresholds.status in (
             ThresholdStatus.ok,
             ThresholdStatus.ended_early,

@@ -103,7 +103,8 @@ def brief_html(printed: PrintedAnswer) -> str:
 
 
 def whole_text(printed: PrintedAnswer) -> str:
-    """Long text of an answer: the heading, every number with its unit and meaning, and the lists."""
+    """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
+    in full, and the numbers of rows of all other lists."""
     rows = [
         (c.name, printed.rod.point_texts.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers
     ]

@@ -158,7 +158,8 @@ def require_cycle(cycle: Cycle) -> Cycle:
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one per parameter and cold start."""
+    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one for each of SWEPT_PARAMETERS, which
+    starts from a neighbour's cycle, and one for each of COLD_STARTS."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
