@@ -31,8 +31,7 @@ ParameterRange = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch. The field NAME has the value of the file's variable special_NAME; `kind` and
-    `reason` are words."""
+    """Special point of a branch. Each field is the variable special_FIELD; `kind` and `reason` are words."""
 
     kind: str
     at: float

@@ -46,8 +46,8 @@ def read_config_text(path: Path) -> str:
         )
     if len(data) > MAX_CONFIG_BYTES:
         raise InputError(
-            f"{where} is larger than {MAX_CONFIG_BYTES} bytes, the limit for a config; write many points into a "
-            "CSV file and name the file as parameters.points"
+            f"{where} is larger than {MAX_CONFIG_BYTES} bytes, the limit for a config; write many points "
+            "into a CSV file and name the file as parameters.points"
         )
     try:
         return data.decode("utf-8-sig")
