@@ -136,7 +136,8 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> Tangent:
     """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
 
-    law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides, (2, 7).
+    law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both
+    sides, (2, 7).
     """
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
@@ -158,7 +159,8 @@ def changes_beside_jump(
     """Returns (change of a, change of b): changes of the unknowns on the base side and the tip side of a
     jump.
 
-    law: number of the constitutive law. q: mean unknowns. change: infinitesimal change of q. sides: both sides, (2, 7).
+    law: number of the constitutive law. q: mean unknowns. change: infinitesimal change of q. sides: both
+    sides, (2, 7).
     """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
@@ -187,9 +189,9 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
     q3.
 
-    law: number of the constitutive law. sides: both sides, (2, 7). change: derivatives of nu, c1 and c3 of both sides
-    with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a parameter
-    multiplies the compliances of both sides by the same factor.
+    law: number of the constitutive law. sides: both sides, (2, 7). change: derivatives of nu, c1 and c3 of
+    both sides with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a
+    parameter multiplies the compliances of both sides by the same factor.
     """
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
