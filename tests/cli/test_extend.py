@@ -186,7 +186,7 @@ def test_value_that_rounding_has_moved_is_computed_anew(command):
     command.write("large.yaml", SPECTRA)
     command.solved("small.yaml", "c.h5")
     done = command("run", "large.yaml", "-o", "c.h5", "--extend")
-    assert "4 of 8 stored points are computed anew" in done.stdout
+    assert "4 of 8 stored points are computed again" in done.stdout
     assert "4 of 8 points to do, 4 kept" in done.stdout
     command.solved("large.yaml")
     assert same(*(content(command.directory / name) for name in ("c.h5", "large.h5")))

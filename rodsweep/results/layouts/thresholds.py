@@ -86,7 +86,7 @@ OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": 
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config."""
+    """Layout of the result file of the task thresholds, for a resolved config."""
     variables = with_certified_meaning(
         THRESHOLD_VARIABLES + search_variables("F", "crossing_F"), config, "crossings"
     )
