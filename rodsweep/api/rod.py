@@ -166,6 +166,11 @@ class SoftRod:
 
         def __getattr__(self, name: str) -> Callable[..., Answer]:
             """Method for a task that this class does not define; AttributeError if `name` is not a task."""
+            if name in PARAMETERS:
+                raise AttributeError(
+                    f"a rod has no attribute {name!r}; rod.parameters[{name!r}] is its value, and "
+                    f"rod.replace({name}=...) makes another rod"
+                )
             if name not in CONFIGS:
                 known = [task for task, config in CONFIGS.items() if not config.needs_several_rods]
                 raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")

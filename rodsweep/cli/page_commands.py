@@ -88,13 +88,20 @@ def plot(
 
 
 def _parsed_at_values(at: tuple[str, ...]) -> dict[str, str]:
-    """Values of the options `--at NAME=VALUE`, by name; InputError for a text without "="."""
-    found = {}
+    """Values of the options `--at NAME=VALUE`, by name; InputError for a text without "=", or a name that is
+    given twice."""
+    found: dict[str, str] = {}
     for text in at:
         name, equals, value = text.partition("=")
         if not equals:
             raise InputError(f"--at {printable(text)} must be NAME=VALUE, such as k1=150 or 'length=12 cm'")
-        found[name.strip()] = value.strip()
+        name = name.strip()
+        if name in found:
+            raise InputError(
+                f"--at {printable(name)} is given twice ({printable(found[name])} and "
+                f"{printable(value.strip())}); give one value for each parameter"
+            )
+        found[name] = value.strip()
     return found
 
 

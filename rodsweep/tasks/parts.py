@@ -234,4 +234,5 @@ def _deformation_row(parameter: Parameter, values: np.ndarray) -> CheckRow:
     rigid = np.isinf(values)
     if rigid.all():
         return what, False, f"{name} = inf: the rod is {parameter.rigid_adjective}"
-    return what, True, f"{name} is finite" + (f" at all but {int(rigid.sum())} values" if rigid.any() else "")
+    but = f" at all but {counted(int(rigid.sum()), 'value')}" if rigid.any() else ""
+    return what, True, f"{name} is finite{but}"

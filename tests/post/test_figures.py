@@ -518,6 +518,7 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
         (("--at", "k2=70"), "no point there; it has k2 = 50, 100"),
         (("--at", "k3=1"), "has no such axis"),
         (("--at", "k2"), "--at k2 must be NAME=VALUE, such as k1=150"),
+        (("--at", "k2=50", "--at", "k2=100"), "--at k2 is given twice (50 and 100)"),
         (
             ("--width", "tall"),
             "width = 'tall' is not allowed; choose single, double, or a length such as '89 mm'",

@@ -250,6 +250,11 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
         with pytest.raises(InputError, match="not a complete rodsweep result"):
             Store(path, plan())
         assert path.read_bytes() == content
+        # --fresh, which replaces no file of another program, is advice for damaged results only.
+        with pytest.raises(
+            InputError, match="--fresh" if content.startswith(b"\x89") else "or move this file away"
+        ):
+            Store(path, plan())
         with pytest.raises(InputError, match="not a complete rodsweep result"):
             read_view(path)
 

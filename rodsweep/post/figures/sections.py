@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def _number_in_si(name: str, value: float | str) -> float:
     if name == "drag" and value in DRAG_NAMES:
         return float(DRAG_NAMES.index(str(value)))
     try:
-        return float(value)
+        return inf if value == ".inf" else float(value)
     except ValueError:
         if name == "drag":
             raise InputError(f"--at drag={value}: the drag must be one of {', '.join(DRAG_NAMES)}") from None

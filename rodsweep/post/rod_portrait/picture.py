@@ -62,6 +62,9 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         handles = _draw_thresholds(bar, results)
         handles += _draw_branches(upper, lower, results)
         _show_units((bar, upper, lower), results)
+        if not lower.axison:  # the bar has the only axis of the force
+            bar.tick_params(labelbottom=True)
+            bar.set_xlabel(results.units.labels[0])
         for place, kind in enumerate(modes):
             _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
         panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLE_COUNT)]

@@ -9,7 +9,7 @@ from .combination.extension import extension_of
 from .combination.identity import config_change_text
 from .creation import Plan
 from .points import points_of_file
-from .validation import IncompleteFile, ResultHeader, read_header
+from .validation import IncompleteFile, ResultHeader, is_rodsweep_file, read_header
 
 SPACE_FACTOR = 3
 """Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
@@ -38,7 +38,10 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
     try:
         return read_header(path)
     except IncompleteFile as error:
-        raise InputError(f"{error}; the file is left unchanged: {_remedies_clause(plan, journals)}") from None
+        ways = _remedies_clause(plan, journals)
+        if not is_rodsweep_file(path):
+            ways = "choose another file with -o, or move this file away"
+        raise InputError(f"{error}; the file is left unchanged: {ways}") from None
 
 
 def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> None:

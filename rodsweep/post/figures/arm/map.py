@@ -84,7 +84,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     ]
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
-    banded = [DRAG_AXIS] if not y and DRAG_AXIS in first else []
+    banded = [DRAG_AXIS] if not y and DRAG_AXIS in first and len(view.variables[DRAG_AXIS]) > 1 else []
     figure.suptitle(style.heading_text(view, _constant_quantities_text(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
     cut = _section_text(view, {name: at for name, at in first.items() if name not in banded})
