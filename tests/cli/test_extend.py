@@ -215,6 +215,12 @@ def test_list_of_points_is_extended_in_any_order(command):
         (SPECTRA, "modes: 2", "modes: 1", "spectrum.modes is 2 in the file and 1 in the config"),
         (SPECTRA, "modes: 2}", "modes: 2}\naccuracy: 1.0e-8", "accuracy is 1e-10 in the file and 1e-08"),
         (SPECTRA, "modes: 2", "modes: 2, certify: false", "spectrum.certify is true in the file and false"),
+        (
+            SPECTRA,
+            "modes: 2",
+            "modes: 2, method: krylov_schur",
+            'spectrum.method is "determinant" in the file',
+        ),
         (SPECTRA, SPECTRA, THRESHOLDS, 'task is "spectrum" in the file and "thresholds" in the config'),
         (DIAGRAM, "num: 6", "num: 7", "parameters.F = 20 is in the file and not in the config"),
         (CHAINS, "along: F", "along: k1", 'limit_cycle.along is "F" in the file and "k1" in the config'),

@@ -112,7 +112,7 @@ FORCE_CHANGES = (
 )
 """Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
 which are computed after the last point."""
-OPTIONS_SOLVED_ANEW = ("modes", "method", "certify", "vectors", "nodes", "follow")
+OPTIONS_SOLVED_ANEW = ("modes", "certify", "vectors", "nodes", "follow")
 OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {
     "longitudinal": NEEDS_NO_SOLVE
 }
