@@ -58,7 +58,8 @@ class BranchTask(NonlinearTask):
 
     def solver(self) -> Solver:
         from ..solve.branch.branch_request import BranchRequest
-        from ..solve.branch.branches import BranchStatus, solve_branches, warm_up
+        from ..solve.branch.branches import solve_branches, warm_up
+        from ..solve.branch.status import BranchStatus
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.branch

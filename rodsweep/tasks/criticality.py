@@ -44,7 +44,8 @@ class CriticalityTask(NonlinearTask):
         return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:
-        from ..solve.hopf.criticality import CriticalityRequest, CriticalityStatus, solve_criticality, warm_up
+        from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up
+        from ..solve.hopf.status import CriticalityStatus
 
         options = self.config.criticality
         request = CriticalityRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)

@@ -102,7 +102,8 @@ class PhaseDiagramTask(CertifiedTask):
 
     def solver(self) -> Solver:
         from ..solve.changes.diagram.rows import solve_row
-        from ..solve.changes.thresholds import ThresholdStatus, warm_up
+        from ..solve.changes.status import ThresholdStatus
+        from ..solve.changes.thresholds import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.phase_diagram
@@ -119,7 +120,8 @@ class PhaseDiagramTask(CertifiedTask):
         if not options.cycles:
             return of_rows
         from ..solve.branch.branches import warm_up as warm_up_branches
-        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
+        from ..solve.branch.coexistence import CoexistenceRow, solve_coexistence
+        from ..solve.branch.status import CoexistenceStatus
 
         def solve(index: int) -> CoexistenceRow:
             row = solve_coexistence(self.rod_of_row(index), request, MAX_CYCLE_SPECIAL, workspace)

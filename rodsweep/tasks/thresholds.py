@@ -52,7 +52,8 @@ class ThresholdsTask(CertifiedTask):
         return estimate_searches(self.points.count, self.config.thresholds.certify, of_arms)
 
     def solver(self) -> Solver:
-        from ..solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
+        from ..solve.changes.status import ThresholdStatus
+        from ..solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 
         options = self.config.thresholds
         request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)

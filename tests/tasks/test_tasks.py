@@ -369,13 +369,14 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
 FAKE = """
 import os
 import rodsweep.solve.changes.thresholds as real
+from rodsweep.solve.changes.status import ThresholdStatus
 from types import SimpleNamespace as Value
 
 def solve_thresholds(rod, request):
     k1, k2 = rod.k1, rod.k2
     if os.environ.get("DIE_AT") == f"{k1:g}":
         os._exit(9)
-    status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
+    status = ThresholdStatus.list_full if k1 == 14 else ThresholdStatus.ok
     found = (Value(value=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
     found = real.ThresholdList(
         thresholds=found, unstable_at_end=2, proved=True, evaluation_count=3, solve_count=4

@@ -18,7 +18,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import SearchedIntervals
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.spectrum.path import followed_arms
 
