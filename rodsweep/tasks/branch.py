@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
     from ..solve.branch.special.point import SpecialPoint
-    from ..solve.changes.unstable_modes import Threshold
+    from ..solve.changes.kinds import Threshold
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 """
 
 from ..model.arm.neglected import Validity
-from ..solve.changes.unstable_modes import ChangeKind
+from ..solve.changes.kinds import ChangeKind
 from .flutter import Span, ThresholdsOverDrags
 from .load import Load, percent_range_text, range_text
 from .planes import PlaneOfMotion, Planes

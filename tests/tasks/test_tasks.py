@@ -209,7 +209,7 @@ def test_words_are_stored_as_flags_with_their_meanings(tmp_path, task):
 
 
 def test_kinds_of_crossings_have_the_numbers_of_the_solver():
-    from rodsweep.solve.changes.unstable_modes import ChangeKind
+    from rodsweep.solve.changes.kinds import ChangeKind
 
     assert {kind.name: int(kind) for kind in ChangeKind} == {
         name: number for number, name in enumerate(CROSSING_KINDS) if number

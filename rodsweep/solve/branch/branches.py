@@ -11,7 +11,7 @@ from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ...watch import solve_part
 from ..changes.along_path import ThresholdList, find_axis_crossings
-from ..changes.unstable_modes import Threshold
+from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
 from .branch_curve import BranchCurve

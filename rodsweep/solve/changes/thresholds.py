@@ -1,5 +1,4 @@
-"""Task `thresholds` for one rod: all thresholds (`unstable_modes`) as the follower force grows from 0 (paper,
-Sec. VI)."""
+"""Task `thresholds` for one rod: all thresholds (`kinds`) as the force grows from 0 (paper, Sec. VI)."""
 
 import math
 from dataclasses import dataclass
@@ -9,8 +8,9 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point import outcome_or_failure
 from .along_path import ThresholdList, find_thresholds
+from .kinds import ChangeKind, Threshold
 from .status import ThresholdStatus
-from .unstable_modes import ChangeKind, Threshold, end_below_crushing
+from .unstable_modes import end_below_crushing
 
 
 @dataclass(frozen=True, slots=True)

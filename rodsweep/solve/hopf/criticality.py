@@ -11,7 +11,8 @@ from functools import cache, lru_cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import ThresholdList, find_axis_crossings
-from ..changes.unstable_modes import Threshold, end_below_crushing
+from ..changes.kinds import Threshold
+from ..changes.unstable_modes import end_below_crushing
 from ..point import FAILURES, cause_of, outcome_or_failure
 from .coefficient_errors import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 from .status import CriticalityStatus
