@@ -25,8 +25,8 @@ from rodsweep.solve.branch.following import (
 )
 from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.special import locating
+from rodsweep.solve.branch.special.detection import special_kinds_between
 from rodsweep.solve.branch.special.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
-from rodsweep.solve.branch.special.points import special_kinds_between
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
