@@ -11,7 +11,8 @@ from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.branch_cost import estimate_branches
 from ..sweep.cost_estimate import Estimate
-from .parts import NonlinearTask, crushing_clause, points_clause
+from .base_classes import NonlinearTask
+from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, crushing_clause, points_clause
+from .base_classes import NonlinearTask
+from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 

@@ -10,9 +10,9 @@ from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.branch_cost import estimate_branches
 from ..sweep.cost_estimate import Estimate, estimate_diagram
+from .base_classes import CertifiedTask
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
-from .parts import CertifiedTask
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
