@@ -35,8 +35,8 @@ EXCLUSIVE_QUANTITIES = (
     (("segments",), (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1])),
     (("inner_radius",), ("tip_radius",)),
 )
-"""Pairs of mutually exclusive sets of quantities. If `Arm.replace` is called with a quantity of one set, all
-quantities of the second set are removed."""
+"""Pairs of mutually exclusive sets of quantities. If `Arm.replace` is called with a quantity of either set,
+all quantities of the other set are removed."""
 
 
 @dataclass(frozen=True, kw_only=True, init=False, repr=False)
@@ -75,8 +75,8 @@ class Arm(SlenderArm):
     def replace(self, **changed: GivenQuantity | None) -> "Arm":
         """A copy of the arm with changed quantities.
 
-        A new force removes the pressure; width and height remove the radius; segments remove radius, width,
-        height and length.
+        The value None removes a quantity. A new force removes the pressure; width and height remove the
+        radius; segments remove radius, width, height and length.
         """
         gone: dict[str, None] = {}
         for one, other in EXCLUSIVE_QUANTITIES:
@@ -147,7 +147,7 @@ class Arm(SlenderArm):
         Thresholds, criticality, branches of cycles, loads with two stable states, modes at the thresholds,
         and three cycles. The arm needs no load; the kind of a given load, pressure or force, is used for all
         loads in the portrait. F_max: largest dimensionless load, that is, the load divided by the arm's
-        `load_scale`.
+        `load_scale`. accuracy and progress are as for `SoftRod.portrait`.
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest

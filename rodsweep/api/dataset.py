@@ -40,8 +40,8 @@ ENGINE = "h5netcdf"
 @one_at_a_time
 @refusing_wrong_arguments('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
-    """The Dataset of a complete result file, read into memory, including the points that a running sweep has
-    already solved.
+    """The Dataset of a result file, read into memory. The points that a running or interrupted sweep has
+    already solved are included.
 
     Raises InputError if the file is no result file, is damaged, or was changed by another program.
     """
@@ -154,9 +154,9 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
         dimensions = (*points, *variable.extra)
         if variable.name not in data or data[variable.name].dims != dimensions:
             raise InputError(
-                f"the data are not a whole result: they lack {variable.name} with the dimensions "
-                f"{', '.join(dimensions)}; give the whole result and select points with at={{...}}, or draw "
-                "a selection with xarray's own plot"
+                f"the data are not a complete result: they lack {variable.name} with the dimensions "
+                f"{', '.join(dimensions)}; give the complete result and select points with at={{...}}, or "
+                "draw a selection with xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
     typed = {

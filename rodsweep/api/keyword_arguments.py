@@ -184,11 +184,11 @@ def _axis_range(start: float | str, stop: float | str, num: int, spacing: str) -
 
 
 def plain_value(value: Any) -> Any:
-    """A value in the types of a YAML config: arrays and tuples become lists, NumPy scalars, as values or as
-    keys, Python's numbers, booleans and texts, and paths text.
+    """A value in the types of a YAML config. Arrays and tuples become lists. NumPy scalars, also as keys,
+    become numbers, booleans or texts of Python. Paths become texts.
 
-    pint quantities become texts with units, and arrays of pint quantities lists of texts. Raises ValueError
-    for masked values.
+    A pint quantity becomes a text with its unit, and an array of pint quantities a list of such texts. Raises
+    ValueError for masked values.
     """
     if isinstance(value, dict):
         return {plain_value(key): plain_value(item) for key, item in value.items()}

@@ -42,12 +42,11 @@ ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa",
 class SoftRod:
     """A slender soft rod in a viscous fluid with a follower force at its tip, in units of its length and k3.
 
-    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which solve for F or vary F.
-    k1: stretch stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid rod. gamma3: rotational drag,
-    gamma2 L^2. gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not
-    given. taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean".
-    section: "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to
-    lists.
+    F: follower force, in k3/L^2; not needed for thresholds, criticality and branch, which solve for F or vary
+    F. k1, k2: stretch and shear stiffness, in k3/L^2, inf for a rigid rod. gamma3: rotational drag, in gamma2
+    L^2. gamma1: axial drag, in gamma2, by default 1. arm: an `rs.Arm`, source of all parameters not given.
+    taper: tip radius over base radius of a cone, by default 1. law: "linear" or "neo_hookean". section:
+    "fixed" or "swelling". profile: factors along the arm, a CSV file or a mapping of columns to lists.
 
     Every task is a method with the task's name. It takes the options of the config as keywords, with the same
     defaults, and returns an `Answer`. Raises InputError, with the command line's message, for values outside
@@ -108,7 +107,8 @@ class SoftRod:
 
     @property
     def _given_material(self) -> dict[str, Any]:
-        """The keys of the section `material` that differ from their defaults, with their values."""
+        """The keys of the section `material` that differ from their defaults, with their values; empty if
+        none differs."""
         return {} if self._material is None else self._material.model_dump(exclude_defaults=True)
 
     @refusing_wrong_arguments("rod.spectrum(modes=4)")
@@ -150,7 +150,9 @@ class SoftRod:
         """All results for the rod up to `F_max`, in a picture and a paragraph.
 
         Thresholds, criticality, branches of cycles, ranges with two stable states, modes at the thresholds,
-        and three cycles. Instead of a result that cannot be solved, the portrait states the reason.
+        and three cycles. Instead of a result that cannot be solved, the portrait states the reason. accuracy:
+        relative accuracy of the cycles, or None for the defaults. progress: whether to display progress;
+        None: only in a terminal or a notebook.
         """
         from ..post.rod_portrait.results import DescribedRod
         from ..tasks.rod_portrait import PortraitRequest

@@ -130,7 +130,8 @@ def _solve_points(
 def _solve_stretches(
     stretches: Stretches, solve_stretch: SolveStretch, flat: dict[str, np.ndarray], shown: Display
 ) -> Sequence[int]:
-    """Fills the variables of all points that are solved together; returns the flat indices of the others.
+    """Fills the variables of all points that are solved together; returns the flat indices of all other
+    points.
 
     flat: variables by name, (points, ...). shown: progress display.
     """

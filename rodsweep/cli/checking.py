@@ -49,10 +49,10 @@ def print_job_check(job: Job) -> None:
             f"this estimate is uncertain: {cost.doubt} may take a hundred times as long, and some GB; try a "
             "single point or row first"
         )
-    if cost.too_large_count:
+    if cost.too_large_mesh_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)
         console.print(
-            f"warning: {cost.too_large_count} of {sampled} sampled points need more than the "
+            f"warning: {cost.too_large_mesh_count} of {sampled} sampled points need more than the "
             f"{RESOLUTION_SETTINGS.max_unknowns} unknowns allowed and will end with status failed; "
             "use a smaller F, fewer modes or a larger number for the accuracy"
         )

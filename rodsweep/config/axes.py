@@ -145,8 +145,8 @@ class Axes(LinearAxes):
         """
         arm.require_allowed_values()
         arm.refuse_conflicting_keys(forced, self.given_axes)
-        beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
-        count = arm.grid_point_count(math.prod(axis.size for axis in beside.values()))
+        varied = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
+        count = arm.grid_point_count(math.prod(axis.size for axis in varied.values()))
         if self.arm_axes and count > MAX_ARM_GRID_POINTS:
             raise ValueError(
                 f"parameters.arm makes a grid of {count} points, more than the {MAX_ARM_GRID_POINTS} "

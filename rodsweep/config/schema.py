@@ -125,11 +125,13 @@ class Config(StrictSection):
             return meant
         if self.parameters.arm_axes:  # the grid's axes do not contain parameters with one value
             given = self.parameters.given_axes
-            beside = {
+            given_values = {
                 name: float(given[name].array()[0]) if name in given else None
                 for name in self.parameter_names
             }
-            meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.arm_axes}
+            meant["parameters"] |= {
+                k: v for k, v in given_values.items() if k not in self.parameters.arm_axes
+            }
         return meant | {"arm": self.parameters.arm.settings_of_results}
 
     def refuse_solved_parameter(self, name: str, why: str) -> None:

@@ -21,7 +21,8 @@ class StrictSection(BaseModel):
 
 
 def as_float(value: Any) -> float:
-    """Float from a YAML number or the texts inf and -inf; ValueError for other values."""
+    """Float from a YAML number or from the texts inf, +inf and -inf; ValueError for nan and for all other
+    values."""
     if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
         return float(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -44,7 +45,7 @@ def overflows_float(text: str) -> bool:
 
 
 def cell_number(cell: str) -> float:
-    """Float from the text in a cell of a CSV file; ValueError for a text that is no number."""
+    """Float from the text in a cell of a CSV file; ValueError for nan, and for a text that is no number."""
     if "_" in cell or not cell.isascii() or overflows_float(cell):
         raise ValueError
     return as_float(float(cell))
@@ -146,9 +147,8 @@ class Axis(StrictSection):
 
     @property
     def is_logarithmic(self) -> bool:
-        """Whether the axis has log spacing, or is a list of positive values over more than a decade, inf left
-        out.
-        """
+        """Whether the axis has log spacing, or is a list of positive values whose finite values span more
+        than a decade."""
         if self.values is None:
             return self.spacing == "log"
         finite = [value for value in self.values if value < inf]

@@ -20,7 +20,7 @@ from .solving.solvers import Solvers
 from .solving.solving_status import progress_text, solving_text
 from .solving.tip_release import Tip
 from .state import PageState, from_address, rod_of
-from .stored_results import StoredResults
+from .stored_answers import StoredAnswers
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""
@@ -32,7 +32,7 @@ class Page:
     """
 
     def __init__(
-        self, document: Document, solvers: Solvers, state: PageState, stored: StoredResults | None = None
+        self, document: Document, solvers: Solvers, state: PageState, stored: StoredAnswers | None = None
     ):
         self.document = document
         self.solvers = solvers
@@ -100,7 +100,8 @@ class Page:
         self._show_solving()
 
     def drag(self, kind: str, tip: Tip) -> None:
-        """Requests the shape with the tip held at `tip`, in L ("bent"), or the motion after release."""
+        """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
+        released there (kind "motion"). A question of the other kind is cancelled."""
         for other in kinds.TIP_KINDS:
             if other != kind:
                 self._cancel_question(other)

@@ -160,8 +160,7 @@ def float_or_text(text: str) -> Any:
 
 def from_address(query: str, default: PageState | None = None) -> PageState:
     """State of the page from the query string of its address. Raises InputError for an unknown name or
-    choice. default: state whose values are used where the query has none.
-    """
+    choice. default: state whose values replace missing values of the query; None: `PageState()`."""
     state = default or PageState()
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
     tab = _require_choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)

@@ -30,7 +30,7 @@ from .state import (
     SECOND_PARAMETERS,
     PageState,
 )
-from .stored_results import StoredResults
+from .stored_answers import StoredAnswers
 
 RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
 """Suffixes of result files; a file with any other suffix is read as a config."""
@@ -38,7 +38,7 @@ HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
 
 
-def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
+def page_state_of_file(path: Path) -> tuple[PageState, StoredAnswers | None]:
     """Returns (state, stored). state: state with which the page opens for a result file or a config. stored:
     answers of a result file; None for a config.
 
@@ -51,16 +51,16 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredResults | None]:
         state = state_from_config(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
-    return state, StoredResults(path, data, state, stored_diagram(data, state))
+    return state, StoredAnswers(path, data, state, stored_diagram(data, state))
 
 
 def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for a config.
 
-    Each parameter has the middle value of its axis, and the load the middle of its values that do not crush
-    the rod. The parameter with the most values, except the load, is the second parameter of the diagram.
-    path: file of the config, for error messages. F_max: largest force if the config has none. Raises
-    InputError for a list of points.
+    Each parameter has the middle value of its axis; F has the middle of its values that do not crush the rod.
+    The parameter with the most values, except the load, is the second parameter of the diagram. path: file of
+    the config, for error messages. F_max: largest force if the config has none. Raises InputError for a list
+    of points.
     """
     F_max = _largest_force(config, F_max)
     if config.parameters.arm is not None:
@@ -123,9 +123,8 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
 
 
 def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
-    """Of the possible second parameters of a tab's diagram, the parameter with the most values in `axes`; ""
-    if no parameter has several values. axes: values, (n,), by name.
-    """
+    """The parameter with the most values in `axes`, among the possible second parameters of the diagram on
+    the tab `tab`; "" if none of these parameters has several values. axes: values, (n,), by name."""
     several = [name for name in SECOND_PARAMETERS[tab] if name in axes and len(axes[name]) > 1]
     return max(several, key=lambda name: len(axes[name]), default="")
 

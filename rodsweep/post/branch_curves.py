@@ -31,7 +31,7 @@ ParameterRange = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class StoredSpecialPoint:
-    """Special point of a branch: variables `special_at` etc. of the file; `kind` and `reason` are words."""
+    """Special point of a branch. Each field is the variable special_FIELD; `kind` and `reason` are words."""
 
     kind: str
     at: float
@@ -113,19 +113,19 @@ def branch_ends(view: View) -> ParameterRange:
 class RodBranches:
     """Branches of cycles of one rod, and ranges of the parameter in which states of the rod are stable.
 
-    rod: index among the points of the file. curves: branches whose special points are all stored. hidden:
-    number of the remaining branches.
+    rod: index among the points of the file. curves: branches whose special points are all stored.
+    hidden_count: number of the remaining branches.
     """
 
     def __init__(self, view: View, rod: int = 0):
         self.view = view
-        self.rod = rod
+        self.index = rod
         self._v = view.point_values(rod)
         count = max(int(self._v["branch_count"]), 0)
         listed = self._v["special_branch"][self._v["special_kind"] > 0]
         # If the list is full, special points of the last listed branch and of later branches may be missing.
         complete = count if len(listed) >= self._v["special_count"] else int(listed.max(initial=1)) - 1
-        self.hidden = count - complete
+        self.hidden_count = count - complete
         along = followed_parameter(view)
         self.curves = [_stored_branch(self._v, along, number) for number in range(1, complete + 1)]
 
@@ -162,7 +162,7 @@ class RodBranches:
 
         Both lists are empty if special points of some branch are not stored.
         """
-        pieces = [] if self.hidden else self.straight_pieces(ends)
+        pieces = [] if self.hidden_count else self.straight_pieces(ends)
         stable, unstable = ([(a, b) for a, b, s in pieces if s == kind] for kind in (1, 0))
         return union_of_ranges(stable), union_of_ranges(unstable)
 

@@ -27,7 +27,7 @@ changes. At all other Hopf points the rod is unstable on both sides."""
 
 
 @dataclass(frozen=True, slots=True)
-class LocatedChange:
+class LocatedThreshold:
     """Threshold of the straight rod at the parameter value `position`. error: absolute error estimate.
 
     kind: `hopf` if a pair of eigenvalues crosses the imaginary axis and the rod is unstable above `position`;
@@ -48,13 +48,13 @@ class LocatedChange:
         oscillation."""
         return self.kind != "onset"
 
-    def equals_within_errors(self, other: "LocatedChange") -> bool:
+    def equals_within_errors(self, other: "LocatedThreshold") -> bool:
         """Whether two located thresholds have equal kinds, and positions that are equal within the errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
 
 @dataclass(frozen=True, slots=True)
-class BracketedChange:
+class BracketedThreshold:
     """Interval between two neighbouring points of a file in which the stability of the straight rod changes.
     low, high: parameter values of the two points.
     """
@@ -65,18 +65,18 @@ class BracketedChange:
     """`hopf` if the rod is unstable above the interval, `restabilization` if the rod is stable above."""
 
 
-def sort_position(change: LocatedChange | BracketedChange) -> float:
+def sort_position(change: LocatedThreshold | BracketedThreshold) -> float:
     """Parameter value by which thresholds are sorted: the position, or the lower end of a bracketing
     interval.
     """
-    return change.position if isinstance(change, LocatedChange) else change.low
+    return change.position if isinstance(change, LocatedThreshold) else change.low
 
 
-class StoredChanges:
-    """Changes of the straight rod along the parameter `name`, as stored in a result file.
+class StoredThresholds:
+    """Thresholds of the straight rod along the parameter `name`, as stored in a result file.
 
-    Files of spectra and modes store changes along F, with onsets of oscillation. Files of limit cycles store
-    Hopf points along any parameter.
+    Files of spectra and modes store thresholds along F, with onsets of oscillation. Files of limit cycles
+    store Hopf points along any parameter.
     """
 
     def __init__(self, view: View, name: str):
@@ -86,14 +86,16 @@ class StoredChanges:
         self.growth_rates = v[growth].reshape(points, -1)[:, 0]
         absent = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
         self.other_parameters = [other for other in HOPF_ALONG if other not in {name, *absent}]
-        self.by_rod: dict[tuple[float, ...], list[LocatedChange]] = {}
+        self.thresholds_by_rod: dict[tuple[float, ...], list[LocatedThreshold]] = {}
         if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
-            self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
+            self._add_thresholds(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
         if "change_kind" in v and name == "F":
-            self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
+            self._add_thresholds(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
-    def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
-        """Reads the onsets and changes of stability selected by the mask `along` from the variables whose
+    def _add_thresholds(
+        self, v: Mapping[str, np.ndarray], name: str, prefix: str, chosen: NDArray[np.bool_]
+    ) -> None:
+        """Adds the onsets and changes of stability in the mask `chosen`, (changes,), of the variables whose
         names start with `prefix`. name: parameter along which the thresholds are located. v: variables of the
         file.
         """
@@ -101,31 +103,32 @@ class StoredChanges:
         fields = (name, "error", "frequency", "kind")
         at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
-        for i in np.flatnonzero(along):
+        for i in np.flatnonzero(chosen):
             parameter = float(at[i])
             word = CROSSING_KINDS[int(kind[i])]
             if word == "onset":
-                point = LocatedChange(parameter, float(error[i]) * (abs(parameter) or 1.0), word)
+                point = LocatedThreshold(parameter, float(error[i]) * (abs(parameter) or 1.0), word)
             elif after is None or (word, int(after[i])) in STABILITY_CHANGES:
-                point = LocatedChange(
+                point = LocatedThreshold(
                     parameter, float(error[i]) * (abs(parameter) or 1.0), word, float(frequency[i])
                 )
             else:
                 continue
-            self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
+            self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
-    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
+    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
         """Thresholds from the start of the search to the largest parameter value of a line of points."""
         return sorted({*self.thresholds_on(line), *self._stored_between(line, -inf)}, key=sort_position)
 
-    def _stored_between(self, line: ParameterLine, low: float) -> list[LocatedChange]:
+    def _stored_between(self, line: ParameterLine, low: float) -> list[LocatedThreshold]:
         """Located thresholds between the parameter value `low` and the largest parameter value of a line."""
         rod = tuple(line.parameters[other] for other in self.other_parameters)
         high = line.x.max(initial=-inf)
-        return [point for point in self.by_rod.get(rod, []) if _lies_between(point, low, high)]
+        return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 
-    def thresholds_on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
-        """Thresholds on a line of points, in increasing order of the parameter.
+    def thresholds_on(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
+        """Thresholds on a line of points, in increasing order of the parameter; an empty list for a line
+        without points.
 
         Two neighbouring points bracket a change of stability if their growth rates differ in sign and the
         number of located changes of stability between them is even, because a search failed.
@@ -133,7 +136,7 @@ class StoredChanges:
         if not len(line.x):
             return []
         stored = self._stored_between(line, line.x.min())
-        found: list[LocatedChange | BracketedChange] = [*stored]
+        found: list[LocatedThreshold | BracketedThreshold] = [*stored]
         changes = [point for point in stored if point.changes_stability]
         known = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
@@ -143,11 +146,11 @@ class StoredChanges:
             low = float(x[i])
             high = float(x[i + 1])
             if sum(_lies_between(point, low, high) for point in changes) % 2 == 0:
-                found.append(BracketedChange(low, high, "hopf" if grows[i + 1] else "restabilization"))
+                found.append(BracketedThreshold(low, high, "hopf" if grows[i + 1] else "restabilization"))
         return sorted(found, key=sort_position)
 
 
-def _lies_between(point: LocatedChange, low: float, high: float) -> bool:
+def _lies_between(point: LocatedThreshold, low: float, high: float) -> bool:
     """Whether a located threshold lies between `low` and `high`, within its error or rounding error."""
     margin = max(point.error, HOPF_POINT_TOLERANCE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

@@ -16,7 +16,8 @@ from typing import Any
 
 
 class _CalledPackage(ModuleType):
-    """Callable class of this package: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
+    """Class of this package, which makes the package callable: `rs.sweep(...)` calls
+    `rodsweep.api.sweeping.sweep(...)`."""
 
     @property
     def __wrapped__(self) -> Any:

@@ -14,16 +14,16 @@ COSTLIER_IF_LARGER = frozenset({"k1", "F"})
 """Parameters for which large values make branches of cycles expensive. For all other parameters, small values
 are expensive."""
 BRANCH_SECONDS_PER_FORCE = 0.004
-"""All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 +
-F/k2)^BRANCH_BENDING_EXPONENT, in seconds, where F is the largest force of the range, or k1. Fourteen random
-rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to 21 s, all within a
-factor of three of the formula and most within two; some near F = k1 take four times as long. Branches of six
-cones, over F and over the taper, took 0.6 to 2 times as long as foreseen (0.2 to 11 s, tapers from 0.5 to
-1.5)."""
+"""All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 + F/(k2
+t))^BRANCH_BENDING_EXPONENT/taper^2, in seconds. t: min(1, taper)^2. F: largest force on the branches, at most
+k1 t. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to
+21 s, all within a factor of three of the formula and most within two; some near F = k1 take four times as
+long. Branches of six cones, over F and over the taper, took 0.6 to 2 times as long as foreseen (0.2 to 11 s,
+tapers from 0.5 to 1.5)."""
 BRANCH_ACCURACY_EXPONENT = -0.17
 """Exponent of the accuracy in the formula of BRANCH_SECONDS_PER_FORCE."""
 BRANCH_BENDING_EXPONENT = 1.5
-"""Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS_PER_FORCE."""
+"""Exponent of 1 + F/(k2 t) in the formula of BRANCH_SECONDS_PER_FORCE."""
 MEASURED_TAPERS = (0.5, 1.5)
 """Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
 0.19 takes some hundred times as long as the formula says, swelling rubber thirty times."""
@@ -35,8 +35,9 @@ holds."""
 def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
     """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
 
-    reach: smallest and largest value of the parameter. accuracy: relative accuracy of the cycles. For rods
-    without measured times the estimate has a `doubt`.
+    reach: smallest and largest value of this parameter. accuracy: relative accuracy of the cycles. For kinds
+    of rods whose times were not measured the estimate has a `doubt`. The estimate is 0 s if no sampled point
+    has a rod.
     """
     indices = sampled_points(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
@@ -49,10 +50,10 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
     if not indices.size:
         return Estimate(0.0)
     builds = [points.build_of(int(index)) for index in indices]
-    return Estimate(float(np.mean(each)) * points.count, doubt=_doubt(builds, values | {"F": F}, taper))
+    return Estimate(float(np.mean(each)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper))
 
 
-def _doubt(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
+def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
     """Kind of rods among the sampled rods whose branches may take many times as long as estimated; empty if
     there are none.
 

@@ -60,8 +60,8 @@ CURVES_OF_ARMS_SECONDS = 4.5
 points, in s: 3.3, 4.6 and 5.3 were measured for cones, rubber and rubber segments. The time hardly depends on
 the number of rows."""
 CRITICALITY_OF_ARMS_SECONDS = 2.5
-"""Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform: 0.7 to 3.8
-s for about 50 points."""
+"""Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform, in s: 0.7
+to 3.8 s were measured for about 50 points."""
 HOPF_SEARCH_MS = 25.0
 """Time to search one rod for Hopf points, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
@@ -99,8 +99,9 @@ class Estimate:
     memory_bytes: int = BASE_MEMORY
     """Memory of a rank, in bytes."""
     unknowns: tuple[int, int] | None = None
-    """Smallest and largest number of unknowns of the sampled points' meshes; None for a task without mesh."""
-    too_large_count: int = 0
+    """Smallest and largest number of unknowns of the sampled points' meshes; None if the numbers are not
+    estimated."""
+    too_large_mesh_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
     doubt: str = ""
     """Kind of rods whose time and memory may be many times as large as estimated; empty if the estimate is

@@ -28,8 +28,8 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 def largest_first_mesh(
     points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
-    """The finest initial mesh among sampled points of a sweep and the corners of its grid; None if the rod
-    model applies to no point.
+    """The initial mesh with the most nodes among sampled points of a sweep and the corners of its grid; None
+    if the rod model applies to no point.
 
     mesh_of: function from a rod to its initial mesh. ends: ends, (n,), of the range in which each rod is
     searched, by name of the parameter; meshes are compared at these values.

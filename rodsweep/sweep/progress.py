@@ -66,7 +66,8 @@ class ProgressReporter:
         self.noun = noun
         self.remaining_time = None if total is None else RemainingTimeEstimator(total)
         self.began = self.next_display = 0.0
-        """Time, on the monotonic clock, before which nothing is displayed."""
+        """Start of the sweep and earliest time of the next display, on the monotonic clock, in s; 0 before
+        the start."""
         self.done = 0
         self.begun = 0.0
         self.where = ""

@@ -46,7 +46,8 @@ class StopRequest:
 
     @property
     def must_abandon_point(self) -> bool:
-        """Whether GRACE_SECONDS have passed since the request: the current point must be abandoned."""
+        """Whether the current point must be abandoned: GRACE_SECONDS have passed since this property was
+        first read after a stop request."""
         if not self.name:
             return False
         self._since = self._since or time.monotonic()

@@ -1,4 +1,5 @@
-"""The task limit_cycle: the limit cycle of the nonlinear rod at every point, or its return to rest."""
+"""The task limit_cycle: the limit cycle of the nonlinear rod at every point, or the return of the rod to
+rest."""
 
 from dataclasses import dataclass, replace
 from math import isfinite, nan
@@ -106,8 +107,7 @@ class LimitCycleTask(Task):
 
     def _first_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points: meshes of motions in time or, with start: hopf, of
-        branches from Hopf points.
-        """
+        branches from Hopf points. None if no point has a mesh."""
         from ..solve.cycle.transient.motion_mesh import (
             accuracy_of_motion_mesh,
             coarse_mesh_along_branch,

@@ -126,7 +126,9 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
 
 
 def _cycle_at_force(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
-    """The limit cycle at the force F, started from the Hopf point or, if this fails, from a large deflection.
+    """The limit cycle at the force F, solved from the Hopf point or, if no cycle is found, from a large
+    deflection. If both starts find no cycle, the result of the first start that gave a result; None if both
+    gave None.
 
     solved: function (task, options, F) that solves a task, and returns None for invalid input.
     """

@@ -88,7 +88,7 @@ def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at
         outcome_values(variables, each, prefix="crossing_", names={at: "value"}) for each in found.thresholds
     ]
     return value_lists(variables, rows, most) | {
-        "crossing_count": len(found.thresholds),
+        "crossing_count": -1 if result.status == type(result.status).failed else len(found.thresholds),
         "open_from": found.open_range[0],
         "open_to": found.open_range[1],
         "certified": found.proved,

@@ -38,7 +38,8 @@ class ThresholdsWithDrag:
 
     @property
     def is_usable(self) -> bool:
-        """Whether the thresholds found are those of the arm, though perhaps not proved complete."""
+        """Whether the search gave thresholds. The search may have ended early, the list may be incomplete,
+        and the thresholds may miss the accuracy; see `doubt`."""
         return self.thresholds.status in (
             ThresholdStatus.ok,
             ThresholdStatus.ended_early,
@@ -75,8 +76,8 @@ class ThresholdsWithDrag:
 
     @property
     def second_flutter_force(self) -> float | None:
-        """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if it does
-        not."""
+        """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if the arm
+        does not flutter again."""
         back = self.first_force(ChangeKind.restabilization)
         later = (c.value for c in self.thresholds.thresholds if c.kind == ChangeKind.hopf)
         return None if back is None else next((F for F in later if back < F), None)

@@ -97,8 +97,7 @@ def with_absolute_load(planes: Planes) -> Planes:
 
 def arm_with_absolute_load(arm: A) -> A:
     """The arm with its load in a physical unit. Solves for the flutter load if the load is relative to the
-    flutter load.
-    """
+    flutter load; raises InputError if such an arm does not flutter."""
     load = arm.load
     if load is None or arm.share_of_flutter is None:
         return arm

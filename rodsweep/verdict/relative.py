@@ -109,7 +109,8 @@ def first_hopf_force(rod: Rod) -> float:
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
         why = str(error) or type(error).__name__
         raise FlutterSearchFailed(
-            f"the search for the flutter threshold to which a relative load refers fails: {why}"
+            f"the search for the flutter threshold to which a relative load refers fails: {why}; give an "
+            "absolute load"
         ) from error
     return inf
 
@@ -121,8 +122,8 @@ def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
         raise FlutterSearchFailed(
-            "the flutter threshold to which a relative load refers is not found: no a-priori bound on the "
-            "eigenvalues applies to this rod"
+            "the flutter threshold to which a relative load refers is not found, because no bound on the "
+            "eigenvalues of this rod is known; give an absolute load"
         )
     zeros, left, _ = cover_with_boxes(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
@@ -146,7 +147,8 @@ def _first_hopf_force_of_varied(path: Path, end: float) -> float:
         found = find_axis_crossings(path, 0.0, end)
     except FAILURES as error:
         raise FlutterSearchFailed(
-            f"the search for the flutter threshold to which a relative load refers fails: {cause_of(error)}"
+            "the search for the flutter threshold to which a relative load refers fails: "
+            f"{cause_of(error)}; give an absolute load"
         ) from error
     first = min(
         (crossing.value for crossing in found.thresholds if crossing.kind == ChangeKind.hopf), default=inf

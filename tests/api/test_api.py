@@ -433,7 +433,7 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
     assert (tmp_path / "d.pdf").read_bytes().startswith(b"%PDF")
     picture.save(tmp_path / "d.svg")
     assert (tmp_path / "d.svg").exists()
-    with pytest.raises(rs.InputError, match="not a whole result: they lack F_onset"):
+    with pytest.raises(rs.InputError, match="not a complete result: they lack F_onset"):
         rs.plot(data.isel(k2=0))
     with pytest.raises(rs.InputError, match="not a complete rodsweep result"):
         rs.plot(xr.Dataset())
@@ -560,7 +560,7 @@ def test_what_is_no_result_is_not_opened(tmp_path):
     (tmp_path / "x.h5").write_text("text")
     with pytest.raises(rs.InputError, match="is not a result of rodsweep"):
         rs.open(tmp_path / "x.nc")
-    with pytest.raises(rs.InputError, match="is not a whole rodsweep result file"):
+    with pytest.raises(rs.InputError, match="is not a complete rodsweep result file"):
         rs.open(tmp_path / "x.h5")
 
 

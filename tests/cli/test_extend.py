@@ -186,7 +186,7 @@ def test_value_that_rounding_has_moved_is_computed_anew(command):
     command.write("large.yaml", SPECTRA)
     command.solved("small.yaml", "c.h5")
     done = command("run", "large.yaml", "-o", "c.h5", "--extend")
-    assert "4 of 8 stored points are computed anew" in done.stdout
+    assert "4 of 8 stored points are computed again" in done.stdout
     assert "4 of 8 points to do, 4 kept" in done.stdout
     command.solved("large.yaml")
     assert same(*(content(command.directory / name) for name in ("c.h5", "large.h5")))
@@ -231,6 +231,30 @@ def test_what_does_not_contain_the_file_is_refused(command, small, old, new, sen
     assert sentence in done.stderr
     assert (command.directory / "c.h5").read_bytes() == before
     assert not (command.directory / "c.h5.journal").exists()
+
+
+PROFILE = "material: {profile: {u: [0, 1], k1: [1, 2], k2: [1, 2], k3: [1, 2]}}\n"
+RUBBER = "material: {law: neo_hookean, section: swelling}\n"
+
+
+@pytest.mark.parametrize(
+    ("stored", "asked", "sentence"),
+    [
+        (THRESHOLDS, THRESHOLDS + RUBBER, "material is null in the file"),
+        (THRESHOLDS + RUBBER, THRESHOLDS.replace("200]", "200, 300]"), "material"),
+        (THRESHOLDS + RUBBER, THRESHOLDS + PROFILE, "material.law"),
+        (THRESHOLDS, THRESHOLDS.replace("}", ", taper: 0.8}", 1), "parameters"),
+        (CYCLES, CYCLES.replace("gamma3: 0.01", "gamma3: 0.01, gamma1: 2"), "gamma1"),
+    ],
+)
+def test_a_file_of_other_rods_is_not_extended(command, stored, asked, sentence):
+    command.write("a.yaml", stored)
+    command.write("b.yaml", asked)
+    assert command("run", "a.yaml", "-o", "c.h5").returncode in (0, 1)
+    before = (command.directory / "c.h5").read_bytes()
+    refused = command("run", "b.yaml", "-o", "c.h5", "--extend")
+    assert (refused.returncode, sentence in refused.stderr) == (2, True), refused.stderr
+    assert (command.directory / "c.h5").read_bytes() == before
 
 
 @pytest.mark.parametrize(("old", "new", "told"), [("30]", "30, 40]", True), ("30]", "40]", False)])

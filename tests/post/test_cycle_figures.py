@@ -26,7 +26,7 @@ from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, dr
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
-from rodsweep.post.hopf_points import LocatedChange
+from rodsweep.post.hopf_points import LocatedThreshold
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
 
@@ -344,7 +344,7 @@ def test_no_arrow_of_a_film_is_over_the_running_time():
 @pytest.mark.parametrize("count", [2, 3, 5])
 def test_the_coefficient_of_a_law_is_known_to_its_error(count):
     """Of amplitudes that leave the law: y^2 = a^2 d (1 - 1.5 d + 4 d^2), d the distance from F**."""
-    a, hopf = 0.92, LocatedChange(38.0, 1e-9, "hopf")
+    a, hopf = 0.92, LocatedThreshold(38.0, 1e-9, "hopf")
     distance = np.array([0.03, 0.05, 0.09, 0.15, 0.2])[:count]
     y = a * np.sqrt(distance * (1 - 1.5 * distance + 4 * distance**2))
     (law,) = square_root_laws(hopf.position * (1 + distance), y, [hopf])

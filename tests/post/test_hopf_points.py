@@ -8,7 +8,7 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
-from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
+from rodsweep.post.hopf_points import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.sweep.points.points import lines_along
 from rodsweep.tasks.protocol import solve_on_one_rank
@@ -81,7 +81,7 @@ def test_points_that_are_listed_make_the_lines_that_a_grid_makes(tmp_path):
 
 def changes_on(view, name="F"):
     (line,) = lines_along(view.point_columns, name)
-    return StoredChanges(view, name).thresholds_on(line)
+    return StoredThresholds(view, name).thresholds_on(line)
 
 
 def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
@@ -96,8 +96,8 @@ def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
 def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
-    assert changes_on(view) == [BracketedChange(27.0, 28.0, "hopf")]
-    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    assert changes_on(view) == [BracketedThreshold(27.0, 28.0, "hopf")]
+    (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert line == "F** (straight rod starts to beat): between 27 and 28"
 
 
@@ -118,7 +118,7 @@ def test_hopf_points_beyond_the_points_of_a_line_are_not_its_own():
     assert changes_on(view) == []
 
 
-THRESHOLD = LocatedChange(20.0, 1e-6, "hopf")
+THRESHOLD = LocatedThreshold(20.0, 1e-6, "hopf")
 
 
 def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_they_leave_it():
@@ -135,7 +135,7 @@ def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_the
 def test_cycles_that_shrink_towards_a_restabilization_have_a_law_below_it():
     F = np.array([18.0, 19, 19.5, 21])
     amplitude = np.r_[0.4 * np.sqrt((20 - F[:3]) / 20), 0]
-    (law,) = square_root_laws(F, amplitude, [LocatedChange(20.0, 1e-6, "restabilization")])
+    (law,) = square_root_laws(F, amplitude, [LocatedThreshold(20.0, 1e-6, "restabilization")])
     assert (law.coefficient, law.above, law.end) == (pytest.approx(0.4), False, 18)
 
 
@@ -239,7 +239,7 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert stability_lines(view, "F", StoredChanges(view, "F").thresholds_on) == ([], [])
+    assert stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on) == ([], [])
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
@@ -271,7 +271,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert line == f"F** (straight rod starts to beat): {expected}"
 
 
@@ -282,7 +282,7 @@ def test_the_summary_tells_every_window_of_flutter_on_a_line():
     places = [9.0, 29.0, 49.0, 69.0, 89.0]
     kinds = ["hopf", "restabilization"] * 2 + ["hopf"]
     view.variables.update(hopf_variables("F", [(F, 1e4, 1e2, 1e-2) for F in places], kinds=kinds))
-    (beats, again), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    (beats, again), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert re.findall(r"(\d+)\.0+", beats) == ["9", "49", "89"]
     assert re.findall(r"(\d+)\.0+", again) == ["29", "69"]
 
@@ -319,7 +319,7 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     assert found["hopf_F"] == pytest.approx(WINDOW[:1], rel=1e-12)
     view = make_view(([60.0, 75], [200.0], [1e4], [1e-4], [1.0]), [0, 0], stored=())
     view.variables.update(found | {"linear_growth_rate": np.ones((2, 1, 1, 1, 1))})
-    stored = StoredChanges(view, "F")
+    stored = StoredThresholds(view, "F")
     (line,) = lines_along(view.point_columns, "F")
     assert stored.thresholds_on(line) == []
     assert [point.position for point in stored.thresholds_up_to_end(line)] == pytest.approx(

@@ -10,7 +10,7 @@ from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
 import rodsweep as rs
-from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
+from rodsweep.post.hopf_points import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
 from rodsweep.post.summary.ranges import axis_values_text, number_with_error
 from rodsweep.post.summary.stability import stability_lines
@@ -45,8 +45,8 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     (line,) = lines_along(view.point_columns, "F")
     found = [
         change
-        for change in StoredChanges(view, "F").thresholds_on(line)
-        if isinstance(change, LocatedChange) and change.changes_stability
+        for change in StoredThresholds(view, "F").thresholds_on(line)
+        if isinstance(change, LocatedThreshold) and change.changes_stability
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
@@ -82,7 +82,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
     (line,) = lines_along(view.point_columns, "F")
-    assert StoredChanges(view, "F").thresholds_on(line) == [BracketedChange(45, 60, "hopf")]
+    assert StoredThresholds(view, "F").thresholds_on(line) == [BracketedThreshold(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "beat): 49.758004916" in command("show", "all.h5").stdout
 
@@ -95,8 +95,8 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     located = job_of_file(command.directory / "c.yaml", ()).task.variables_from_points(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_along(view.point_columns, "F")
-    assert StoredChanges(view, "F").thresholds_on(line) == [BracketedChange(40, 60, "hopf")]
-    (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    assert StoredThresholds(view, "F").thresholds_on(line) == [BracketedThreshold(40, 60, "hopf")]
+    (told,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert told == "F** (straight rod starts to beat): between 40 and 60"
 
 

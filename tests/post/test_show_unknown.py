@@ -211,3 +211,30 @@ def test_files_that_are_merged_keep_the_reasons_of_both():
     )
     many = "\n".join(f"F={i}.0: failed {'x' * i}" for i in range(2 * MAX_FAILURE_REASONS))
     assert len(joined_failure_reasons(many)[FAILURE_REASONS_ATTRIBUTE].splitlines()) == MAX_FAILURE_REASONS
+
+
+@pytest.mark.parametrize(
+    ("task", "told_of_one"),
+    [
+        ("thresholds", "the thresholds of this rod are not known"),
+        ("criticality", "the Hopf points of this rod are not known"),
+    ],
+)
+def test_a_failed_search_is_not_told_as_a_search_without_thresholds(command, task, told_of_one):
+    """No bound on the eigenvalues of this rod can be computed in double precision."""
+    parameters = "k1: {}, k2: 1.0e-300, gamma3: 1.0e+300"
+    text = f"task: {task}\nparameters: {{{parameters}}}\n"
+    pages = []
+    for name, k1 in (("one", "1.0e+300"), ("two", "[200, 1.0e+300]")):
+        command.write(f"{name}.yaml", text.replace("k1: {}", f"k1: {k1}"))
+        command.solved(f"{name}.yaml")
+        pages.append(command("show", f"{name}.h5").stdout)
+    one, several = pages
+    assert told_of_one in one
+    assert "not known at 2 rods" in several
+    for page in pages:
+        assert "searched up to" not in page
+        assert "no threshold up to" not in page
+    failed = getattr(rs.Rod(k1=1e300, k2=1e-300, gamma3=1e300), task)()
+    assert (str(failed.status), int(failed.crossing_count)) == ("failed", -1)
+    assert "up to" not in str(failed)

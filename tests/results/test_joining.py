@@ -77,7 +77,7 @@ def test_joined_files_are_a_run_of_all_their_points(command, text, parts):
     assert joined.returncode == 0, joined.stderr
     command.write("c.yaml", text)
     again = command("run", "c.yaml", "-o", "m.h5")
-    rest = "0 of 4 points to do, 4 kept, then curves through all" if text == DIAGRAM else "nothing to do"
+    rest = "0 of 4 points to do, 4 kept, then the curves" if text == DIAGRAM else "nothing to do"
     assert rest in again.stdout, again.stdout + again.stderr
     command.solved("c.yaml")
     files = [command.directory / name for name in ("m.h5", "c.h5")]

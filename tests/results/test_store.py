@@ -247,10 +247,10 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
     path = tmp_path / "a.h5"
     for content in (b"", b"not HDF5", b"\x89HDF\r\n\x1a\n" + b"\0" * 100):
         path.write_bytes(content)
-        with pytest.raises(InputError, match="not a whole rodsweep result"):
+        with pytest.raises(InputError, match="not a complete rodsweep result"):
             Store(path, plan())
         assert path.read_bytes() == content
-        with pytest.raises(InputError, match="not a whole rodsweep result"):
+        with pytest.raises(InputError, match="not a complete rodsweep result"):
             read_view(path)
 
 

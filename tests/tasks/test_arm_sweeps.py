@@ -125,7 +125,7 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"youn": "1 kPa"}, {}, "unknown key parameters.arm.youn; did you mean young?"),
         ("spectrum", {"young": None}, {}, "parameters.arm.young"),
         ("spectrum", {"viscosity": ["2 Pa s", "1 Pa s"]}, {}, r"viscosity: .* is not sorted"),
-        ("phase_diagram", {"viscosity": ["1 Pa s", "2 Pa s"]}, {}, "several values, which move no parameter"),
+        ("phase_diagram", {"viscosity": ["1 Pa s", "2 Pa s"]}, {}, "which change no parameter"),
         ("spectrum", {"pressure": "100 kPa"}, {}, "pressure = 100000 Pa crushes the arm"),
         ("spectrum", {"pressure": ["1.2 of flutter", "2 kPa"]}, {}, "has relative and absolute values"),
         ("spectrum", {"length": {"start": 5, "stop": "10 cm", "num": 4}}, {}, "in m; start has no unit, so"),
@@ -147,7 +147,7 @@ def test_other_units_ask_for_the_same():
         ("criticality", {}, {}, "solves for the load; remove it"),
         ("branch", {}, {}, "solves for the load; remove it"),
         ("branch", {}, {"along": "k1", "start": 10}, "branch.along: k1 is not allowed with parameters.arm"),
-        ("phase_diagram", {"young": ["90 kPa", "100 kPa"]}, {}, "arm.young has several values, which move"),
+        ("phase_diagram", {"young": ["90 kPa", "100 kPa"]}, {}, "arm.young has several values, which change"),
         ("limit_cycle", {"length": ["9 cm", "10 cm"]}, {"start": "neighbour"}, "changes a single parameter"),
     ],
 )  # fmt: skip

@@ -64,8 +64,8 @@ def whole(tmp_path_factory, loaded):
     command.write("c.yaml", DIAGRAM)
     run = command("run", "c.yaml", "-o", "whole.h5")
     assert run.returncode == 0, run.stderr
-    assert "2 of 2 points to do, then curves through all" in run.stdout
-    assert "2 halves of curves of cycles followed" in run.stdout
+    assert "2 of 2 points to do, then the curves" in run.stdout
+    assert "2 half curves of cycles followed" in run.stdout
     yield command
     command.clear()
 
@@ -101,10 +101,8 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, 
     status, out = run_halted(whole, name, items, ranks, how)
     if how != signal.SIGKILL:
         assert status == 75
-        assert (
-            f"stopped by {how.name}; 2 points kept, the curves are missing, {items} of their halves kept"
-            in out
-        )
+        halves = "1 half curve" if items == 1 else f"{items} half curves"
+        assert f"stopped by {how.name}; 2 points kept, the curves are missing, {halves} kept" in out
     shown = " ".join(whole("show", name).stdout.split())
     assert "all rows are computed; the curves are missing" in shown
     if how == signal.SIGKILL:
@@ -116,9 +114,9 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, 
     assert len([p for p in kept.directory.glob("unit-*") if p.name[5:].isdecimal()]) == items
     again = whole("run", "c.yaml", "-o", name)
     assert again.returncode == 0, again.stderr
-    assert "0 of 2 points to do, 2 kept, then curves through all" in again.stdout
+    assert "0 of 2 points to do, 2 kept, then the curves" in again.stdout
     assert "nothing to do" not in again.stdout
-    halves = "1 half of a curve" if items == 1 else "2 halves of curves"
+    halves = "1 half curve" if items == 1 else "2 half curves"
     assert f"{halves} of cycles followed" in again.stdout
     assert same(content(whole.directory / name), content(whole.directory / "whole.h5"))
     assert not kept.directory.exists()

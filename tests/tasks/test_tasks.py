@@ -24,6 +24,7 @@ from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
+from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -85,7 +86,7 @@ def search(index=0, **more):
     kinds = list(enumerate((1, 2, 4, 5, 1)))
     found = tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds)
     return SimpleNamespace(
-        status=0,
+        status=ThresholdStatus.ok,
         thresholds=found,
         hopf_points=found,
         search_result=SimpleNamespace(

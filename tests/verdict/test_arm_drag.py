@@ -76,7 +76,9 @@ def test_a_phase_diagram_has_the_drags_along_gamma3():
     for place, gamma3, tau2 in zip(data.drag.values, data.gamma3.values, data.tau2.values, strict=True):
         arm = SlenderArm(**SILICONE, drag=DRAG_NAMES[place])
         assert (gamma3, tau2) == (arm.gamma3, arm.tau2)
-    with pytest.raises(rs.InputError, match=r"arm\.pressure is relative to flutter; a phase diagram"):
+    with pytest.raises(
+        rs.InputError, match=r"arm\.pressure is relative to flutter; the axes of a phase diagram"
+    ):
         rs.sweep("phase_diagram", arm=SILICONE | {"pressure": "1.2 of flutter"}, gamma3=[1e-3, 2e-3])
 
 

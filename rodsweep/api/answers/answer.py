@@ -35,7 +35,8 @@ number of rows."""
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WholeTable:
-    """All numbers and lists of an answer. text: for a terminal. html: for a notebook."""
+    """All numbers of an answer, and the lists in LISTS_PRINTED_IN_FULL. text: for a terminal. html: for a
+    notebook."""
 
     text: str
     html: str
@@ -92,7 +93,7 @@ class Answer:
 
     @property
     def sentence(self) -> str:
-        """Meaning of the status, in one sentence."""
+        """Meaning of the status, in one sentence; "" if the file has no sentence for the status."""
         lines = str(self.data.attrs["status_sentences"]).splitlines()
         return dict(line.split(": ", 1) for line in lines).get(self.status, "")
 
@@ -156,8 +157,8 @@ class Answer:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._attribute_names()})
 
     def table(self) -> "WholeTable":
-        """All numbers with units and meanings, and the lists, as a text in a terminal and as a table in a
-        notebook.
+        """All numbers with units and meanings, and the short lists, as a text in a terminal and as a table in
+        a notebook. Of long lists, such as `cycles`, only the number of rows is shown.
 
         `rs.table(answer, NAME)` returns the list NAME, with the parameters of the rod, as a DataFrame.
         """

@@ -15,7 +15,7 @@ from ...config.document.call_arguments import refusing_wrong_arguments, unknown_
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.figures import draw
-from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, Shapes
+from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, ShapeFunction
 from ...post.figures.sections import checked_section_values, section_at_values
 from ...results.file.view import View
 from ...solve.exclusive import one_at_a_time
@@ -101,7 +101,7 @@ class SolvedShapes:
     function that computes the shapes.
     """
 
-    solve: Shapes = with_shapes
+    solve: ShapeFunction = with_shapes
     solved: dict[tuple[int, ...], View] = field(default_factory=dict)
     """Views with shapes, by the numbers of the solved points, which are counted from 1."""
 

@@ -45,7 +45,8 @@ class PrintedAnswer:
     numbers: tuple[Column, ...]
     """Variables with a single value, as columns with one row."""
     absent_names: tuple[str, ...]
-    """Names of the variables that have no value for this rod."""
+    """Names of the variables that have no value for this rod; empty unless the status is 0, that is,
+    success."""
     lists: Mapping[str, tuple[Column, ...]]
     """Columns of each list printed in full, by name of the list; the first column numbers the items."""
     row_counts: Mapping[str, int]
@@ -92,7 +93,7 @@ def brief_text(printed: PrintedAnswer) -> str:
 def brief_html(printed: PrintedAnswer) -> str:
     """Short HTML of an answer, with the content of `brief_text`."""
     parts = [_html_heading(printed)]
-    if pairs := _number_pairs(printed):
+    if pairs := _main_number_texts(printed):
         parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
     columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
     if columns:
@@ -102,7 +103,8 @@ def brief_html(printed: PrintedAnswer) -> str:
 
 
 def whole_text(printed: PrintedAnswer) -> str:
-    """Long text of an answer: the heading, every number with its unit and meaning, and the lists."""
+    """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
+    in full, and the numbers of rows of all other lists."""
     rows = [
         (c.name, printed.rod.point_texts.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers
     ]
@@ -152,7 +154,7 @@ def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     )
 
 
-def _number_pairs(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
+def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
     """(name, value, error with sign, unit), as texts, for each main number of the task that has a value."""
     pairs = []
     for name in printed.headline.numbers:
@@ -168,7 +170,7 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
     value.
     """
     room = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
-    pairs = _number_pairs(printed)[: max(room, MIN_ROWS)]
+    pairs = _main_number_texts(printed)[: max(room, MIN_ROWS)]
     if not pairs:
         return []
     cells = [column_cells((), column) for column in zip(*pairs, strict=True)]
@@ -180,7 +182,8 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     """Returns (columns of the main list, number of rows of the complete list).
 
     room: maximum number of rows in a column. A column consists of the cells name, unit, and values; errors
-    form a separate column. Columns that would make a line longer than WIDTH are omitted.
+    form a separate column. The first column that would make a line longer than LINE_WIDTH, and all later
+    columns, are omitted. Returns ([], 0) for a task without a main list.
     """
     digits = printed.rod.list_texts.get(printed.headline.table)
     if digits is None:
@@ -203,7 +206,8 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
 
 
 def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
-    """Lines of the main list, after an empty line. room: maximum number of lines."""
+    """Lines of the main list, after an empty line; empty if the list has no rows. room: desired maximum
+    number of lines; at least MIN_ROWS rows are printed."""
     rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
     columns, count = _brief_cells(printed, rows)
     if count == rows + 1:  # the line "and 1 more" has room for the row

@@ -65,14 +65,14 @@ class RodPortrait:
 
     @property
     def modes(self) -> dict[str, Answer]:
-        """Leading modes at the first threshold of each kind, by kind: onset, hopf."""
+        """Leading modes at the first threshold of each kind, by kind: onset, hopf. A kind without a threshold
+        has no entry."""
         return {kind: self._task_answer(view) for kind, (_, view) in self.results.modes.items()}
 
     @property
     def cycles(self) -> dict[float, Answer]:
-        """Limit cycles at three forces, by force. If no cycle was found at a force, the status of its answer
-        gives the reason.
-        """
+        """Limit cycles at three forces, by force; empty if no branch has a stable cycle. If no cycle was
+        found at a force, the status of its answer gives the reason."""
         return {F: self._task_answer(view) for F, view in self.results.cycles}
 
     @property

@@ -118,9 +118,8 @@ def _cycle_error(at: ReferenceCycle, period: float, height: float) -> float:
 
 def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
-    y are accurate, within SETTLING_TOLERANCE. settings: contenders of one integrator, from the loosest
-    tolerance.
-    """
+    y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
+    False. settings: contenders of one integrator, from the loosest tolerance."""
     task = IntegrationTask(
         at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
     )

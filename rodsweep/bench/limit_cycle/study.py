@@ -126,7 +126,7 @@ def time_at_error_table(measurements: Sequence[Measurement]) -> str:
 
 def time_at_error(target: float, errors: Sequence[float], times: Sequence[float]) -> float:
     """Time of a method at the error `target`, interpolated in logarithms; nan if the method does not reach
-    this error.
+    this error, or has no larger error at any setting.
 
     errors, times: of all settings, from the loosest. The time is interpolated between the last setting with
     an error above the target and the next setting, so that an accidentally small error at a loose tolerance

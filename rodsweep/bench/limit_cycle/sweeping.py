@@ -68,7 +68,7 @@ FAILED_COLUMNS = dict.fromkeys(
 
 @dataclass(frozen=True, eq=False)
 class AccurateCycle:
-    """Reference cycle on a mesh with errors of REFERENCE_ACCURACY.
+    """Reference cycle on a mesh with the relative accuracy REFERENCE_ACCURACY.
 
     orbit: the cycle. period: in tau2. tip_y_max: largest y of the tip in L.
     """
@@ -112,7 +112,7 @@ class SweptRod:
 
 def swept_rod(point: Rod, accuracy: float) -> SweptRod:
     """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
-    of the cycles."""
+    relative accuracy of the cycles."""
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
@@ -158,7 +158,8 @@ def require_cycle(cycle: Cycle) -> Cycle:
 
 
 def cycle_contenders(accuracy: float) -> list[Contender]:
-    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one per parameter and cold start."""
+    """Contenders that solve the cycle of a `SweptRod` to an accuracy: one for each of SWEPT_PARAMETERS, which
+    starts from a neighbour's cycle, and one for each of COLD_STARTS."""
     setting = f"{accuracy:.0e}"
     warm = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))

@@ -47,8 +47,8 @@ ARM_RODS = {
 ELEMENT_ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements on which eigensolvers are run."""
 EDGE_ACCURACY = 1e-2
-"""Accuracy for which the edges of the elements are chosen; the orders in ELEMENT_ORDERS make the mesh more
-accurate."""
+"""Relative accuracy for which the edges of the elements are chosen; the orders in ELEMENT_ORDERS make the
+mesh more accurate."""
 TARGET_ERROR = 1e-10
 """Relative error at which the methods are compared."""
 REFERENCE_REFINEMENT = 16.0
@@ -72,7 +72,8 @@ class UnsolvedArms:
 
 
 def exact_arm_spectrum(rod: Rod) -> list[complex]:
-    """The MODE_COUNT leading eigenvalues of an arm, by Newton's method for D with finer elements."""
+    """The MODE_COUNT leading eigenvalues of an arm, by Newton's method for D, with elements finer than in
+    `rodsweep`."""
     determinant = ArmDeterminant(rod)
     roots: list[complex] = rodsweep_spectrum(rod, certify=True).tolist()
     for _ in range(NEWTON_STEP_COUNT):
@@ -82,9 +83,8 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and the peers on all ARMS, at all sizes of the eigenproblem.
-    peers: contenders of the peers. rounds: number of timed rounds.
-    """
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the eigenproblem.
+    peers: contenders of the peers. rounds: number of timed rounds."""
     measurements = []
     for name, rod in ARM_RODS.items():
         judge = partial(_error_field, exact_arm_spectrum(rod))
@@ -93,7 +93,8 @@ def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measure
 
 
 def _error_field(exact: list[complex], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement` for computed eigenvalues w, (modes,). exact: reference eigenvalues."""
+    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: reference
+    eigenvalues."""
     return {"error": relative_error(w, exact)}
 
 

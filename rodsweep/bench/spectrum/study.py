@@ -158,7 +158,8 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
 
 
 def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement` for computed eigenvalues w, (modes,). exact: exact eigenvalues."""
+    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: exact
+    eigenvalues."""
     return {"error": relative_error(w, exact)}
 
 

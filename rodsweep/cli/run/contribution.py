@@ -87,8 +87,8 @@ class RunEnd:
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
         if self.followed_halves is not None:
             word = "curves in" if self.stored_halves is None else "curves stopped after"
-            halves = "half of a curve" if self.followed_halves == 1 else "halves of curves"
-            done = f"; {self.followed_halves} {halves} of cycles followed" if self.followed_halves else ""
+            halves = counted(self.followed_halves, "half curve")
+            done = f"; {halves} of cycles followed" if self.followed_halves else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
@@ -96,7 +96,7 @@ class RunEnd:
         """Clause with the numbers of points and half curves that a stopped run has stored."""
         points = f"{counted(self.stored_points, 'point')} kept"
         if self.stored_halves is not None:
-            return f"{points}, the curves are missing, {self.stored_halves} of their halves kept"
+            return f"{points}, the curves are missing, {counted(self.stored_halves, 'half curve')} kept"
         if self.interrupted_points:
             return f"{points}, {self.interrupted_points} interrupted, to be solved again"
         return points

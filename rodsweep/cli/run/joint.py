@@ -19,7 +19,7 @@ from ...tasks.protocol import JointVariables, NamedArrays, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
 from ...watch import SolveStopped, reporting_to
 
-HALF_CURVE_NOUN = "halves of curves"
+HALF_CURVE_NOUN = "half curves"
 """Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 

@@ -122,7 +122,8 @@ class PointWork:
         return lambda index: ((index, solver.solve(index)),)
 
     def _item_name(self, item: int) -> str:
-        """Name of a work item, a point or a chain, for the progress display."""
+        """Name of a work item for the progress display. A stretch has the name of its first point."""
         if self.solver.chained:
             return f"chain {item + 1} of {self.solver.chained.chains.count}"
-        return f"point {item + 1} of {self.job.points.count}"
+        first = int(self.solver.stretched[0].indices(item)[0]) if self.solver.stretched else item
+        return f"point {first + 1} of {self.job.points.count}"

@@ -101,7 +101,7 @@ class _RankRun:
             shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
             if self.joint and self._lacks_joint_variables(index_count(missing) - count):
-                kept += ", then curves through all"
+                kept += ", then the curves"
             self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[RunContribution] = []
         if count:

@@ -24,7 +24,8 @@ CHANGED_PARAMETER = SINGLE_PARAMETER_OF | dict.fromkeys(LOAD_OF_RATIO, "F")
 """Name of the parameter that changes along an axis of a grid over an arm's quantities, by name of the
 axis."""
 PARAMETER_STORED_ALONG = SINGLE_PARAMETER_OF | {"drag": "gamma3", "tau2": "gamma3"}
-"""Name of the parameter along whose axis a result file stores a quantity or unit that has several values."""
+"""Name of the parameter along whose axis a result file stores several values of a quantity or a unit of the
+arm, by name of this quantity or unit."""
 FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
 """Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
 viscosity, and the densities are used only to test whether the model applies."""

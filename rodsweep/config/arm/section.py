@@ -158,18 +158,18 @@ class ArmSection(StrictSection):
         if self.is_parameter_grid:
             self.arm_of(self.first_values, loaded=True)
 
-    def refuse_conflicting_keys(self, forced: bool, beside: Collection[str]) -> None:
+    def refuse_conflicting_keys(self, forced: bool, given_parameters: Collection[str]) -> None:
         """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
         Poisson's ratio.
 
-        forced: whether F is a parameter of the task. beside: names of the parameters that replace the arm's
-        values.
+        forced: whether F is a parameter of the task. given_parameters: names of the parameters that replace
+        the arm's values.
         """
-        loads = ["parameters.F"] if "F" in beside else []
+        loads = ["parameters.F"] if "F" in given_parameters else []
         loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(self, name) is not None]
         if loads[1:]:
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
-        if "poisson" in self.varying_quantities and "k2" in beside:
+        if "poisson" in self.varying_quantities and "k2" in given_parameters:
             raise ValueError(
                 "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
                 "too; give one of them"
@@ -179,7 +179,7 @@ class ArmSection(StrictSection):
                 f"parameters.arm.{self.load} is given, but the task solves for the load; remove it, and set "
                 "the end of the search by the option F_max (in branch: stop)"
             )
-        if forced and not (self.load or "F" in beside):
+        if forced and not (self.load or "F" in given_parameters):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
     def grid_axes(self) -> dict[str, Axis]:
@@ -217,9 +217,9 @@ class ArmSection(StrictSection):
         """Names of parameters that only cones have: ("taper",) for cones, else ()."""
         return () if self.tip_radius is None else ("taper",)
 
-    def grid_point_count(self, beside: int) -> int:
-        """Number of points of a grid. beside: number of combinations of the parameters given with the arm."""
-        return int(np.prod([float(axis.size) for axis in self.quantity_axes.values()])) * beside
+    def grid_point_count(self, given_combinations: int) -> int:
+        """Number of points of a grid. given_combinations: number of combinations of the given parameters."""
+        return int(np.prod([float(axis.size) for axis in self.quantity_axes.values()])) * given_combinations
 
     @property
     def first_values(self) -> dict[str, float]:

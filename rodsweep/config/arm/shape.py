@@ -87,18 +87,18 @@ def tapers_of(arm: "ArmSection") -> set[float]:
     return {tip / base for tip, base in pairs}
 
 
-def refuse_misused_shape(arm: "ArmSection", beside: dict[str, Any]) -> None:
+def refuse_misused_shape(arm: "ArmSection", given_parameters: dict[str, Any]) -> None:
     """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
     segments.
 
-    beside: parameters given in addition to the arm, by name.
+    given_parameters: parameters given in addition to the arm, by name.
     """
     if arm.segments is not None and "length" in arm.varying_quantities:
         raise ValueError(
             "parameters.arm.length has several values, but the segments fix the length; leave it out"
         )
     for name in SHAPE_KEYS:
-        if getattr(arm, name) is not None and "taper" in beside:
+        if getattr(arm, name) is not None and "taper" in given_parameters:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
 
 

@@ -46,8 +46,8 @@ def read_config_text(path: Path) -> str:
         )
     if len(data) > MAX_CONFIG_BYTES:
         raise InputError(
-            f"{where} is larger than {MAX_CONFIG_BYTES} bytes, which no config is; write many points into a "
-            "CSV file and name the file as parameters.points"
+            f"{where} is larger than {MAX_CONFIG_BYTES} bytes, the limit for a config; write many points "
+            "into a CSV file and name the file as parameters.points"
         )
     try:
         return data.decode("utf-8-sig")
@@ -96,7 +96,7 @@ class _PlainDataParser(Parser):
         name = type(event).__name__
         self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
         if self.depth > MAX_DEPTH:
-            raise InputError(f"keys are nested more than {MAX_DEPTH} levels deep, and no config needs that")
+            raise InputError(f"keys are nested more than {MAX_DEPTH} levels deep, the limit for a config")
         return event
 
 

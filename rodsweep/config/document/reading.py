@@ -165,7 +165,7 @@ def _apply_override(tree: dict, override: str) -> None:
         raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
     if len(path) > MAX_DEPTH:
         raise InputError(
-            f"{where}: keys are nested more than {MAX_DEPTH} levels deep, and no config needs that"
+            f"{where}: keys are nested more than {MAX_DEPTH} levels deep, the limit for a config"
         )
     node = tree
     for i, name in enumerate(path[:-1]):

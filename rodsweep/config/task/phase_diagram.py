@@ -176,16 +176,16 @@ class PhaseDiagramConfig(LinearConfig):
             several = next(
                 name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
             )
-            moves = "no parameter" if several in FLUID_QUANTITIES else "several parameters at once"
+            changes = "no parameter" if several in FLUID_QUANTITIES else "several parameters at once"
             why = (
                 "is relative to flutter"
                 if several in LOAD_OF_RATIO
-                else f"has several values, which move {moves}"
+                else f"has several values, which change {changes}"
             )
             raise ValueError(
-                f"parameters.arm.{LOAD_OF_RATIO.get(several, several)} {why}; a phase diagram of an "
-                f"arm is over {joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given with "
-                "the arm"
+                f"parameters.arm.{LOAD_OF_RATIO.get(several, several)} {why}; the axes of a phase "
+                f"diagram are {joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given in "
+                "addition to the arm"
             )
         long = self.plane_parameters
         names = joined_names((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")

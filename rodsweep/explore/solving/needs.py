@@ -43,12 +43,9 @@ def answer_inputs(question: Question) -> AnswerInputs:
 
 
 def state_to_solve(kind: str, state: PageState, drawn: PageState | None) -> PageState:
-    """State for a question of the kind `kind`: the state of the page, but `drawn` for curves of cycles if the
-    rod lies in the drawn diagram, to which the curves are then added.
-
-    state: state of the page. drawn: state around which the drawn diagram was solved; None if there is no
-    diagram.
-    """
+    """State for a question of the kind `kind`: `drawn` for the question "cycles" if the rod of the page lies
+    in the drawn diagram, to which the curves of cycles are then added; otherwise `state`. state: state of the
+    page. drawn: state around which the drawn diagram was solved; None if there is no diagram."""
     if kind != "cycles" or drawn is None or state.tab != "rod":
         return state
     if answer_inputs(Question("diagram", state)) != answer_inputs(Question("diagram", drawn)):

@@ -88,9 +88,8 @@ def thresholds_answer(state: PageState) -> AnswerVariables:
 
 
 def growth_answer(state: PageState) -> AnswerVariables:
-    """Growth rates of the leading modes along F, as variables by name. unit: "1/tau2" for a rod, "1/s" for an
-    arm.
-    """
+    """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
+    the force that crushes the rod. unit: "1/tau2" for a rod, "1/s" for an arm."""
     subject = state.subject()
     tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
     rod = rod_of(subject)

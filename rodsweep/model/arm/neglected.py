@@ -68,7 +68,8 @@ class Effect:
 
     name: str
     value: Array
-    """Ratio of the neglected effect to an effect in the model; nan for an arm at rest."""
+    """Ratio of the neglected effect to an effect in the model; nan if unknown, as inertia of an arm at
+    rest."""
     limit: float
     """The model does not apply if `value` is larger than this."""
     viscosity_factor: Array
@@ -84,7 +85,8 @@ class Effect:
 
     @property
     def validity(self) -> NDArray[np.int8]:
-        """`Validity` of the model in view of this effect, integers, (...,); `applies` for an arm at rest."""
+        """`Validity` of the model in view of this effect, integers, (...,); `applies` where `value` is
+        nan."""
         return (self.value_over_limit > DOUBTFUL_RATIO).astype(np.int8) + (self.value_over_limit > 1.0)
 
 
@@ -143,7 +145,8 @@ def largest_angular_frequency(arm: SlenderArm, frequency: ArrayLike) -> Array:
 
 
 def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag m omega/gamma2 of the drag, caused by the mass of the arm; `rate` and the effect: (...,)."""
+    """Phase lag m omega/gamma2 of the drag, caused by the mass of the arm. rate: omega in rad/s; `rate` and
+    the effect: (...,)."""
     along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
     value = max(arm.mass_at(station) / own.gamma2 for station, own in along) * rate
@@ -153,7 +156,8 @@ def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 
 def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag of the drag, caused by the inertia of the fluid; `rate` and the effect: (...,)."""
+    """Phase lag of the drag, caused by the inertia of the fluid. rate: angular frequency in rad/s; `rate` and
+    the effect: (...,)."""
     logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length

@@ -114,8 +114,8 @@ class Build:
         return self.constitutive_law.crushing_load * _smallest_factor_along(self.profile, taper, "k1")
 
     def crushing_ratio(self, F: float, k1: float, taper: float) -> float:
-        """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: at the
-        base."""
+        """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: stretch
+        stiffness at the base. taper: tip radius over base radius."""
         return F / (k1 * self.relative_crushing_force(taper))
 
     def relative_least_rotational_drag(self, taper: float) -> float:

@@ -85,7 +85,7 @@ def _is_negligible(step: LawUnknowns, at: LawUnknowns) -> bool:
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
-    law. sides: (2, 7).
+    law. sides: both sides, (2, 7).
 
     Newton's method solves the equations of equal stresses on both sides.
     """
@@ -118,16 +118,15 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
 
 @compiled
 def unknowns_behind_jump(sides: Array, q: LawUnknowns, a: LawUnknowns) -> LawUnknowns:
-    """The unknowns b on the tip side of a jump, from the mean unknowns q and the unknowns a; sides:
-    (2, 7).
-    """
+    """The unknowns b on the tip side of a jump, from the mean unknowns q and the unknowns a on the base side.
+    sides: both sides, (2, 7)."""
     return LawUnknowns((q.q1 - sides[0, 3] * a.q1) / sides[1, 3], (q.q3 - sides[0, 4] * a.q3) / sides[1, 4])
 
 
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
-    the constitutive law. sides: (2, 7).
+    the constitutive law. sides: both sides, (2, 7).
     """
     a = unknowns_before_jump(law, sides, LawUnknowns(q1, q3))
     return stress_beyond_rest(law, _section_of_side(sides[0]), a.q1, a.q3)
@@ -137,7 +136,8 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> Tangent:
     """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
 
-    law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: (2, 7).
+    law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both
+    sides, (2, 7).
     """
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
@@ -159,7 +159,8 @@ def changes_beside_jump(
     """Returns (change of a, change of b): changes of the unknowns on the base side and the tip side of a
     jump.
 
-    law: number of the constitutive law. q: mean unknowns. change: infinitesimal change of q. sides: (2, 7).
+    law: number of the constitutive law. q: mean unknowns. change: infinitesimal change of q. sides: both
+    sides, (2, 7).
     """
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
@@ -174,7 +175,7 @@ def changes_beside_jump(
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3. law: number of
-    the constitutive law. sides: (2, 7).
+    the constitutive law. sides: both sides, (2, 7).
     """
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
@@ -188,9 +189,9 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
     q3.
 
-    law: number of the constitutive law. sides: (2, 7). change: derivatives of nu, c1 and c3 of both sides
-    with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a parameter
-    multiplies the compliances of both sides by the same factor.
+    law: number of the constitutive law. sides: both sides, (2, 7). change: derivatives of nu, c1 and c3 of
+    both sides with respect to the parameter, (2, 3). The weights in the mean strain are constant, because a
+    parameter multiplies the compliances of both sides by the same factor.
     """
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)

@@ -20,7 +20,7 @@ from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
-from .request import FigureLook, FigureRequest, Shapes
+from .request import FigureLook, FigureRequest, ShapeFunction
 from .spectrum import draw_spectrum
 from .style import FIGURE_STYLE, PRINT_STYLE
 from .thresholds import draw_thresholds
@@ -73,8 +73,8 @@ class FigureChoices(TypedDict, total=False):
 
 def _draw_and_describe(request: FigureRequest) -> str:
     """Writes the figure and returns a description of the figure. If quantities of an arm vary and no other
-    kind of figure is requested, the figure shows results over these quantities.
-    """
+    kind of figure is requested, the figure shows results over these quantities. InputError if roots are
+    requested for another task than spectrum."""
     if can_draw_arm_map(request):
         return draw_arm_map(request)
     first = request.views[0]
@@ -90,7 +90,7 @@ def draw(
     output: Path,
     *,
     look: FigureLook = DEFAULT_LOOK,
-    shapes: Shapes | None = None,
+    shapes: ShapeFunction | None = None,
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[FigureChoices],
 ) -> str:

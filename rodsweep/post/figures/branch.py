@@ -86,7 +86,7 @@ def draw_branch(request: FigureRequest) -> str:
     for axes in third:
         marked["predicted"] = _compare_prediction(axes, curves, colours, along)
     handles = stability_entries(curves)
-    shared, own = shared_and_own_of_points(view, [rod.rod + 1 for rod in drawn])
+    shared, own = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn])
     handles += [
         Line2D([], [], color=c, lw=2, label=text)
         for c, text in zip(BRANCH_COLOURS, own, strict=False)
@@ -114,14 +114,16 @@ def draw_branch_curves(
 
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
-    """Draws the straight rod as the line y = 0; the line style shows the stability."""
+    """Draws the straight rod, where its stability is known, as the line y = 0; the line style shows the
+    stability."""
     for stable, ranges in zip((1, 0), rod.straight_ranges(_drawn_parameter_range(rod)), strict=True):
         for low, high in ranges:
             axes.plot([low, high], [0, 0], STABILITY_LINES[stable][0], color="k", lw=1.4)
 
 
 def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
-    """Legend entries for the line styles of stable, unstable and undecided parts of branches."""
+    """Legend entries for the line styles of stable and unstable parts of branches, and of parts of unknown
+    stability if there are any."""
     shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     return [
         Line2D([], [], color="k", ls=STABILITY_LINES[s][0], label=STABILITY_LINES[s][1])
@@ -133,7 +135,7 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     """Clause on branches and rods that the figure leaves out. beating: number of rods with cycles. drawn:
     number of drawn rods.
     """
-    hidden = sum(rod.hidden for rod in rods)
+    hidden = sum(rod.hidden_count for rod in rods)
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     if drawn < beating:
         more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
@@ -150,7 +152,7 @@ def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
     and up to 1.1 times the largest parameter of the branches.
     """
-    [(low, high)] = uncrushed_ranges(rod.view, [rod.rod])
+    [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
     return low, high
@@ -184,7 +186,8 @@ def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequenc
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
     amplitude coefficient |a|; returns the legend entry of the prediction.
 
-    Each branch is drawn up to its first fold, beyond which the prediction is not valid.
+    Each branch is drawn up to its first fold, beyond which the prediction is not valid. colours: of the
+    branches, in order. along: the parameter that varies along the branches.
     """
     nearest = []
     farthest = []

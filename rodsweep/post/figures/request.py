@@ -14,7 +14,7 @@ from .arm.axes import add_si_scales
 from .arm.validity import hatch_invalid_points
 from .layout.fitting import MIN_ASPECT, fit_layout
 
-Shapes = Callable[[View, Sequence[int]], View]
+ShapeFunction = Callable[[View, Sequence[int]], View]
 """Function that computes the shapes of cycles. Arguments: view of a file, and numbers of points, from 1.
 Returns a view with the shapes."""
 FigureClass = Figure
@@ -109,7 +109,7 @@ class FigureRequest:
     is_taken: bool = False
     """Whether `output` is one of the files to draw, or exists and is not a regular file."""
     look: FigureLook = FigureLook()
-    shapes: Shapes | None = None
+    shapes: ShapeFunction | None = None
     """Function that computes the shapes of cycles if the file has no shapes."""
     keep: Callable[[Figure], None] | None = None
     """Callback for the finished figure; if given, no file is written."""

@@ -23,17 +23,20 @@ EXACT_VARIABLES = ("F_end",)
 class ColumnTexts:
     """Columns of a table as text, rounded according to the errors.
 
-    columns: columns of equal length, (rows,). si: name of the SI variable, by dimensionless variable. beside:
-    absolute errors, (rows,), of variables whose error is in another table.
+    columns: columns of equal length, (rows,). si: name of the SI variable, by dimensionless variable.
+    other_errors: absolute errors, (rows,), of variables whose error is in another table, by name.
     """
 
     def __init__(
-        self, columns: Sequence[Column], si: Mapping[str, str], beside: Mapping[str, Array] | None = None
+        self,
+        columns: Sequence[Column],
+        si: Mapping[str, str],
+        other_errors: Mapping[str, Array] | None = None,
     ):
         self.columns = {column.name: column for column in columns}
         self._values = {name: self._numbers(column) for name, column in self.columns.items()}
         self._base = {si_name: name for name, si_name in si.items()}
-        self._beside = beside or {}
+        self._other_errors = other_errors or {}
 
     @staticmethod
     def _numbers(column: Column) -> Array:
@@ -47,8 +50,8 @@ class ColumnTexts:
                 return self.absolute_error(base) * np.abs(self._values[name] / self._values[base])
         if name in EXACT_VARIABLES:
             return np.zeros_like(self._values[name])
-        if name in self._beside:
-            return self._beside[name]
+        if name in self._other_errors:
+            return self._other_errors[name]
         known = absolute_errors(self._values, name)
         has_error = any(table.get(name, "") in self.columns for table in (RELATIVE_ERRORS, ABSOLUTE_ERRORS))
         return known if has_error else np.where(known > 0, known, np.nan)

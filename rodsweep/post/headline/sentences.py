@@ -85,9 +85,8 @@ def hopf_sentence(rod: OneRod) -> str:
 
 
 def branch_sentence(rod: OneRod) -> str:
-    """Sentence on the numbers of branches and cycles, and the largest y of the tip; if there is no branch, on
-    the range of the parameter.
-    """
+    """Sentence on the numbers of branches and cycles, and the largest y of the tip. If no branch exists, the
+    sentence states the searched range of the parameter. Empty if the number of branches is unknown."""
     branches = rod.count("branch_count")
     if branches is None:
         return ""

@@ -18,7 +18,7 @@ from ... import __version__
 from ...results.file.provenance import utc_time
 from ...results.file.view import View
 from ...wording import counted
-from ..figures.request import Shapes
+from ..figures.request import ShapeFunction
 from ..output_files import atomic_write, require_output_path
 from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
@@ -37,7 +37,7 @@ def require_page(output: Path, inputs: Sequence[Path]) -> None:
     require_output_path(output, (".html",), "page", inputs)
 
 
-def write_report(views: Sequence[View], output: Path, shapes: Shapes | None = None) -> str:
+def write_report(views: Sequence[View], output: Path, shapes: ShapeFunction | None = None) -> str:
     """Writes an HTML page about results to the file `output`, and returns a sentence about the page.
 
     shapes: function that computes the shapes of cycles for figures, if the file has no shapes. Raises

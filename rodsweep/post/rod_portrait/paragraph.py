@@ -133,10 +133,10 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     rod = results.branches
     if rod is None:
         return
-    if rod.hidden:
+    if rod.hidden_count:
         yield (
-            f"{rod.hidden} of its branches of cycles {is_or_are(rod.hidden)} not drawn: some special points "
-            "are not stored."
+            f"{rod.hidden_count} of its branches of cycles {is_or_are(rod.hidden_count)} not drawn: some "
+            "special points are not stored."
         )
     curves = rod.curves
     if not curves:
@@ -159,9 +159,9 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     yield from _work_limit_sentence(curves, units)
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
-    no_cycle = "none" if is_decided and not rod.hidden else "none is known"
+    no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
     yield f"Stable cycles: {units.load_ranges_text(stable, rod.errors) if stable else no_cycle}."
-    if not rod.hidden:
+    if not rod.hidden_count:
         beside = rod.coexistence
         ranges = units.load_ranges_text(beside, rod.errors) if beside else ""
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)

@@ -86,7 +86,8 @@ def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
 
 
 def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
-    """Draws the stability of the straight rod along F, with the thresholds; returns legend entries."""
+    """Draws the stability of the straight rod along F, with the thresholds; returns legend entries. If the
+    thresholds are unknown, the panel states the reason, and the list is empty."""
     view = results.views["thresholds"]
     v = view.point_values(0)
     axes.set(ylim=(-0.6, 0.6), yticks=[])
@@ -103,9 +104,9 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
-    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries. upper:
-    panel of the largest y. lower: panel of the period.
-    """
+    """Draws the branches of cycles, and the ranges with two stable states; returns legend entries. Without
+    branches, the upper panel states the reason, and the list is empty. upper: panel of the largest y. lower:
+    panel of the period."""
     rod = results.branches
     if rod is None or not rod.curves:
         lower.set_axis_off()
@@ -118,7 +119,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
         *draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
     ]
     draw_straight_rod(upper, rod)
-    if not rod.hidden:
+    if not rod.hidden_count:
         for ranges, (colour, word) in (
             (rod.coexistence, COEXISTENCE_LOOK),
             (rod.two_cycles, TWO_CYCLES_LOOK),
@@ -136,8 +137,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
-    entry.
-    """
+    entry, empty without such cycles."""
     beating = [(F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):

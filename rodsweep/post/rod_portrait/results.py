@@ -53,7 +53,7 @@ class RodResults:
     cycles: Sequence[tuple[float, View]]
     """(force, limit cycle at this force), in increasing order of the force."""
     missing: Mapping[str, str]
-    """Reason, as a sentence, for every task without a result, by task."""
+    """Reason, as a sentence, for every task of which a result is missing, by task."""
 
     @property
     def units(self) -> PortraitUnits:

@@ -51,7 +51,7 @@ def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
     at = count_of_total((counts > 0).sum(), len(rods), "rod")
     line = f"{branches} at {at}, {cycles}{_sizes_text(view, done)}"
     along = followed_parameter(view)
-    ranges = uncrushed_ranges(view, (rod.rod for rod in rods))
+    ranges = uncrushed_ranges(view, (rod.index for rod in rods))
     crushed = sum(low >= high for low, high in ranges)
     answer = [line, *_special_lines(rods, along), *_coexistence_lines(rods, along)]
     if crushed:
@@ -64,13 +64,13 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     """Yields lines about every branch of the only rod in a file, with the errors of its special points."""
     along = followed_parameter(rod.view)
     v = rod.view.variables
-    if rod.hidden:
-        part = count_of_total(rod.hidden, rod.hidden + len(rod.curves), "branch")
-        yield f"{part} {is_or_are(rod.hidden)} not shown: {FULL_LIST_REASON}"
+    if rod.hidden_count:
+        part = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
+        yield f"{part} {is_or_are(rod.hidden_count)} not shown: {FULL_LIST_REASON}"
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known"
     elif not rod.curves:
-        [(low, high)] = uncrushed_ranges(rod.view, [rod.rod])
+        [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
         if not low < high:
             yield f"the force crushes the rod everywhere in the range of {along}"
             return
@@ -83,7 +83,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
             yield f"  stable cycles at {along} = {ranges_text(curve.stable_ranges, curve.errors)}"
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
-    if rod.curves and not rod.hidden:
+    if rod.curves and not rod.hidden_count:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
         common = rod.coexistence
         words = f"{along} = {ranges_text(common, rod.errors)}" if common else nowhere
@@ -149,9 +149,8 @@ def _sizes_text(view: View, done: np.ndarray) -> str:
 
 
 def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
-    """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods.
-    along: followed parameter.
-    """
+    """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
+    then a line for each branch that stopped because no further cycle was found. along: followed parameter."""
     found: dict[str, list[tuple[float, float]]] = {
         word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
     }
@@ -172,7 +171,7 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
             verb = "leads" if len(located) == 1 else "lead"
             yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
-        f"{point_text(rod.view, rod.rod)}: branch {number}, at {along} = {rounded_text(end.at, end.error)}"
+        f"{point_text(rod.view, rod.index)}: branch {number}, at {along} = {rounded_text(end.at, end.error)}"
         for rod, number, curve in curves
         if (end := curve.special[-1]).reason == "no_cycle_found"
     ]
@@ -183,7 +182,7 @@ def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]
     """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
     along: followed parameter.
     """
-    complete = [rod for rod in rods if not rod.hidden]
+    complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {FULL_LIST_REASON}"
     if complete:
@@ -203,7 +202,9 @@ def _lines_on_rods_with(
     """
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
-        ": ".join(filter(None, (point_text(rod.view, rod.rod), f"{along} = {ranges_text(own, rod.errors)}")))
+        ": ".join(
+            filter(None, (point_text(rod.view, rod.index), f"{along} = {ranges_text(own, rod.errors)}"))
+        )
         for rod, own in zip(rods, ranges, strict=True)
         if own
     ]

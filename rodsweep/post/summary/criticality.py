@@ -157,8 +157,10 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     certified = int(v["certified"][done].sum())
     rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
+    ends = v["F_end"][done]
+    searched = f"searched up to F = {span_text(ends)}; " if np.isfinite(ends).any() else ""
     return (
-        f"searched up to F = {span_text(v['F_end'][done])}; the list of Hopf points {proof_clause(view)} at "
+        f"{searched}the list of Hopf points {proof_clause(view)} at "
         f"{count_of_total(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 

@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
-from ..hopf_points import StoredChanges
+from ..hopf_points import StoredThresholds
 from .arm.arm import region_of_arms
 from .errors import absolute_errors, known_range_text
 from .ranges import error_text, number_and_error, span_text
@@ -93,7 +93,7 @@ def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
         found, found_arm_sentences = stability_lines(
-            view, name, StoredChanges(view, name).thresholds_up_to_end
+            view, name, StoredThresholds(view, name).thresholds_up_to_end
         )
         lines += found
         arm_sentences += found_arm_sentences
@@ -113,9 +113,8 @@ def _proof_lines(view: View) -> list[str]:
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
-    """Line on the stability of the only cycle in a file, or that no multiplier is known. v: variables of the
-    file, (1, ...) each. stable: whether the status is "cycle".
-    """
+    """Line that says whether the only cycle in a file is stable, or that no Floquet multiplier is computed.
+    v: variables of the file, (1, ...) each. stable: whether the status is "cycle"."""
     if np.isnan(v["multiplier"]).all():
         return "the motion in time settles on the cycle; no Floquet multiplier is computed"
     if stable:

@@ -166,8 +166,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
     """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
-    a rod. done: mask of the computed rows, of the shape of the rows.
-    """
+    a rod, and for rows along another parameter. done: mask of the computed rows, of the shape of the rows."""
     if not view.quantities or "F" in view.parameters:
         return []
     v = view.variables

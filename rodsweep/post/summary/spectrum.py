@@ -6,7 +6,7 @@ from ...results.file.view import View
 from ...results.layouts.rods import estimates_counts, has_standard_rods
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
-from ..hopf_points import StoredChanges
+from ..hopf_points import StoredThresholds
 from .ranges import number_and_error, span_text
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region_text
@@ -66,7 +66,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
     empty lists if F does not vary.
     """
-    lines, arm_sentences = stability_lines(view, "F", StoredChanges(view, "F").thresholds_on)
+    lines, arm_sentences = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     how = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
     return lines, [f"thresholds: {how}"] if lines else [], arm_sentences
 

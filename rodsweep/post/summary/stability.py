@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import View
 from ...sweep.points.points import ParameterLine, lines_along
 from ...wording import count_of_total, counted
-from ..hopf_points import BracketedChange, LocatedChange
+from ..hopf_points import BracketedThreshold, LocatedThreshold
 from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
@@ -25,7 +25,7 @@ OTHER_THRESHOLD_WORDS = {
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
 """Phrase for a threshold along any parameter other than F, by kind."""
-Threshold = LocatedChange | BracketedChange
+Threshold = LocatedThreshold | BracketedThreshold
 """Threshold of the straight rod: located, or bracketed by two points of the file."""
 
 
@@ -52,7 +52,7 @@ def stability_lines(
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions_text(found, names, name)}")
             every = [(point, lines[i].indices) for i, points in found.items() for point in points]
-            located = [(point, at) for point, at in every if isinstance(point, LocatedChange)]
+            located = [(point, at) for point, at in every if isinstance(point, LocatedThreshold)]
             arm_sentences += thresholds_of_arm(view, kind, located) if name == "F" else []
     return texts, arm_sentences
 
@@ -62,7 +62,7 @@ def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], alon
     thresholds by index of the line. names: description of each line. along: parameter along the lines.
     """
     points = [point for line in found.values() for point in line]
-    located = [point for point in points if isinstance(point, LocatedChange)]
+    located = [point for point in points if isinstance(point, LocatedThreshold)]
     stated = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(stated))})" if stated else ""
     some = (
@@ -78,7 +78,7 @@ def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], alon
         each = ((" and ".join(map(_position_text, found[i])), names[i]) for i in found)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in each)}{error}"
     if not located:
-        ends = [(point.low, point.high) for point in points if isinstance(point, BracketedChange)]
+        ends = [(point.low, point.high) for point in points if isinstance(point, BracketedThreshold)]
         low = min(low for low, _ in ends)
         high = max(high for _, high in ends)
         return f"between {low:.6g} and {high:.6g}{some}"
@@ -93,6 +93,6 @@ def _position_text(threshold: Threshold) -> str:
     """Position of a threshold as text, rounded according to its error; for a bracketed threshold, both
     ends.
     """
-    if isinstance(threshold, BracketedChange):
+    if isinstance(threshold, BracketedThreshold):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

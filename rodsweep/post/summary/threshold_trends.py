@@ -24,7 +24,8 @@ class Trend(IntEnum):
 
 
 def _trend(forces: np.ndarray) -> Trend:
-    """Trend of thresholds along a line of rods, (n,), NaN where unknown; steps within rounding are 0."""
+    """Trend of thresholds along a line of rods, (n,), NaN where unknown; steps smaller than TREND_ROUNDING
+    times the largest threshold count as 0. The trend is unknown if fewer than two thresholds are known."""
     known = forces[np.isfinite(forces)]
     steps = np.diff(known)
     if not steps.size:

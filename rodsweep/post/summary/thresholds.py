@@ -58,10 +58,10 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
             crossing_lines(view), completeness_lines(view), details, arm_sentences, crossing_table(view)
         )
     answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
-    reliability = [
-        *search_lines(view, done, "rod"),
-        f"searched up to F = {span_text(view.variables['F_end'][done])}",
-    ]
+    reliability = search_lines(view, done, "rod")
+    ends = view.variables["F_end"][done]
+    if np.isfinite(ends).any():
+        reliability.append(f"searched up to F = {span_text(ends)}")
     return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, done)])
 
 
@@ -158,9 +158,8 @@ def completeness_lines(view: View) -> list[str]:
     hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"] else f"not {proof}"
-    lines = [
-        f"searched up to F = {v['F_end']:.15g}; the list of crossings is {proof}{unstored_clause(hidden)}"
-    ]
+    searched = f"searched up to F = {v['F_end']:.15g}; " if np.isfinite(v["F_end"]) else ""
+    lines = [f"{searched}the list of crossings is {proof}{unstored_clause(max(hidden, 0))}"]
     if np.isfinite(v["open_from"]):
         lines.append(f"undecided: F = {v['open_from']:.9g} to {v['open_to']:.9g}")
     return lines

@@ -110,10 +110,9 @@ def table_name_of(dimensions: tuple[str, ...]) -> str:
 
 
 def chosen_table(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
-    """Name of the table that the user requests. table: name of the table, or None. columns: names of columns;
-    if both are missing, the default table of the task is returned. Raises InputError for an unknown name, and
-    for columns of two tables.
-    """
+    """Name of the table that the user requests: `table` if given, else the list that has the columns
+    `columns`, else POINTS if only columns of points are named, else the default table of the task. Raises
+    InputError for an unknown name, and for columns of two tables."""
     if table is not None:
         if table not in contents.tables:
             raise InputError(

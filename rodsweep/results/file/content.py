@@ -132,8 +132,8 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
-    """Names of a variable's dimensions, read from its attributes; the only dimension of a coordinate has the
-    name of the coordinate.
+    """Names of a variable's dimensions, read from its attributes. The only dimension of a coordinate has the
+    name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged.
 
     HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
     """

@@ -2,8 +2,8 @@
 
 The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and can be opened at any time. Ranks
 write finished points to journals beside the file (`rodsweep.results.run.journal`). The points of journals are
-folded into (added to) the file at the end of a run, or at the start of the next run after a kill. A journal
-is recognised by its fingerprint, even without a file; other journals are moved away, never deleted.
+added to the file at the end of a run, or at the start of the next run after a kill. A journal is recognised
+by its fingerprint, even without a file; other journals are moved away, never deleted.
 """
 
 import json
@@ -67,7 +67,7 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        """Creates, continues or extends the file; moves other journals away. May raise InputError."""
+        """Creates, replaces, continues or extends the file, or refuses it; moves other journals away."""
         if fresh or not self.path.exists():
             self._create(fresh)
         else:
@@ -117,7 +117,7 @@ class Store:
             if anew:
                 before = self._back_up_file()
                 self.notes.append(
-                    f"{anew} of {done} stored points are computed anew; until all are done, {before} has them"
+                    f"{anew} of {done} stored points are computed again; until then {before} has their values"
                 )
         delete_matching_files(self.journal_directory, CHECKPOINTS)
         self.add_journals({})

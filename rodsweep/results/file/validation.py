@@ -47,7 +47,7 @@ def damage_refusals(path: Path) -> Iterator[None]:
         yield
     except DAMAGE_EXCEPTIONS as error:
         raise IncompleteFile(
-            f"{path} is not a whole rodsweep result file ({one_line_message(error)})"
+            f"{path} is not a complete rodsweep result file ({one_line_message(error)})"
         ) from None
 
 

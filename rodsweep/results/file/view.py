@@ -141,7 +141,7 @@ class View:
     @property
     def sentences(self) -> dict[str, str]:
         """Meaning of every status as a sentence, by name of the status."""
-        return sentences_in(self.attributes)
+        return status_sentences_in(self.attributes)
 
     def by_point(self, name: str) -> np.ndarray:
         """Variable `name` with all points flattened to the first dimension, (points, ...)."""
@@ -167,7 +167,7 @@ class View:
         return dict(zip(self.parameters, columns, strict=True))
 
 
-def sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
+def status_sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Meaning of every status as a sentence, by name of the status, from the attributes of a file."""
     lines = str(attributes.get("status_sentences", "")).splitlines()
     return dict(line.split(": ", 1) for line in lines if ": " in line)

@@ -39,7 +39,7 @@ together, by task."""
 
 
 def layout_of(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config of any task."""
+    """Layout of the result file for a resolved config of any task."""
     task = config["task"]
     if task not in LAYOUT_MAKERS:
         raise KeyError(f"unknown task {task}")
@@ -50,7 +50,7 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file that belong to all points together, for a resolved config.
+    """Variables of a file that belong to all points together, for a resolved config; empty for most tasks.
 
     is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
     """

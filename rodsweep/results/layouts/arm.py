@@ -71,7 +71,7 @@ LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
 """Name of the variable in Hz, by name of the variable for the angular frequency at a threshold."""
-BRANCH_FORCES = ("special_at", "special_error")
+FORCE_VARIABLES_OF_BRANCHES = ("special_at", "special_error")
 """Names of variables of the task branch that are forces for an arm, whose branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Extra dimensions of variables that are stored in SI units too; longer tables are stored once."""
@@ -154,7 +154,7 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
     if variable.dtype != "<f8":
         return NO_UNIT
     if variable.units == PARAMETERS["F"].unit and (
-        "F" in variable.name.split("_") or variable.name in BRANCH_FORCES
+        "F" in variable.name.split("_") or variable.name in FORCE_VARIABLES_OF_BRANCHES
     ):
         return FORCE_UNITS["force" if as_force else "pressure"]
     return SI_UNITS.get(variable.units, NO_UNIT)

@@ -132,7 +132,7 @@ OPTION_EXTENSION_RULES = {
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config."""
+    """Layout of the result file of the task branch, for a resolved config."""
     options = config["branch"]
     parameter = options["along"]
     variables = (

@@ -158,7 +158,8 @@ def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Va
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config; time series and shapes only if the config asks for them."""
+    """Layout of the result file of the task limit_cycle, for a resolved config; time series and shapes only
+    if the config asks for them."""
     options = config["limit_cycle"]
     variables: tuple[Variable, ...] = CYCLE_VARIABLES
     extents = {"harmonic": options["harmonics"], "multiplier_number": STORED_MULTIPLIERS}

@@ -35,7 +35,8 @@ OPTION_EXTENSION_RULES = dict.fromkeys(("modes", "nodes", "growth", "certify"), 
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config; transient growth only if the config asks for it."""
+    """Layout of the result file of the task modes, for a resolved config; transient growth only if the config
+    asks for it."""
     options = config["modes"]
     growth = GROWTH_VARIABLES if options["growth"] else ()
     variables = MODE_VARIABLES + MODE_FIELDS + MODE_NUMBERS + growth + POINT_VARIABLES

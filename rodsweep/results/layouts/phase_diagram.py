@@ -89,7 +89,8 @@ def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Va
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config: rows, each a line of values of one parameter."""
+    """Layout of the result file of the task phase_diagram, for a resolved config. Each point is a row, that
+    is, a line of values of one parameter."""
     options = config["phase_diagram"]
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (

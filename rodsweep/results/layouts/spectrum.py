@@ -132,7 +132,8 @@ def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Va
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config; eigenmodes only if the config asks for them."""
+    """Layout of the result file of the task spectrum, for a resolved config; eigenmodes only if the config
+    asks for them."""
     options = config["spectrum"]
     each_point: tuple[Variable, ...] = EACH_FOLLOWED_POINT
     extents = {"mode": options["modes"]}

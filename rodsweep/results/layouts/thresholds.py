@@ -67,7 +67,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to be resolved"
     return (
-        integer("crossing_count", "number of crossings found, stored or not"),
+        integer("crossing_count", "number of crossings found, stored or not; -1: the search failed"),
         *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
@@ -86,7 +86,7 @@ OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": 
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """Layout of the file of a resolved config."""
+    """Layout of the result file of the task thresholds, for a resolved config."""
     variables = with_certified_meaning(
         THRESHOLD_VARIABLES + search_variables("F", "crossing_F"), config, "crossings"
     )

@@ -185,13 +185,13 @@ class ExtensionRule:
     has_data: Callable[[np.ndarray, Any], NDArray[np.bool_]]
     """Function from (stored records, (n,); old value of the option) to whether each record already has the
     additional data, (n,)."""
-    values: tuple[Any, ...] = ()
+    option_values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
     def requests_more_data(self, before: Any, now: Any) -> bool:
         """Whether the value `now` of the option requests more data than the value `before`."""
-        if self.values:
-            return self.values.index(now) > self.values.index(before)
+        if self.option_values:
+            return self.option_values.index(now) > self.option_values.index(before)
         return bool(now > before)
 
 

@@ -164,9 +164,8 @@ def journalled_points_clause(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
     points. fingerprint: of config and points.
     """
-    return (
-        f"; what is done is kept in {directory}" if journals_with_fingerprint(directory, fingerprint) else ""
-    )
+    has_points = journals_with_fingerprint(directory, fingerprint)
+    return f"; finished points are kept in {directory}" if has_points else ""
 
 
 def _journal_header(fingerprint: str) -> bytes:

@@ -50,12 +50,12 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
         found = find_thresholds(Path(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
         return thresholds_with_status(found, request.accuracy, request.certify, request.max_thresholds)
 
-    return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, end, cause))
+    return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, math.nan, cause))
 
 
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
-    value at the end of the search. message: reason for a failure."""
+    value at the end of the search, NaN after a failure. message: reason for a failure."""
     found = ThresholdList(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, search_result=found, end=end, message=message)
 

@@ -74,7 +74,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             message=message,
         )
 
-    return outcome_or_failure(search, lambda cause: _empty_criticality(end, cause))
+    return outcome_or_failure(search, _empty_criticality)
 
 
 @cache
@@ -97,12 +97,12 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
         return HopfCoefficients(message=f"Hopf point at F = {hopf.value:.12g}: {cause_of(error)}")
 
 
-def _empty_criticality(end: float, cause: str) -> Criticality:
+def _empty_criticality(cause: str) -> Criticality:
     return Criticality(
         status=CriticalityStatus.failed,
         search_result=ThresholdList(proved=False),
         coefficients=(),
-        end=end,
+        end=math.nan,
         message=cause,
     )
 

@@ -30,21 +30,21 @@ NO_FORCE = FlutterForce(np.nan)
 
 def grid_of_arms(
     section: ArmSection,
-    beside: Mapping[str, Array],
+    given_parameters: Mapping[str, Array],
     names: tuple[str, ...],
     flutter: FlutterSearch,
     build: Build = DEFAULT_BUILD,
 ) -> Points:
-    """Points of a grid over an arm's quantities, and over the parameters in `beside` that have several
-    values.
+    """Points of a grid over an arm's quantities, and over the parameters in `given_parameters` that have
+    several values.
 
-    beside: values, (n,), of the parameters that replace the arm's parameters, by name. names: the parameters
-    of the task. flutter: force of first flutter of an arm, for relative loads. build: constitutive law and
-    profile of all arms. Raises ValueError if the rod model applies to no point.
+    given_parameters: values, (n,), of the parameters that replace the arm's parameters, by name. names: the
+    parameters of the task. flutter: force of first flutter of an arm, for relative loads. build: constitutive
+    law and profile of all arms. Raises ValueError if the rod model applies to no point.
     """
     arms, statuses = zip(*(_arm_or_status(section, v) for v in section.values_of_arms()), strict=True)
     loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
-    crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
+    crossed = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
     own = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
     table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own}
@@ -67,9 +67,9 @@ def grid_of_arms(
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * shares, shape)
         coverage[(coverage == SLENDER) & crushed] = CRUSHED
     if (coverage != SLENDER).all():
-        _refuse_grid_without_rods(section, beside, bool((coverage == NO_FLUTTER).any()), forces)
+        _refuse_grid_without_rods(section, given_parameters, bool((coverage == NO_FLUTTER).any()), forces)
     axes = {name: section.quantity_axes[name].array() for name in section.varying_quantities}
-    over = axes | {name: column for name, column in beside.items() if len(column) > 1}
+    over = axes | {name: column for name, column in given_parameters.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     codes = coverage.astype(np.int8).ravel()
@@ -101,11 +101,13 @@ def _unit_load_forces(
 
     tapers: values, (n,), that replace the arms' taper; None for no replacement.
     """
-    beside = [None] if tapers is None or section.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
-    forces = np.empty((len(arms), 1, len(beside)), object)
+    given_tapers = (
+        [None] if tapers is None or section.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
+    )
+    forces = np.empty((len(arms), 1, len(given_tapers)), object)
     for i, arm in enumerate(arms):
-        found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(beside)}
-        forces[i, 0] = [found[taper] for taper in beside]
+        found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(given_tapers)}
+        forces[i, 0] = [found[taper] for taper in given_tapers]
     return forces
 
 
@@ -145,11 +147,10 @@ def _search_failures(coverage: Array, forces: ForceArray) -> dict[int, str]:
 
 
 def _refuse_grid_without_rods(
-    section: ArmSection, beside: Mapping[str, Array], no_flutter: bool, forces: ForceArray
+    section: ArmSection, given_parameters: Mapping[str, Array], no_flutter: bool, forces: ForceArray
 ) -> None:
-    """Raises ValueError with the reason why the rod model applies to no point. beside: as in `grid_of_arms`.
-    no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`.
-    """
+    """Raises ValueError with the reason why the rod model applies to no point. given_parameters: as in
+    `grid_of_arms`. no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`."""
     section.arm_of(section.first_values, loaded=True)
     for force in forces.ravel():
         if force.failure:
@@ -159,7 +160,7 @@ def _refuse_grid_without_rods(
             f"parameters.arm.{section.load} is relative to flutter, but with the likeliest drag no arm "
             "flutters; give an absolute load"
         )
-    k1 = float(beside["k1"][0])
+    k1 = float(given_parameters["k1"][0])
     raise ValueError(
         f"parameters.k1 is {k1:.15g} and every F is above, where the rod is crushed; F must start below k1"
     )

@@ -21,8 +21,8 @@ from ...model.rod import Rod
 
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
-    """Force F of first flutter at the likeliest drag: inf if the rod does not flutter, nan if the search
-    fails.
+    """Force F of first flutter at the likeliest drag, in k3/L^2: inf if the rod does not flutter, nan if the
+    search fails.
 
     failure: reason why the search failed, or empty.
     """

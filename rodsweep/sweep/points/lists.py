@@ -68,7 +68,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
     """Yields the lines of a text file; raises InputError for a line of LONGEST_LINE characters or more."""
     while line := file.readline(LONGEST_LINE):
         if len(line) == LONGEST_LINE:
-            raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, which no point needs")
+            raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, too many for a point")
         yield line
 
 

@@ -115,12 +115,13 @@ class Points:
         each = zip(self.names, self.columns, places, strict=True)
         return {name: column[index_on_axis] for name, column, index_on_axis in each}
 
-    def rod(self, index: int, **beside: float) -> Rod:
+    def rod(self, index: int, **given: float) -> Rod:
         """Rod of the point at a flat index; raises Crushed.
 
-        Parameters without a column have the value in `beside`, otherwise the value in NEUTRAL_VALUES.
+        The values in `given` replace the values of the point. A parameter with neither value has the value in
+        NEUTRAL_VALUES.
         """
-        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **beside}
+        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **given}
         return Rod(**parameters, build=self.build_of(index))
 
     @property
@@ -155,7 +156,8 @@ class ParameterLine:
 def lines_along(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
     """Yields the lines of points along the parameter `name`, in the order of their first points.
 
-    Points at which the parameter is inf are left out. columns: each parameter at every point, (points,).
+    Points at which the parameter is inf or NaN are left out. columns: each parameter at every point,
+    (points,).
     """
     x = columns[name]
     others = [other for other in columns if other != name]

@@ -84,7 +84,7 @@ class RepeatedOutcome:
 
 def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     """Number of the rod at each point of a grid over an arm's quantities, (points,); equal rods have equal
-    numbers. None if all rods differ.
+    numbers. None if all rods differ, and for points that are not such a grid.
 
     Rods may be equal because viscosity and densities change no parameter, and Young's modulus changes no
     parameter if the arm has no load or a load relative to flutter.
@@ -163,7 +163,8 @@ class SkippingSolver:
     layout: Layout
 
     def solver_of_all_points(self) -> Solver:
-        """The solver of all points, with or without a rod."""
+        """The solver of all points. It solves points with a rod, and gives fill values to the other
+        points."""
         statuses = (*self.rod_solver.statuses, *NoRodStatus)
         return self.rod_solver.with_wrapper(
             self._solve, self._solve_stretch, record=self._record, statuses=statuses

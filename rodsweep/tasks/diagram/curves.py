@@ -102,9 +102,9 @@ class DiagramCurves:
     def variables(
         self, view: View, items: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[FilledVariable]:
-        """All curves as variables of the file. view: the file with all rows. results: results of all half
-        curves by number, with shapes as in `TracedHalfCurve`.
-        """
+        """All curves as variables of the file; an empty list if there are no curves, because `plane` is None.
+        view: the file with all rows. results: results of all half curves by number, with shapes as in
+        `TracedHalfCurve`."""
         plane = self.plane
         if plane is None:
             return []

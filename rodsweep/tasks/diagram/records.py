@@ -112,8 +112,8 @@ def cycle_curve_record(
     for number, curve in enumerate(found.curves, 1):
         first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing_points)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
-        for (beside, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
-            named = dict(zip(plane, (point.at, point.row_value), strict=True)) | beside | reasons
+        for (further, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
+            named = dict(zip(plane, (point.at, point.row_value), strict=True)) | further | reasons
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **named), point))
     declared = cycle_curve_variables(*plane)
     values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
@@ -124,12 +124,11 @@ def cycle_curve_record(
     return _filled_variables(declared, values)
 
 
-def _object_and_point(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
+def _object_and_point(point: Any, names: Sequence[str], **further: Any) -> tuple[Any, ...]:
     """Returns (object, point). The attributes of the object are the point's parameter values and errors,
-    under `names`, and the values in `beside`.
-    """
+    under `names`, and the values in `further`."""
     errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
-    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
+    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **further), point
 
 
 def _values_along_dimension(

@@ -59,7 +59,8 @@ def _leads(rod: Rod, change: ForceChange) -> bool:
 
 
 def leading_pair_on_mesh(rod: Rod) -> Complex:
-    """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of accuracy MESH_ACCURACY."""
+    """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of the relative accuracy
+    MESH_ACCURACY."""
     wave_number = expected_wave_number(2, most_amplified_wave(rod)[1])
     form = dense_form(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
     inverses = np.linalg.eigvals(shifted_inverse(form.A, form.B, 0.0)).astype(complex)

@@ -102,7 +102,8 @@ class _Guard:
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
     def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Result of a stretch; after an unforeseen exception every point is left to be solved alone."""
+        """Result of a stretch of points, at `indices`. After an unforeseen exception the result has fill
+        values, and states of every point that the point must be solved alone."""
         assert self.guarded.stretched is not None
         try:
             return self.guarded.stretched[1](indices)
@@ -157,7 +158,8 @@ class TracebackLog:
         self.append_exception(points, error)
 
     def append_exception(self, place: str, error: Exception) -> None:
-        """Appends the exception of points or of a work item to the log.
+        """Appends the exception of points or of a work item to the log, unless this rank has logged
+        MAX_LOGGED_EXCEPTIONS. If `strict`, raises the exception again.
 
         place: text naming the points or the work item. If this rank has logged the same traceback before,
         only the last line of the traceback is appended.

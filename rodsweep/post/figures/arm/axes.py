@@ -40,9 +40,8 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _outermost_panel(axes: Axes, which: str) -> Axes:
-    """Of the panels in the same column (for "x") or row (for "y") that share an axis with `axes`, the panel
-    at the top or at the right. which: "x" or "y".
-    """
+    """The top panel of the column (which = "x") or the rightmost panel of the row (which = "y") of `axes`,
+    among the panels that share this axis with `axes`; `axes` itself if it is in no grid of panels."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     grid_cell = axes.get_subplotspec()
     panels = [other for other in shared.get_siblings(axes) if other.get_subplotspec() is not None]

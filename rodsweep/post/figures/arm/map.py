@@ -113,7 +113,7 @@ def can_draw_arm_map(request: FigureRequest) -> bool:
 
 
 def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:
-    """Returns (values along the axis `name`, label of the axis), in the unit typed by the user."""
+    """Returns (values along the axis `name`, (n,), label of the axis), in the unit typed by the user."""
     values = view.variables[name]
     if name in style.LABELS:
         return values, style.LABELS[name]

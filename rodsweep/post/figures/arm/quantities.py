@@ -61,9 +61,9 @@ def quantity_at_point(view: View, name: str, number: int) -> float:
 
 
 def replaced_parameters(view: View, number: int) -> dict[str, float]:
-    """Parameters at a point, by name, that the config gives and that differ from the parameters of the arm.
-    number: number of the point, from 1.
-    """
+    """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
+    config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
+    point, from 1."""
     given: dict[str, Any] = {name: quantity_at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAG_NAMES[int(given["drag"])]

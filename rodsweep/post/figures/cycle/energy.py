@@ -57,7 +57,8 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 
 def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
-    """Draws the three panels of a cycle, from top to bottom in `column`."""
+    """Draws the three panels of a cycle over a period, from top to bottom in `column`: energy; injection and
+    dissipation; and their difference, with the derivative of the energy."""
     from ....discretization.elements.periodic import interpolate_samples, time_derivative  # compiled code
 
     top, middle, bottom = column

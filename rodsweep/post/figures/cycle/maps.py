@@ -22,7 +22,7 @@ from ....config.arm.axes import CHANGED_PARAMETER
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ....sweep.points.points import ParameterLine
-from ...hopf_points import LocatedChange, StoredChanges
+from ...hopf_points import LocatedThreshold, StoredThresholds
 from ..style import (
     LABELS,
     draw_coloured_cells,
@@ -185,7 +185,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 
     Along each row the growth rate is interpolated linearly between the points of the file and the located
     Hopf points; between rows, linearly on the scale of y. A contour therefore passes through the located Hopf
-    points of every row.
+    points of every row. Without a change of sign of the growth rate, the list is empty.
     """
     (x, x_back), (y, y_back) = (axis_coordinates(values) for values in (points.x, points.y))
     to_scale = np.log if is_logarithmic(points.x) else np.asarray
@@ -207,8 +207,8 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, other = points.names
-    stored = StoredChanges(view, name)
+    stored = StoredThresholds(view, name)
     for value, at in zip(points.y, points.point_indices, strict=True):
         row = ParameterLine(name, points.common_parameters | {other: float(value)}, points.x, at)
-        located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedChange))
+        located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

@@ -194,8 +194,7 @@ def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 
 def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns ((left, right), (bottom, top)), the limits of all shapes and arrows, in the cycles' unit of
-    length.
-    """
+    length. ValueError if the shapes are too large for floating-point limits."""
     longest = max(cycle.units.length for cycle in cycles)
     wall = -WALL_DEPTH * longest
     margin = SHAPE_MARGIN * longest

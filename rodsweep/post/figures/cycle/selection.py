@@ -46,7 +46,7 @@ class StoredCycle:
     parameters: dict[str, float]
     period: float
     values: dict[str, Array]
-    word: str = "cycle"
+    status_name: str = "cycle"
     """Status of the point, as a word."""
     units: CycleUnits = PLAIN_UNITS
 

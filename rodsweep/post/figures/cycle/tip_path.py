@@ -15,7 +15,8 @@ def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
 
     Each coordinate is a cubic polynomial between two shapes, and its rate at a shape is the central
     difference of the neighbouring shapes. is_closed: whether the last shape is followed by the first; the
-    path then ends where it begins. Otherwise the second difference at an end equals that of the next shape.
+    path then ends where it begins. Otherwise the second difference at an end equals the second difference at
+    the next shape. Fewer than three tips are returned unchanged.
     """
     if len(tips) < 3:
         return tips

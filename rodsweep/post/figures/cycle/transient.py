@@ -29,8 +29,8 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
     rows = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
     for (upper, lower), cycle in zip(rows.T, selection.cycles, strict=True):
         draw_start_of_motion(upper, lower, cycle)
-        ends = [cycle.word.replace("_", " ")]
-        if cycle.word in CYCLE_WORDS:
+        ends = [cycle.status_name.replace("_", " ")]
+        if cycle.status_name in CYCLE_WORDS:
             ends[0] += "" if narrow else " (extrema dashed)"
             ends.append(cycle.period_text)
         upper.set_title(cycle.heading(*ends))
@@ -49,7 +49,7 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
     for axes, values, colour, pair in zip((upper, lower), tip, (BLUE, VERMILION), levels, strict=True):
         axes.plot(time, values, color=colour, lw=1.1)
-        for name, sign in pair if cycle.word in CYCLE_WORDS else ():
+        for name, sign in pair if cycle.status_name in CYCLE_WORDS else ():
             axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)

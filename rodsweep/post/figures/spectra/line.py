@@ -13,7 +13,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 from ....arrays import Array, Complex
 from ....results.file.view import View
 from ....sweep.points.points import lines_along
-from ...hopf_points import LocatedChange, StoredChanges
+from ...hopf_points import LocatedThreshold, StoredThresholds
 from ..arm.quantities import NO_BREAK
 from ..style import (
     BLUE,
@@ -187,15 +187,15 @@ def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 
 
-def threshold_text(threshold: LocatedChange) -> str:
+def threshold_text(threshold: LocatedThreshold) -> str:
     """Symbol and force of a threshold, as text."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
     return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
-    """Shades the range in which the straight rod is unstable, draws lines at thresholds if the parameter
-    `name` is F, and returns the thresholds.
+def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedThreshold]:
+    """Shades the range in which the straight rod is unstable and, if the parameter `name` is F, draws lines
+    at the located thresholds. Returns these thresholds; an empty list for any other parameter.
 
     Thresholds are onsets of oscillation, and forces at which the stability of the straight rod changes.
     """
@@ -207,8 +207,8 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE_LOOK)
         return []
     (line,) = lines_along(view.point_columns, name)
-    found = StoredChanges(view, name).thresholds_on(line)
-    thresholds = [threshold for threshold in found if isinstance(threshold, LocatedChange)]
+    found = StoredThresholds(view, name).thresholds_on(line)
+    thresholds = [threshold for threshold in found if isinstance(threshold, LocatedThreshold)]
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
@@ -216,7 +216,7 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     # bracketed restabilization.
     starts, ends = (
         [
-            change.position if isinstance(change, LocatedChange) else getattr(change, inner)
+            change.position if isinstance(change, LocatedThreshold) else getattr(change, inner)
             for change in found
             if change.kind == kind
         ]

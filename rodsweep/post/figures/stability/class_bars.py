@@ -107,9 +107,9 @@ def class_legend_entries(seen: set[str]) -> list[Patch]:
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
-    """Yields (start, end, class) of each interval of F between crossings, from F = 0, with the class
-    "monotone", to the end of the search. rod: index of the rod.
-    """
+    """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
+    search. The first interval has the class "monotone"; the last has the class "undecided" if some crossings
+    are not stored. rod: index of the rod."""
     kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
     end = float(view.variables["F_end"].ravel()[rod])
     found = int(view.variables["crossing_count"].ravel()[rod])

@@ -82,7 +82,7 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
 
 
 def constant_force_text(view: View, line: str, row: str) -> str:
-    """Text " = F" with the constant F of a plane; empty if F is on an axis. line, row: see the module."""
+    """Text " = 30" if F is 30 in the whole plane; empty if F is on an axis. line, row: see the module."""
     return "" if "F" in (line, row) else f" = {float(view.parameter_values['F'][0]):g}"
 
 

@@ -39,7 +39,8 @@ def arm_answer(view: View, done: np.ndarray) -> Lines:
 
 
 def _validity_lines(view: View, done: np.ndarray) -> Lines:
-    """Answer about the points in `done` to which the model applies, or else about all; a line on validity."""
+    """Line on the validity of the model, and lines with the answer for the points in `done` to which the
+    model applies; for all these points if the model applies to none."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return (
@@ -72,8 +73,7 @@ def load_range_text(view: View, loads: np.ndarray) -> str:
 
 def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
     """Function from (view, mask of the points with a rod) to the answer's lines, with a line on failed
-    searches. answer: function from (view, mask of the solved points) to (answer, further lines).
-    """
+    searches. answer: function from (view, mask of the solved points) to (answer, further lines)."""
 
     def lines(view: View, rods: np.ndarray) -> Lines:
         failed = rods & view.has_status(FAILED_STATUS)

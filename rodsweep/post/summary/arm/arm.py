@@ -17,7 +17,7 @@ from ....results.file.view import View
 from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...hopf_points import LocatedChange
+from ...hopf_points import LocatedThreshold
 from ...tables.rows import quantities_at_points
 from ..errors import absolute_errors, is_known
 from ..ranges import RANGE_DIGITS, rounded_text, span_text
@@ -86,7 +86,7 @@ def _largest_absolute(values: np.ndarray) -> float:
 
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
-    """Quantities of an arm that differ between points of a file, by name: values at all points, (points,)."""
+    """Given quantities of an arm that differ between points of a file, by name: at all points, (points,)."""
     given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_SCALES}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
@@ -129,8 +129,8 @@ def _quantity_unit(view: View, name: str) -> str:
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines with the ranges of an arm's variables, in typed or SI units, at the points in `done`, a mask
-    (...,), without errors and lists of crossings; lists need a single point. Empty list for a rod."""
+    """Lines with the ranges of an arm's variables, in typed or SI units, at the points in the mask `done`,
+    (...,), without errors, crossings, and (for several points) other lists. Empty list for a rod."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUT_MAKERS[view.task](view.config), view.config)
@@ -218,12 +218,11 @@ def crossings_of_arm(view: View) -> list[str]:
     return lines
 
 
-def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
+def thresholds_of_arm(
+    view: View, kind: str, found: Sequence[tuple[LocatedThreshold, np.ndarray]]
+) -> list[str]:
     """List with a sentence on the thresholds of the given kind, with load and frequency; empty for a rod, or
-    if there is no threshold.
-
-    found: pairs of a threshold and the indices of the points on its line, (points,).
-    """
+    if `found` is empty. found: pairs of a threshold and the indices of the points on its line, (points,)."""
     if not view.quantities or not found:
         return []
     points = np.concatenate([points for _, points in found])

@@ -122,7 +122,9 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
         else:
             _refuse_difference(header, config_difference(value, new, f"parameters.{key}"))
     _refuse_difference(header, config_difference(theirs.get("arm"), ours.get("arm"), "parameters.arm"))
-    _refuse_difference(header, config_difference(theirs["accuracy"], ours["accuracy"], "accuracy"))
+    compared = {"task", "parameters", "arm", task, "together"}
+    stored, asked = ({k: v for k, v in each.items() if k not in compared} for each in (theirs, ours))
+    _refuse_difference(header, config_difference(stored, asked))
     grown = []
     for name, value in theirs[task].items():
         if name not in ours[task] or ours[task][name] == value:

@@ -42,7 +42,7 @@ PlanMaker = Callable[[Config, Points], Plan]
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """`plan` of the joined file. point_maps: map from the points of each source to the points of the plan."""
+    """File joined from `sources`. point_maps: map from the points of each source to the points of `plan`."""
 
     plan: Plan
     sources: Sequence[ResultHeader]
@@ -89,11 +89,11 @@ class JoinedFile:
     def _is_rounding_error(
         self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
     ) -> bool:
-        """Whether the difference of two values of the variable `name` is taken for rounding error.
+        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR.
 
-        Never for `status`, nor if there are neither different BLAS kernels nor stretches; otherwise always
-        for error estimates and numbers that are not floating-point. first, second: the values. sources:
-        headers of their files.
+        Always True for error estimates and values that are not floating-point; always False for `status`, and
+        without stretches if one BLAS kernel computed all points. first, second: the values. sources: headers
+        of their files.
         """
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
@@ -193,8 +193,8 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
     """Config of the first file, for grids with the axes of the joined points. meant:
-    `Config.settings_of_results` of the first file's config.
-    """
+    `Config.settings_of_results` of the first file's config; its options of the task replace those of the
+    config."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
@@ -235,7 +235,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
 
 
 def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
-    """Copy of the plan with the attributes and status flags of the first file, and the joined config text."""
+    """Copy of the plan with the attributes and status flags of the first file, and the joined config."""
     text = config_yaml(config)
     resolved = resolved_config(config)
     if max(len(text), len(str(resolved))) > MAX_ATTRIBUTE_LENGTH:

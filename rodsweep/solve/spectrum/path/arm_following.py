@@ -42,15 +42,11 @@ variable p); both arrays: (elements, terms, PADDED)."""
 
 
 @compiled
-def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes, exact: bool) -> CorrectedEigenvalue:
-    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real.
-
-    exact: whether the rounding error is the bound of `rounding_error_by_chain`; otherwise it is the error of
-    the products at the tip, which takes less time.
-    """
-    D, D_w, D_p, S, noise = path_value_by_chain(w, level[0], level[1], level[2])
-    rounding = rounding_error_by_chain(w, level[0], level[1], S) if exact else noise
-    return newton_step(w, D, D_w, D_p, rounding)
+def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
+    """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real. The
+    rounding error is the error of the products at the tip only."""
+    value = path_value_by_chain(w, level[0], level[1], level[2])
+    return newton_step(w, value, value.noise)
 
 
 @compiled
@@ -59,15 +55,19 @@ def _converged_step_and_error(
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
-    first: result of the first step. crowding, exact: as in `converged_error`. level: propagators of the arm.
-    The error is inf without convergence.
+    first: result of the first step. crowding: as in `converged_error`. exact: whether the remainder must be
+    below the rounding error, and the error must contain the rounding error of the whole arm. level:
+    propagators of the arm. The error is inf without convergence.
     """
     here = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(here, crowding, exact)
         if error < math.inf:
+            if exact:
+                rounding = rounding_error_by_chain(here.w, level[0], level[1], here.S)
+                error = max(error, rounding / here.D_slope)
             return here, error
-        here = correct_eigenvalue_of_arm(here.w, level, exact)
+        here = correct_eigenvalue_of_arm(here.w, level)
     return here, math.inf
 
 
@@ -105,12 +105,11 @@ def _refine_all_eigenvalues(
         if guess[k].imag != 0 and mate[k] < 0:
             return False
         if guess[k].imag >= 0:
-            leads = rank <= modes
-            first = correct_eigenvalue_of_arm(guess[k], level, leads)
+            first = correct_eigenvalue_of_arm(guess[k], level)
             w[k] = first.w
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
-            last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), leads, level)
+            last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
             # Interpolation changes D as relative changes of w and p by `ARM_FAMILY_SETTINGS.converged_tail`
             # would.
             error[k] += ARM_FAMILY_SETTINGS.converged_tail * (abs(last.w) + abs(p * last.slope))

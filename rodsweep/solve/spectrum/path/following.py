@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.exponents import ROUND_OFF
-from ....determinant.parameter_path import determinant_along_path
+from ....determinant.parameter_path import PathDeterminantValue, determinant_along_path
 from ....determinant.roots.newton import ROOT_NEWTON_SETTINGS
 from ....determinant.roots.roots import sort_descending, two_roots
 from ....determinant.roots.settings import ROOT_SETTINGS
@@ -44,13 +44,17 @@ FOLLOWING_SETTINGS = FollowingSettings()
 
 
 class CorrectedEigenvalue(NamedTuple):
-    """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of
-    w."""
+    """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of w.
+
+    D_slope: |dD/dw| exp(-S) before the step. S: its scale.
+    """
 
     w: complex
     slope: complex
     step_length: float
     rounding_error: float
+    D_slope: float
+    S: float
 
 
 @compiled
@@ -60,26 +64,26 @@ def correct_eigenvalue(
     """One Newton step for a root of D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
     gamma3)/dp.
     """
-    D, D_w, D_p, _, noise = determinant_along_path(w, coefficients, direction)
-    return newton_step(w, D, D_w, D_p, DETERMINANT_SETTINGS.typical_noise * noise)
+    value = determinant_along_path(w, coefficients, direction)
+    return newton_step(w, value, DETERMINANT_SETTINGS.typical_noise * value.noise)
 
 
 @compiled
-def newton_step(w: complex, D: complex, D_w: complex, D_p: complex, rounding: float) -> CorrectedEigenvalue:
+def newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> CorrectedEigenvalue:
     """One Newton step from w, given D and its derivatives with respect to w and p; a real w stays real.
 
     rounding: rounding error of D, on the same scale as D. If D_w vanishes, w is returned unchanged, with step
     and rounding error inf.
     """
-    size = abs(D_w)
+    size = abs(value.D_w)
     if not size > 0:
-        return CorrectedEigenvalue(w, 0j, math.inf, math.inf)
-    step = D / D_w
-    slope = -D_p / D_w
+        return CorrectedEigenvalue(w, 0j, math.inf, math.inf, 0.0, value.S)
+    step = value.D / value.D_w
+    slope = -value.D_p / value.D_w
     if w.imag == 0:
         step = complex(step.real, 0.0)
         slope = complex(slope.real, 0.0)
-    return CorrectedEigenvalue(w - step, slope, abs(step), rounding / size)
+    return CorrectedEigenvalue(w - step, slope, abs(step), rounding / size, size, value.S)
 
 
 @compiled
@@ -186,7 +190,7 @@ def _refine_all_eigenvalues(
     mate = np.empty(m, np.int64)
     find_conjugates(guess, mate)
     # All eigenvalues take one step before further steps: the crowding of a root needs its neighbours.
-    first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf) for _ in range(m)]
+    first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf, 0.0, 0.0) for _ in range(m)]
     for k in range(m):
         if guess[k].imag != 0 and mate[k] < 0:
             return False

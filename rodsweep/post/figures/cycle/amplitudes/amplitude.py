@@ -104,7 +104,7 @@ def _draw_branches(
         lost |= _draw_branch(panels, branch, look)
         if upward is not None:
             _show_direction(panels, branch, upward, colour)
-    if any("unstable" in branch.words for branch in branches):
+    if any("unstable" in branch.status_names for branch in branches):
         handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
     if lost:
         label = ", ".join(sorted(lost)) + " (at the top)"
@@ -113,9 +113,9 @@ def _draw_branches(
 
 
 def _legend_entries_of_files(views: Sequence[View], name: str) -> dict[int, tuple[str, bool | None]]:
-    """Returns {id(view): (legend entry, is_upward)}: all datasets of Python have the same path. is_upward:
-    whether the parameter `name` increased during the continuation; None unless the files differ in this
-    direction.
+    """Returns {id(view): (legend entry, is_upward)}; the path is no key, because all Datasets of Python have
+    the same path. is_upward: whether the parameter `name` increased during the continuation; None unless the
+    files differ in this direction.
 
     Files with different directions of continuation are distinguished by direction, other files by name.
     """
@@ -182,7 +182,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
     without a known amplitude. look: keywords for matplotlib.
     """
-    unstable = branch.words == "unstable"
+    unstable = branch.status_names == "unstable"
     lost: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
         axes.plot(*branch.with_gap_at_onset(values), **look)
@@ -193,8 +193,9 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
 
 
 def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
-    """Marks points without a known amplitude at the top of a panel; returns the statuses of these points."""
-    lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
+    """Marks points without a known amplitude at the top of a panel, in the colour of the branch; returns the
+    statuses of these points. Points with status missing are not marked."""
+    lost = ~np.isin(branch.status_names, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
-    return {str(word).replace("_", " ") for word in branch.words[lost]}
+    return {str(word).replace("_", " ") for word in branch.status_names[lost]}

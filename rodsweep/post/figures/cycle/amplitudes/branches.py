@@ -10,7 +10,7 @@ from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
 from .....sweep.points.points import lines_along
-from ....hopf_points import LocatedChange, StoredChanges
+from ....hopf_points import LocatedThreshold, StoredThresholds
 from ..units_and_labels import PLAIN_UNITS, CycleUnits
 from .square_root import SquareRootLaw, square_root_laws
 
@@ -20,7 +20,7 @@ class AmplitudeBranch:
     """Limit cycles of the file `view` at points that differ in one parameter x, in the order of the file.
 
     Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. amplitude_y: largest y of the
-    tip. Amplitudes, period and power of points without a cycle are NaN, but the amplitudes of a straight rod
+    tip. Amplitudes, period and power of points without a cycle are NaN; the amplitudes of a straight rod are
     0.
     """
 
@@ -33,9 +33,9 @@ class AmplitudeBranch:
     period: Array
     power: Array
     """Mean power of the follower force over a period."""
-    words: NDArray[np.str_]
+    status_names: NDArray[np.str_]
     """Status of each point, as a word."""
-    hopf: list[LocatedChange]
+    hopf: list[LocatedThreshold]
     """Hopf points on the line; empty unless x is F."""
     units: CycleUnits
     """Units of all drawn quantities."""
@@ -56,7 +56,7 @@ class AmplitudeBranch:
         """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one
         is not, because a line between these points would suggest a slope.
         """
-        straight = self.words == "straight"
+        straight = self.status_names == "straight"
         change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
 
@@ -88,12 +88,12 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
     period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
     power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
     branches = []
-    stored = StoredChanges(view, "F")
+    stored = StoredThresholds(view, "F")
     for line in lines_along(view.point_columns, name):
         changes = stored.thresholds_on(line) if name == "F" else []
         at = line.indices
         hopf = [
-            change for change in changes if isinstance(change, LocatedChange) and change.changes_stability
+            change for change in changes if isinstance(change, LocatedThreshold) and change.changes_stability
         ]
         branches.append(
             AmplitudeBranch(
@@ -104,7 +104,7 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
                 amplitude_y=along_y[at],
                 period=period[at],
                 power=power[at],
-                words=words[at],
+                status_names=words[at],
                 hopf=hopf,
                 units=units,
                 first_number=int(at[0]) + 1,

@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ....hopf_points import LocatedChange
+from ....hopf_points import LocatedThreshold
 from ....summary.ranges import rounded_text
 from ...style import SYMBOLS
 from .square_root import SquareRootLaw
@@ -30,7 +30,7 @@ MAX_COEFFICIENTS = 3
 """A legend entry lists up to this number of coefficients; for more coefficients the range is printed."""
 
 
-def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange, str]]) -> list[Line2D]:
+def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedThreshold, str]]) -> list[Line2D]:
     """Draws a dotted vertical line at each Hopf point; returns legend entries. marks: (Hopf point, colour).
 
     A Hopf point that belongs to several lines is drawn once, in grey. The legend gives the position of a Hopf
@@ -39,7 +39,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange
     handles = []
     for kind, word in HOPF_WORDS.items():
         own = [mark for mark in marks if mark[0].kind == kind]
-        places: list[tuple[LocatedChange, set[str]]] = []
+        places: list[tuple[LocatedThreshold, set[str]]] = []
         for point, colour in own:
             same = next((colours for other, colours in places if other.equals_within_errors(point)), None)
             if same is None:

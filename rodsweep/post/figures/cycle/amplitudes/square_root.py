@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 
 from .....arrays import Array
-from ....hopf_points import LocatedChange
+from ....hopf_points import LocatedThreshold
 
 MAX_FITTED_DISTANCE = 0.1
 """Largest |F - F**|/|F**| of a cycle to which a law is fitted. At larger distances higher-order terms
@@ -49,7 +49,7 @@ class SquareRootLaw:
         return F, self.coefficient * np.sqrt(np.abs(F - self.hopf) / abs(self.hopf))
 
 
-def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]) -> list[SquareRootLaw]:
+def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedThreshold]) -> list[SquareRootLaw]:
     """Square-root laws that the amplitudes follow, at most one on each side of a Hopf point.
 
     F, amplitude: force and amplitude of n cycles, (n,) each, in any order; an amplitude is NaN or 0 if there
@@ -59,7 +59,7 @@ def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]
     return [law for law in laws if law]
 
 
-def _law_on_side(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
+def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int) -> SquareRootLaw | None:
     """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law.
 
     To leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this

@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
-from ..results.file.view import sentences_in
+from ..results.file.view import status_sentences_in
 from .scales import SCALES
 from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, flag_words
@@ -35,7 +35,7 @@ CLICK_TOLERANCE = 0.25
 spacing of stored loads, is below this number."""
 
 
-class StoredResults:
+class StoredAnswers:
     """Answers to questions of the page from a result file of rods or arms.
 
     data: content of the file `path`. state: state with which the page opens. diagram: answer to the question
@@ -78,10 +78,9 @@ class StoredResults:
         return point if is_filmed else None
 
     def load_near(self, state: PageState, at: float) -> float:
-        """Load that a click at `at` selects: the nearest stored load if it is close, see `CLICK_TOLERANCE`,
-        else `at`; also `at` if the file has no cycles, fewer than two loads for this rod, or results of the
-        other tab. Loads are in the unit of the control.
-        """
+        """Load that a click at the load `at` selects, in the unit of the control: the nearest stored load if
+        its distance is small, see `CLICK_TOLERANCE`; otherwise `at`. Also `at` if the file has no cycles,
+        fewer than two loads for the rod of `state`, or results of the other tab."""
         if state.tab != self.state.tab or not self.has_cycles:
             return at
         stored = np.unique(
@@ -95,8 +94,7 @@ class StoredResults:
 
     def _control_values(self, tab: str, name: str) -> Array:
         """Values of the parameter or quantity `name` at all points of the file, (points,), in the unit of the
-        control on the tab `tab`.
-        """
+        control on the tab `tab`. If the file lacks `name`: the default of the parameter, or nan."""
         default = PARAMETERS[name].default if name in PARAMETERS else None
         missing = nan if default is None else default
         own = self.data[name] if name in self.data.variables else missing
@@ -105,7 +103,7 @@ class StoredResults:
         return values
 
     def _matching_points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
-        """Indices of the points of the file that have the parameters of `state`.
+        """Indices, (n,), of the points of the file that have the parameters of `state`.
 
         The parameters in `free`, and the parameter along a row of a phase diagram, may have any value.
         """
@@ -135,9 +133,9 @@ class StoredResults:
         )
 
     def _cycle(self, state: PageState) -> AnswerVariables | None:
-        """Stored cycle of the rod of `state`; if the file says that this rod has no cycle, the straight rod,
-        but only for uniform rods of linear material. None if the point is missing, or the file has no shapes.
-        """
+        """Stored cycle of the rod of `state`, or the straight rod if the file says that this rod has no
+        cycle. None if the file lacks the point or the shapes, and for a rod without cycle that is not uniform
+        and linear."""
         numbers = self._matching_points(state)
         if len(numbers) == 0 or "shape_x" not in self.data:
             return None
@@ -151,7 +149,7 @@ class StoredResults:
         found: AnswerVariables = {str(name): array.values for name, array in point.variables.items()}
         u = point["u"].values
         return found | {
-            "status": status, "sentence": sentences_in(self.data.attrs).get(status, ""),
+            "status": status, "sentence": status_sentences_in(self.data.attrs).get(status, ""),
             "message": f"stored in {self.path.name}",
             "units": {str(name): array.attrs["units"] for name, array in point.data_vars.items()},
             "x": (1 - F / k1) * u, "y": np.zeros(len(u)),
