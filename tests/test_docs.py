@@ -1,5 +1,6 @@
 """README.md and docs/: links have targets, commands and configs are valid, tables equal the code's."""
 
+import ast
 import importlib.util
 import re
 import shlex
@@ -185,6 +186,50 @@ def test_developers_read_the_order_of_the_packages_that_is_enforced():
     layers = next(contract["layers"] for contract in contracts if contract["id"] == "layers")
     order = " < ".join(re.sub(r"\(rodsweep\.(\w+)\)", r"\1", layer) for layer in reversed(layers))
     assert f"    {order}\n" in (DOCS / "developers.md").read_text()
+
+
+IDENTIFIER = re.compile(r"(?:rs\.)?([A-Za-z]\w*)")
+PLACED_NAMES = re.compile(r"((?:`\w+`(?:, | and |, and )?)+) in `(rodsweep/[\w/]+\.py)`")
+"""Names said to be in a module, such as "`LAWS` and `LAW_NAMES` in `rodsweep/explore/state.py`"."""
+NAMES_OF_OTHERS = {"Makefile", "NamedTuple", "TypeError", "kernel", "long", "survey_only"}
+"""Names on the developers' page of a file, of Python, of marks of pytest, and of the tests' own mark."""
+
+
+def names_defined(path: Path) -> set[str]:
+    """Functions, classes, constants, fields and attributes that a module of the package defines."""
+    tree = ast.parse(path.read_text())
+    scopes = [tree, *(node for node in ast.walk(tree) if isinstance(node, ast.ClassDef))]
+    names = {target.id for scope in scopes for line in scope.body for target in assigned(line)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names.add(node.name)
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            names.add(node.attr)
+    return names
+
+
+def assigned(line: ast.stmt) -> list[ast.Name]:
+    """The plain names that a line assigns or annotates."""
+    if not isinstance(line, ast.Assign | ast.AnnAssign):
+        return []
+    return [node for node in ast.walk(line) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+
+
+def test_developers_read_names_that_exist():
+    """Names of the package in backticks; names said to be in a module are defined there."""
+    page = DOCS / "developers.md"
+    defined = {str(path.relative_to(ROOT)): names_defined(path) for path in ROOT.glob("rodsweep/**/*.py")}
+    packages = {path.name for path in (ROOT / "rodsweep").iterdir()}
+    tests = "".join(path.read_text() for path in ROOT.glob("tests/**/test_*.py"))
+    known = set().union(*defined.values(), re.findall(r"^def (test_\w+)", tests, re.MULTILINE))
+    known |= packages | set(commands.commands) | NAMES_OF_OTHERS
+    named = [found.group(1) for text in code_of(page) if (found := IDENTIFIER.fullmatch(text))]
+    assert len(named) > 30
+    assert [name for name in named if name not in known] == []
+    placed = PLACED_NAMES.findall(page.read_text())
+    assert len(placed) > 5
+    for names, module in placed:
+        assert set(re.findall(r"\w+", names.replace(" and ", " "))) <= defined[module], module
 
 
 def test_gallery_and_commands_are_those_of_the_code():

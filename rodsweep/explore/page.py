@@ -9,7 +9,7 @@ from bokeh.events import Pan, Tap
 
 from ..errors import InputError
 from .contents import PageContents
-from .idle_timer import IdleTimer
+from .pause_timer import PauseTimer
 from .scales import SCALES
 from .sharing import state_from_config_text
 from .solving import needs as kinds
@@ -49,7 +49,7 @@ class Page:
         self.drawn_around: PageState | None = None
         """State around which the drawn diagram was solved; None before the first answer of a solver."""
         self.contents = PageContents(self.change, self.load)
-        self.idle_timer = IdleTimer(document, self._ask_slow_questions)
+        self.pause_timer = PauseTimer(document, self._ask_slow_questions)
         self.contents.connect(document, self._callbacks())
         self.contents.beating.on_drag(self.drag)
         if stored is not None and stored.diagram is not None:
@@ -146,13 +146,13 @@ class Page:
             self._send_question(kind)
         self.contents.show_point(state, F)
         self._show_solving()
-        self.idle_timer.restart()
+        self.pause_timer.restart()
 
     def _show_error(self, sentence: str) -> None:
         """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
         diagram.
         """
-        self.idle_timer.cancel()
+        self.pause_timer.cancel()
         for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
             self._cancel_question(kind)
         for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..results.file.view import View
 from ..wording import counted
 from .output_files import atomic_write
-from .tables import Table, Tables
+from .tables.tables import Table, Tables
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Character between two columns, by the suffix of the output file."""

@@ -11,14 +11,15 @@ from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.branch_cost import estimate_branches
 from ..sweep.cost_estimate import Estimate
-from .parts import NonlinearTask, crushing_clause, points_clause
+from .base_classes import NonlinearTask
+from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
     from ..solve.branch.special.point import SpecialPoint
-    from ..solve.changes.unstable_modes import Threshold
+    from ..solve.changes.kinds import Threshold
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,8 @@ class BranchTask(NonlinearTask):
 
     def solver(self) -> Solver:
         from ..solve.branch.branch_request import BranchRequest
-        from ..solve.branch.branches import BranchStatus, solve_branches, warm_up
+        from ..solve.branch.branches import solve_branches, warm_up
+        from ..solve.branch.status import BranchStatus
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.branch

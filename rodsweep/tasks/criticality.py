@@ -9,7 +9,8 @@ from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import Estimate, estimate_criticality
-from .parts import NonlinearTask, crushing_clause, points_clause
+from .base_classes import NonlinearTask
+from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -44,7 +45,8 @@ class CriticalityTask(NonlinearTask):
         return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:
-        from ..solve.hopf.criticality import CriticalityRequest, CriticalityStatus, solve_criticality, warm_up
+        from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up
+        from ..solve.hopf.status import CriticalityStatus
 
         options = self.config.criticality
         request = CriticalityRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)

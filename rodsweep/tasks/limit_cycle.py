@@ -28,8 +28,8 @@ from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import require_in_range
 from ..wording import counted
+from .check_rows import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
 from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
-from .parts import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
 from .protocol import CheckRow, OrderedMap, Solver, Task, solve_on_one_rank
 
 if TYPE_CHECKING:

@@ -16,8 +16,9 @@ from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
+from .base_classes import CertifiedTask
+from .check_rows import points_text
 from .hopf.force_changes import force_change_variables
-from .parts import CertifiedTask, points_text
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.branch_cost import estimate_branches
 from ..sweep.cost_estimate import Estimate, estimate_diagram
+from .base_classes import CertifiedTask
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
-from .parts import CertifiedTask
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -102,7 +102,8 @@ class PhaseDiagramTask(CertifiedTask):
 
     def solver(self) -> Solver:
         from ..solve.changes.diagram.rows import solve_row
-        from ..solve.changes.thresholds import ThresholdStatus, warm_up
+        from ..solve.changes.status import ThresholdStatus
+        from ..solve.changes.thresholds import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.phase_diagram
@@ -119,7 +120,8 @@ class PhaseDiagramTask(CertifiedTask):
         if not options.cycles:
             return of_rows
         from ..solve.branch.branches import warm_up as warm_up_branches
-        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
+        from ..solve.branch.coexistence import CoexistenceRow, solve_coexistence
+        from ..solve.branch.status import CoexistenceStatus
 
         def solve(index: int) -> CoexistenceRow:
             row = solve_coexistence(self.rod_of_row(index), request, MAX_CYCLE_SPECIAL, workspace)

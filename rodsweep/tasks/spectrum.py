@@ -27,8 +27,9 @@ from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
+from .base_classes import CertifiedTask
+from .check_rows import points_text
 from .hopf.force_changes import force_change_variables
-from .parts import CertifiedTask, points_text
 from .protocol import CheckRow, OrderedMap, Solver, solve_on_one_rank
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import Estimate, estimate_searches
-from .parts import CertifiedTask, crushing_clause, points_clause
+from .base_classes import CertifiedTask
+from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ class ThresholdsTask(CertifiedTask):
         return estimate_searches(self.points.count, self.config.thresholds.certify, of_arms)
 
     def solver(self) -> Solver:
-        from ..solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
+        from ..solve.changes.status import ThresholdStatus
+        from ..solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 
         options = self.config.thresholds
         request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)

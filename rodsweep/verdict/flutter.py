@@ -7,8 +7,9 @@ from math import inf, pi
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
-from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, ThresholdStatus, solve_thresholds
-from ..solve.changes.unstable_modes import ChangeKind, Threshold
+from ..solve.changes.kinds import ChangeKind, Threshold
+from ..solve.changes.status import ThresholdStatus
+from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.exclusive import exclusive_solve
 from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
 

@@ -1,45 +1,17 @@
-"""The load of an arm in the user's unit, and the rounding of numbers in sentences."""
-
-from math import floor, log10
+"""The load of an arm in the user's unit."""
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
 from .flutter import Span
+from .rounding import range_text, three_digits_rounded_down
 
 TYPICAL_FLUTTER_FORCE = 36.0
 """Typical flutter force, in k3/L^2. If the user gave no load, the SI prefix of the load (Pa, kPa) is chosen
 for this force."""
-ROUNDING_TOLERANCE = 1e-12
-"""Relative tolerance when rounding down. Without this tolerance, 4.7 could be printed as 4.69."""
 MAX_TYPED_LENGTH = 6
 """A number of at most this many characters is reported as the user typed it; a longer number is rounded to
 four digits."""
-
-
-def three_digits(value: float) -> str:
-    """`value` as text with three significant digits; with an exponent only from a million on and below
-    1e-4.
-    """
-    short = float(f"{value:.3g}")
-    return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
-
-
-def range_text(low: float, high: float) -> str:
-    """The range from `low` to `high` as text, with three significant digits; a single number if both ends
-    round to the same number.
-    """
-    ends = [three_digits(low), three_digits(high)]
-    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
-
-
-def percent_range_text(low: float, high: float) -> str:
-    """The range between the fractions `low` and `high` as text in percent, rounded to integers, or to one
-    significant digit below 1 percent; a single number if both ends round to the same number.
-    """
-    percents = [100 * value for value in sorted((low, high))]
-    ends = [f"{value:.0f}" if value >= 1 else f"{value:.1g}" for value in percents]
-    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 class Load:
@@ -72,9 +44,7 @@ class Load:
 
     def rounded_down_text(self, F: float) -> str:
         """The force F in k3/L^2, as text in the unit of the load, rounded down to three digits."""
-        value = F * self.load_at_unit_force
-        unit = 10.0 ** (floor(log10(value)) - 2)
-        return f"{three_digits(floor(value / unit * (1 + ROUNDING_TOLERANCE)) * unit)} {self.unit}"
+        return f"{three_digits_rounded_down(F * self.load_at_unit_force)} {self.unit}"
 
 
 def _shortened_load(given: object, value: float, si: str) -> str:

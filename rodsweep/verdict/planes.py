@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import with_si_prefix
-from ..solve.changes.unstable_modes import ChangeKind
+from ..solve.changes.kinds import ChangeKind
 from .flutter import ThresholdsOverDrags, thresholds_over_drags
 from .relative import with_exchanged_sides
 

@@ -21,7 +21,8 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import ChangeKind, end_below_crushing
+from ..solve.changes.kinds import ChangeKind
+from ..solve.changes.unstable_modes import end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 SEARCH_END = 1000.0

@@ -5,11 +5,12 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 """
 
 from ..model.arm.neglected import Validity
-from ..solve.changes.unstable_modes import ChangeKind
+from ..solve.changes.kinds import ChangeKind
 from .flutter import Span, ThresholdsOverDrags
-from .load import Load, percent_range_text, range_text
+from .load import Load
 from .planes import PlaneOfMotion, Planes
 from .remedies import effect_kinds_in_words, not_applicable_sentences
+from .rounding import percent_range_text, range_text
 from .validity import Assessment
 
 

@@ -18,7 +18,7 @@ from ..model.arm.neglected import (
     worst_validity,
 )
 from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
-from ..solve.changes.unstable_modes import ChangeKind, Threshold
+from ..solve.changes.kinds import ChangeKind, Threshold
 from ..solve.exclusive import exclusive_solve
 from .flutter import ThresholdsOverDrags, thresholds_with_drag
 

@@ -239,6 +239,7 @@ def test_points_of_warnings_are_counted_from_1(monkeypatch):
         raise ZeroDivisionError
 
     monkeypatch.setattr("rodsweep.solve.changes.thresholds.solve_thresholds", broken)
+    monkeypatch.setattr("rodsweep.solve.changes.thresholds.warm_up", lambda: None)
     with pytest.warns(RuntimeWarning) as noted:
         rs.sweep("thresholds", k1=[200, 300], k2=1e4, gamma3=1e-4)
     firsts = [str(warning.message).split(":")[0] for warning in noted]

@@ -11,7 +11,7 @@ from hard.page import as_stated, page_of
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
 
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
 

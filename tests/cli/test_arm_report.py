@@ -16,8 +16,9 @@ from rodsweep.model.arm.neglected import (
     neglected_effects,
     worst_validity,
 )
-from rodsweep.solve.changes.thresholds import ThresholdStatus, empty_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import empty_thresholds
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag

@@ -12,7 +12,8 @@ from surveyed import few
 
 from rodsweep.discretization.straight.pencil import assemble_pencil
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.modes.inverse_iteration import mode_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus

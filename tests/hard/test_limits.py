@@ -15,8 +15,9 @@ import pytest
 from rods import rod_of
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus
 

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading

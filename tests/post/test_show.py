@@ -15,7 +15,7 @@ from rodsweep.post.summary.errors import absolute_errors, known_range_text
 from rodsweep.post.summary.ranges import axis_values_text, number_with_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.changes.thresholds import ThresholdStatus
+from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.sweep.points.points import lines_along
 from rodsweep.tasks.running.job import job_of_file
 

@@ -13,9 +13,9 @@ from contents import content, same
 from ranks import PATIENCE
 
 from rodsweep.errors import InputError
-from rodsweep.results.file import exchange
+from rodsweep.results.file import replacement
 from rodsweep.results.file.combination.merge import merge
-from rodsweep.results.file.exchange import ResultFileLock
+from rodsweep.results.file.replacement import ResultFileLock
 from rodsweep.results.run.journal import journal_directory
 from rodsweep.sweep.points.ranges import Shard, parsed_shard
 from rodsweep.tasks.running.job import plan_without_solver
@@ -163,7 +163,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
     held = ResultFileLock(journal_directory(merged), merged)
     waits = threading.Event()
     clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
-    monkeypatch.setattr(exchange, "time", clock)
+    monkeypatch.setattr(replacement, "time", clock)
     with ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(merge, merged, [second], plan_without_solver)
         assert waits.wait(PATIENCE)

@@ -9,7 +9,7 @@ import pytest
 from rodsweep.api.dataset import open_result
 from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
-from rodsweep.results.file import exchange, points, validation
+from rodsweep.results.file import points, replacement, validation
 from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
@@ -276,7 +276,7 @@ def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path
 
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(exchange, "LOCK_TIMEOUT", 0.3)
+    monkeypatch.setattr(replacement, "LOCK_TIMEOUT", 0.3)
     store = Store(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
         Store(tmp_path / "a.h5", plan())

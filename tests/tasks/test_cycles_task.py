@@ -767,7 +767,7 @@ def test_straight_rods_are_no_failure_and_failed_ones_are(command):
 
 
 def test_statuses_of_the_other_tasks_succeed_when_they_are_ok():
-    from rodsweep.solve.changes.thresholds import ThresholdStatus
+    from rodsweep.solve.changes.status import ThresholdStatus
     from rodsweep.solve.spectrum.status import SpectrumStatus
 
     for kind in (SpectrumStatus, ThresholdStatus):

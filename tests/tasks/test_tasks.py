@@ -24,7 +24,7 @@ from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
-from rodsweep.solve.changes.thresholds import ThresholdStatus
+from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -210,7 +210,7 @@ def test_words_are_stored_as_flags_with_their_meanings(tmp_path, task):
 
 
 def test_kinds_of_crossings_have_the_numbers_of_the_solver():
-    from rodsweep.solve.changes.unstable_modes import ChangeKind
+    from rodsweep.solve.changes.kinds import ChangeKind
 
     assert {kind.name: int(kind) for kind in ChangeKind} == {
         name: number for number, name in enumerate(CROSSING_KINDS) if number
@@ -370,13 +370,14 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
 FAKE = """
 import os
 import rodsweep.solve.changes.thresholds as real
+from rodsweep.solve.changes.status import ThresholdStatus
 from types import SimpleNamespace as Value
 
 def solve_thresholds(rod, request):
     k1, k2 = rod.k1, rod.k2
     if os.environ.get("DIE_AT") == f"{k1:g}":
         os._exit(9)
-    status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
+    status = ThresholdStatus.list_full if k1 == 14 else ThresholdStatus.ok
     found = (Value(value=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
     found = real.ThresholdList(
         thresholds=found, unstable_at_end=2, proved=True, evaluation_count=3, solve_count=4

@@ -20,8 +20,9 @@ from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import load_over_flutter
 from rodsweep.solve.changes.along_path import ThresholdList
-from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, empty_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind, Threshold
+from rodsweep.solve.changes.kinds import ChangeKind, Threshold
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import Thresholds, empty_thresholds
 from rodsweep.verdict import flutter
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.planes import PlaneOfMotion, Planes

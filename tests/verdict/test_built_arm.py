@@ -7,7 +7,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.model.arm.neglected import Validity
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
 
 ARM = {"length": "12 cm", "radius": "6 mm", "young": "100 kPa", "viscosity": "50 Pa s"}
 CONE = ARM | {"tip_radius": "3 mm"}

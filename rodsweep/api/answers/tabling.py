@@ -11,7 +11,7 @@ import xarray as xr
 from ...config.document.call_arguments import refusing_wrong_arguments
 from ...config.values import short_repr
 from ...errors import InputError
-from ...post.tables import Tables
+from ...post.tables.tables import Tables
 from ...results.file.view import View, read_view
 from ...solve.exclusive import one_at_a_time
 from ..dataset import named_file_path, view_of_dataset

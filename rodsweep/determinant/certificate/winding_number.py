@@ -192,9 +192,8 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
             )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real = WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width
-    imag = max(imag, WINDING_SETTINGS.min_height * abs(line))
-    change, nodes = contour_phase_change(line, foot, complex(real, imag), rod.coefficients)
+    corner = upper_contour_corner(line, (real, imag))
+    change, nodes = contour_phase_change(line, foot, corner, rod.coefficients)
     if nodes < 0:
         return EigenvalueCount(None, -nodes, PHASE_LOST_MESSAGE)
     total += change
@@ -203,3 +202,16 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
         return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
     return EigenvalueCount(number, nodes)
+
+
+def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:
+    """Upper right corner of the contour, in 1/tau2: the point of the contour with the largest |w|.
+
+    line: real part of the left edge of the contour. box: bounds (max Re w, max |Im w|) of all eigenvalues
+    right of the line. Also for the contours of arms.
+    """
+    real, imag = box
+    return complex(
+        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,
+        max(imag, WINDING_SETTINGS.min_height * abs(line)),
+    )

@@ -10,9 +10,9 @@ from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
 from ..summary.ranges import error_text, number_and_error, rounded_text
-from ..tables import Tables
 from ..tables.columns import Column
 from ..tables.contents import POINTS
+from ..tables.tables import Tables
 
 BOOLEAN_WORDS = ("no", "yes")
 """Words for the boolean values 0 and 1."""

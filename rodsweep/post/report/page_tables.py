@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...results.file.view import View
-from ..tables import Table, Tables
 from ..tables.columns import Column
 from ..tables.contents import DEFAULT_TABLE, POINTS
+from ..tables.tables import Table, Tables
 
 MAX_ROWS = 60
 """Largest number of rows of a table on the page. `rodsweep export` writes all rows."""

@@ -15,9 +15,9 @@ from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import index_count
 from ..layouts.variables import MISSING_STATUS
 from ..run.journal import journal_directory, read_journals, read_reasons
-from .exchange import FileReplacement, disk_refusals, file_identity
 from .points import missing_ranges, write_records
 from .provenance import utc_time, with_failure_reasons
+from .replacement import FileReplacement, disk_refusals, file_identity
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file, read_header
 
 MAX_REREADS = 20
@@ -90,20 +90,20 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
         if not _is_snapshot(output):
             raise InputError(f"{output} exists and is not a snapshot; name another file with -o")
     with disk_refusals(output):
-        exchange = FileReplacement(output)
+        replacement = FileReplacement(output)
     try:
-        return read_file_and_journals(path, lambda: _write_new_snapshot(path, exchange))
+        return read_file_and_journals(path, lambda: _write_new_snapshot(path, replacement))
     finally:
-        exchange.close()
+        replacement.close()
 
 
-def _write_new_snapshot(path: Path, exchange: FileReplacement) -> tuple[int, int]:
+def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, int]:
     """Replaces the snapshot by a copy of the file at `path` with the points of its journals.
 
     Returns (number of computed points, number of all points).
     """
     header = read_header(path)
-    with disk_refusals(exchange.path), exchange.replacing(path) as copy:
+    with disk_refusals(replacement.path), replacement.replacing(path) as copy:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
         write_records(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:

@@ -34,10 +34,10 @@ from ..run.journal import (
 from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
 from .current_state import SNAPSHOT_ATTRIBUTE
-from .exchange import FileReplacement, disk_refusals, file_identity
 from .points import iterate_statuses, missing_ranges, points_of_file, write_records
 from .provenance import merged_history, with_failure_reasons
 from .refusals import header_of_existing_file, require_room, require_same_config
+from .replacement import FileReplacement, disk_refusals, file_identity
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file
 
 BACKUPS = "before-*.h5"

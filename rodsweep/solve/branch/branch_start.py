@@ -13,7 +13,7 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.unstable_modes import Threshold
+from ..changes.kinds import Threshold
 from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude

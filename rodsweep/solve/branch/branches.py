@@ -11,16 +11,16 @@ from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ...watch import solve_part
 from ..changes.along_path import ThresholdList, find_axis_crossings
-from ..changes.unstable_modes import Threshold
+from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
-from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branch_request import BranchRequest
 from .branch_start import hopf_branch_start
 from .computing_time import fractions_before_branches
 from .following import BranchLimits, follow_asymmetric_branch, follow_branch
 from .special.point import SPECIAL_POINT_SETTINGS, EndReason
+from .status import BranchStatus
 from .symmetry import SymmetryBreaking, symmetry_breakings_in
 
 
@@ -36,36 +36,6 @@ class BranchSettings:
 
 
 BRANCH_SETTINGS = BranchSettings()
-
-
-class BranchStatus(PointStatus):
-    """Outcome of the search for Hopf points of one rod and of the continuation of its branches."""
-
-    ok = (
-        0,
-        "every branch from a Hopf point within the range, and every branch from a symmetry breaking on these "
-        "branches, is followed to its end to the requested accuracy, and all special points are located",
-        True,
-    )
-    stopped = (
-        1,
-        "no further cycle was found on a branch before its end, or the limit `work` was reached; the message "
-        "says where; all other branches are complete; raise `work` if it is reached, use a smaller or larger "
-        "number for the accuracy, or shorten the range",
-    )
-    list_full = 2, "there are more cycles or special points than the file holds; raise `cycles` or `special`"
-    special_undecided = (
-        3,
-        "the error of a special point exceeds the requested accuracy, or multipliers cross the unit circle "
-        "where no special point was found; try a smaller number for the accuracy",
-    )
-    search_open = (
-        4,
-        "the branches are complete, but a Hopf point may be missing: two Hopf points may nearly coincide "
-        "within an open range, the search may have ended early, or a count of unstable modes may disagree; "
-        "`certify: false` ignores the count",
-    )
-    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,49 +15,13 @@ from ...arrays import Array
 from ...model.rod import Rod
 from ...wording import counted
 from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, solve_row
-from ..changes.thresholds import ThresholdStatus
+from ..changes.status import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branch_request import BranchRequest
-from .branches import BRANCH_SETTINGS, BranchesOfRod, BranchStatus, solve_branches
+from .branches import BRANCH_SETTINGS, BranchesOfRod, solve_branches
 from .special.point import EndReason, SpecialPoint
-
-
-def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:
-    """(value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` with the same
-    name is made."""
-    return int(status), status.sentence, status.succeeded
-
-
-class CoexistenceStatus(PointStatus):
-    """Outcome of a row with cycles: the status of the search for thresholds of the straight rod if this
-    search has a problem, otherwise the status of the branches."""
-
-    ok = _status_as_in_thresholds(ThresholdStatus.ok)
-    not_certified = _status_as_in_thresholds(ThresholdStatus.not_certified)
-    window_open = _status_as_in_thresholds(ThresholdStatus.window_open)
-    accuracy_not_reached = _status_as_in_thresholds(ThresholdStatus.accuracy_not_reached)
-    list_full = _status_as_in_thresholds(ThresholdStatus.list_full)
-    failed = _status_as_in_thresholds(ThresholdStatus.failed)
-    ended_early = _status_as_in_thresholds(ThresholdStatus.ended_early)
-    branches_stopped = (
-        6,
-        "the thresholds of the straight rod are found, but a branch of cycles is incomplete or a Hopf point "
-        "may be missing: the stable states are undecided where no stable cycle is known; the message says "
-        "where",
-    )
-    special_undecided = (
-        7,
-        "the branches are complete, but the error of a special point exceeds the requested accuracy, or a "
-        "stable state is undecided: multipliers of cycles between two special points disagree about "
-        "stability or have modulus 1 within their errors; try a smaller number for the accuracy",
-    )
-    special_full = (
-        8,
-        "there are more special points on the branches of the row than the file holds; choose a smaller "
-        "range of the parameter along the row",
-    )
+from .status import BranchStatus, CoexistenceStatus
 
 
 class StableStates(IntEnum):

@@ -18,10 +18,10 @@ from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
 from .mesh_choice import is_measurement_due
 from .range_end import cycle_within_range, range_end_condition
+from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
-from .special.points import special_points_between
 from .symmetry import (
     BRANCH_END_SETTINGS,
     SymmetryBreaking,

@@ -1,4 +1,4 @@
-"""Search for all thresholds along a path of rods (`unstable_modes`): pairs that cross the imaginary axis, and
+"""Search for all thresholds along a path of rods (`kinds`): pairs that cross the imaginary axis, and
 exchanges of the leading eigenvalue.
 
 The crossings come from `determinant.certificate.covering`, which proves that the list is complete, or for
@@ -16,10 +16,11 @@ from ...determinant.roots.newton import LocatedZero
 from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
+from .kinds import Threshold, crossing_kind
 from .leading_eigenvalue import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
-from .unstable_modes import ChangeKind, ModeCounter, Threshold
+from .unstable_modes import ModeCounter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -229,12 +230,11 @@ def _pairs_missed_as_leaders(
 
 
 def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
-    """Crossing at a zero of D on the axis: hopf if Re w grows with the parameter, otherwise hopf_reverse."""
+    """Crossing at a zero of D on the axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
-    # dw/dp = -D_p/D_w; along a stiffness p = 1/k falls as the parameter rises.
-    growing = (-there.D_p / there.D_w).real > 0
-    kind = ChangeKind.hopf if growing != path.is_compliance_path else ChangeKind.hopf_reverse
+    # dw/dp = -D_p/D_w.
+    kind = crossing_kind(path, (-there.D_p / there.D_w).real > 0)
     at, error = path.value(zero.p, zero.error_of_p)
     return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 

@@ -27,9 +27,9 @@ from .anchor_interpolation import (
 )
 from .anchors import Anchor
 from .exchange import double_eigenvalue_between, overtaking_between
+from .kinds import ChangeKind, Threshold
 from .path_problem import PathProblem
 from .search_range import SearchedIntervals, SearchEnd
-from .unstable_modes import ChangeKind, Threshold
 
 ANCHOR_MODE_COUNT = 4
 """Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first

@@ -1,16 +1,14 @@
-"""Kinds of thresholds along a path of rods, and the number of unstable modes between the thresholds.
+"""Number of unstable modes between the thresholds along a path of rods.
 
-At a threshold a pair of eigenvalues crosses the imaginary axis, or the leading eigenvalue changes between
-real and complex (an exchange). The directions of the crossings give the number of unstable modes after every
-crossing. Winding numbers confirm this number at both ends and between the crossings.
+The directions of the crossings (`kinds`) give the number of unstable modes after every crossing. Winding
+numbers confirm this number at both ends and between the crossings.
 """
 
-import math
 from dataclasses import dataclass, replace
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from ...model.rod import Rod
+from .kinds import ChangeKind, Threshold
 
 if TYPE_CHECKING:
     from .path_problem import PathProblem  # for annotations only: the module imports solvers
@@ -41,53 +39,6 @@ def end_below_crushing(rod: Rod, F: float) -> float:
     """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
     force of `rod`."""
     return min(F, rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin))
-
-
-class ChangeKind(IntEnum):
-    """Kind of a threshold along a path, named for increasing parameter.
-
-    onset, real_again: two real leading eigenvalues become a pair; a pair becomes two real eigenvalues.
-    pair_leads, real_leads: a pair overtakes a real eigenvalue; a real eigenvalue overtakes a pair. hopf,
-    hopf_reverse: a pair becomes unstable; a pair becomes stable. restabilization: the last unstable pair
-    becomes stable.
-    """
-
-    onset = 1
-    hopf = 2
-    hopf_reverse = 3
-    restabilization = 4
-    real_again = 5
-    real_leads = 6
-    pair_leads = 7
-
-    @property
-    def changes_leader(self) -> bool:
-        """Whether the leading eigenvalue changes between real and complex at this threshold. Otherwise a pair
-        crosses the imaginary axis."""
-        return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)
-
-    @property
-    def pair_leads_after(self) -> bool:
-        """Whether a complex pair takes the lead at this threshold."""
-        return self in (ChangeKind.onset, ChangeKind.pair_leads)
-
-
-@dataclass(frozen=True, slots=True)
-class Threshold:
-    """One threshold along a path. value, error: value of the parameter and its absolute error. growth_rate,
-    frequency: real and imaginary part of the eigenvalue, in 1/tau2.
-
-    unstable_after: number of unstable modes just after the threshold, -1 if unknown. frequency_error: error
-    of the frequency of a pair that crosses the imaginary axis; nan at an exchange of the leading eigenvalue.
-    """
-
-    value: float
-    kind: ChangeKind
-    frequency: float
-    growth_rate: float
-    error: float
-    unstable_after: int = -1
-    frequency_error: float = math.nan
 
 
 class ModeCounter:

@@ -19,7 +19,7 @@ from ...determinant.parameter_plane import Plane
 from ...watch import SolvePosition, report
 from ..changes.arm.path import path_problem
 from ..changes.diagram.boundary_curves import BoundaryCurve
-from ..changes.unstable_modes import ChangeKind, Threshold
+from ..changes.kinds import ChangeKind, Threshold
 from ..point import FAILURES
 from ..unsolvable import Unsolvable
 from .coefficient_errors import HopfCoefficients, hopf_coefficients

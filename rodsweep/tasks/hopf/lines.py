@@ -20,7 +20,7 @@ from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
     from ...solve.changes.along_path import ThresholdList
-    from ...solve.changes.unstable_modes import Threshold
+    from ...solve.changes.kinds import Threshold
 
 
 @dataclass(frozen=True, slots=True)

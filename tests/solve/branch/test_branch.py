@@ -17,12 +17,13 @@ from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
-from rodsweep.solve.branch.branches import BranchStatus, solve_branches
+from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd
+from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variations

@@ -16,7 +16,7 @@ from rodsweep.solve.branch import following
 from rodsweep.solve.branch.arc import next_cycle
 from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branch_start import hopf_branch_start
-from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
+from rodsweep.solve.branch.branches import BranchesOfRod
 from rodsweep.solve.branch.following import (
     BranchLimits,
     follow_asymmetric_branch,
@@ -25,8 +25,9 @@ from rodsweep.solve.branch.following import (
 )
 from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.special import locating
+from rodsweep.solve.branch.special.detection import special_kinds_between
 from rodsweep.solve.branch.special.point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
-from rodsweep.solve.branch.special.points import special_kinds_between
+from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
     extended_to_whole_period,

@@ -6,11 +6,12 @@ from surveyed import survey_only
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
-from rodsweep.solve.branch.branches import BranchStatus, solve_branches
+from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.errors import BranchCalibration
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.located_meshes import first_mesh
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh

@@ -20,8 +20,7 @@ from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
-from rodsweep.solve.branch.branches import BranchStatus
-from rodsweep.solve.branch.coexistence import CoexistenceStatus, StableStates, solve_coexistence
+from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import SpecialKind
@@ -31,6 +30,7 @@ from rodsweep.solve.branch.special.special_curves import (
     HalfCurve,
     SpecialPointCurve,
 )
+from rodsweep.solve.branch.status import BranchStatus, CoexistenceStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.running.job import job_of_file

@@ -14,8 +14,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
-from rodsweep.solve.changes.thresholds import ThresholdStatus
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.hopf.generalised import curve_criticality
 
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))

@@ -11,8 +11,9 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import CLASSES
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.following import are_distinct_roots
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum

@@ -17,9 +17,10 @@ from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
+from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.search_range import SearchedIntervals
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.path import followed_arms
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))

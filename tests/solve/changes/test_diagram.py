@@ -15,8 +15,8 @@ from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, s
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEnd
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
-from rodsweep.solve.changes.thresholds import ThresholdStatus
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
 
 FOLDS = [
     # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian

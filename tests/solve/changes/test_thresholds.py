@@ -13,8 +13,9 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
 from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
-from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
+from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())

@@ -22,8 +22,8 @@ from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.response import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.changes.unstable_modes import ChangeKind
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.cycle import CycleRequest

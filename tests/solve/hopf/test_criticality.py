@@ -23,12 +23,9 @@ from rodsweep.solve.changes.along_path import find_axis_crossings, find_threshol
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
-from rodsweep.solve.hopf.criticality import (
-    CriticalityRequest,
-    CriticalityStatus,
-    solve_criticality,
-)
+from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
+from rodsweep.solve.hopf.status import CriticalityStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable
 from rodsweep.tasks.criticality import criticality_values

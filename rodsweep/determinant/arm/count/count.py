@@ -22,6 +22,7 @@ from ...certificate.winding_number import (
     PHASE_LOST_MESSAGE,
     WINDING_SETTINGS,
     EigenvalueCount,
+    upper_contour_corner,
 )
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, PropagatorsUpToW
@@ -102,7 +103,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.propagators_for(abs(_upper_box_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
+        determinant.propagators_for(abs(_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
     except FloatingPointError:
         return False
     return True
@@ -110,19 +111,13 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
-    corner = _upper_box_corner(line, hull)
+    corner = _corner(line, hull)
     return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.phase_change_length(corner)
 
 
-def _upper_box_corner(line: float, hull: EigenvalueHull) -> complex:
-    """The corner in the upper half plane, with the largest |w|, of the box about all eigenvalues right of the
-    line.
-    """
-    real, imag = hull.box(max(-line, 0.0))
-    return complex(
-        WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,
-        max(imag, WINDING_SETTINGS.min_height * abs(line)),
-    )
+def _corner(line: float, hull: EigenvalueHull) -> complex:
+    """Upper right corner of the contour about all eigenvalues right of the line."""
+    return upper_contour_corner(line, hull.box(max(-line, 0.0)))
 
 
 def _phase_change(
@@ -132,7 +127,7 @@ def _phase_change(
 
     Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
     """
-    corner = _upper_box_corner(line, hull)
+    corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest = largest_w_of_count(line, determinant, hull)

@@ -37,7 +37,7 @@ from ..style import (
 from .amplitudes.hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, axis_coordinates, cell_edges, point_map
 from .selection import shared_and_own_of_arms
-from .units import units_of_files
+from .units_and_labels import units_of_files
 
 STATUS_LOOKS = {
     "straight": ("#E8EDF2", ""),

@@ -16,7 +16,7 @@ from ....results.file.view import View
 from ...summary.ranges import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
-from .units import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
+from .units_and_labels import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
 
 MAX_CYCLES = 3
 """Largest number of cycles that fit side by side into one figure."""

@@ -11,7 +11,7 @@ from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_WORDS
 from ..style import BLUE, VERMILION
 from .selection import TRANSIENT_VARIABLE_NAMES, StoredCycle, chosen_transients
-from .units import CycleUnits
+from .units_and_labels import CycleUnits
 
 EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
 """Line style of horizontal lines at the extrema of the cycle that the motion approaches."""

@@ -15,9 +15,9 @@ from ....errors import InputError
 from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNALS, journal_directory
 from ..creation import Plan, add_variables, create_file
-from ..exchange import FileReplacement, disk_refusals
 from ..points import missing_ranges, points_of_file, records_to_add, write_records
 from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, utc_time
+from ..replacement import FileReplacement, disk_refusals
 from ..validation import ResultHeader, read_header
 from .joining import JoinedFile, PlanMaker, joined_file_of
 
@@ -45,7 +45,7 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
     """
     sources = _read_headers(paths)
     with disk_refusals(output):
-        exchange = FileReplacement(output)
+        replacement = FileReplacement(output)
     try:
         with disk_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # the file may have appeared while another run held the lock
@@ -53,17 +53,17 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
                     [output, *(path for path in paths if not os.path.samefile(output, path))]
                 )
             if all(_has_same_fingerprint(sources[0], source) for source in sources):
-                return _merge(exchange, sources, planner)
-            return _write_joined_file(exchange, joined_file_of(sources, planner))
+                return _merge(replacement, sources, planner)
+            return _write_joined_file(replacement, joined_file_of(sources, planner))
     finally:
-        exchange.close()
+        replacement.close()
 
 
-def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
+def _merge(replacement: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
     """Replaces the output by a copy of the first source with the points of all other sources added."""
     first = sources[0]
     plan = planner(config_from_resolved(first.config), points_of_file(first.path, first.layout))
-    with exchange.replacing(first.path) as copy:
+    with replacement.replacing(first.path) as copy:
         gave = [first]
         for source in sources[1:]:
             if write_records(copy, records_to_add(copy, source.path, first.layout), first.layout):
@@ -71,9 +71,9 @@ def _merge(exchange: FileReplacement, sources: Sequence[ResultHeader], planner: 
         return _finish_merge(copy, plan, gave)
 
 
-def _write_joined_file(exchange: FileReplacement, joint: JoinedFile) -> MergeResult:
+def _write_joined_file(replacement: FileReplacement, joint: JoinedFile) -> MergeResult:
     """Replaces the output by the planned joined file and writes the points of all sources into it."""
-    with exchange.replacing(None) as copy:
+    with replacement.replacing(None) as copy:
         create_file(copy, joint.plan)
         gave = joint.write(copy)
         return _finish_merge(copy, joint.plan, gave or joint.sources[:1])

@@ -2,8 +2,8 @@
 
 Cycles near a special point form a family with two variables: arc length along the branch (`bordered`), and
 row coordinate. In this family the special points form a smooth curve, also at a cusp, where both parameters
-turn back: the zeros of a test function. The secant method finds a zero across the curve (`secant`). The error
-is the difference between two meshes, measured at every third point or so, plus the error of the secant
+turn back: the zeros of a test function. The secant method finds a zero across the curve (`curve_secant`). The
+error is the difference between two meshes, measured at every third point or so, plus the error of the secant
 method.
 """
 
@@ -20,6 +20,7 @@ from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.functions import FoldFunction, TorusFunction
+from .curve_secant import SecantSearch
 from .on_curve import (
     CURVE_SECANT_SETTINGS,
     MeasuredCurveError,
@@ -29,7 +30,6 @@ from .on_curve import (
     orbit_with_parameters,
 )
 from .point import SpecialKind
-from .secant import SecantSearch
 
 
 @dataclass(frozen=True, slots=True)

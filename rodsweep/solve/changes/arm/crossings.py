@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...unsolvable import Unsolvable
+from ..kinds import Threshold, crossing_kind
 from ..search_range import SearchedIntervals, SearchEnd
-from ..unstable_modes import ChangeKind, Threshold
 from .axis_modes import AxisModes, AxisModesOfPath, next_count_position
 from .path import ArmPath
 
@@ -231,7 +231,7 @@ class CrossingSearch:
         opposite to `grows`: w is then another pair. slope: dw/dp. blur: error of p."""
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
-        kind = ChangeKind.hopf if grows != self.problem.path.is_compliance_path else ChangeKind.hopf_reverse
+        kind = crossing_kind(self.problem.path, grows)
         error_of_p = blur + abs(w.real / slope.real)
         at, error = self.problem.path.value(p, error_of_p)
         error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # at fixed p, and by the error of p

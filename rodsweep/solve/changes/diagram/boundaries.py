@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.boundary import Boundary
 from ....determinant.parameter_plane import Plane
 from ...continuation.boundaries import Boundaries, trace_boundaries
-from ..unstable_modes import ChangeKind
+from ..kinds import ChangeKind
 from .boundary_curves import BoundaryCurve, trace_boundary
 
 

@@ -17,7 +17,8 @@ from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point import outcome_or_failure
 from ..along_path import ThresholdList, find_thresholds
-from ..thresholds import Thresholds, ThresholdStatus, empty_thresholds, thresholds_with_status
+from ..status import ThresholdStatus
+from ..thresholds import Thresholds, empty_thresholds, thresholds_with_status
 from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
 

@@ -1,5 +1,11 @@
 """Error estimates of a cycle: of the period, of the largest y and other extrema of the tip, and of the
-largest nontrivial Floquet multiplier."""
+largest nontrivial Floquet multiplier.
+
+Errors are measured in `finer_meshes`, as differences between the cycles on the mesh and on two finer meshes,
+or predicted in `coarser_meshes`. `calibration` scales them to later cycles and applies safety factors and
+lower limits; the factors are in `calibration_settings`. The errors of integrated cycles come from
+`integration_errors`.
+"""
 
 from dataclasses import dataclass
 from math import nan
@@ -11,8 +17,8 @@ from ....arrays import Array
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleErrorSettings:
-    """Settings for the smallest error estimates of a cycle, and for the error that is compared with the
-    accuracy."""
+    """Settings for the smallest error estimates of a cycle (applied in `calibration`), and for the error that
+    is compared with the accuracy."""
 
     rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
@@ -28,7 +34,7 @@ CYCLE_ERROR_SETTINGS = CycleErrorSettings()
 
 @dataclass(frozen=True, slots=True)
 class CycleErrors:
-    """Error estimates of a cycle.
+    """Error estimates of a cycle; safety factors are included.
 
     period_error, amplitude_error: relative errors of the period and of the tip's largest y. extrema_error:
     largest error of the tip's other extrema, divided by the largest y. multiplier_error: absolute error of

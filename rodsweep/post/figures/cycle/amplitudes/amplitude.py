@@ -26,7 +26,7 @@ from ...style import (
     scale_axis,
 )
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
-from ..units import units_of_files
+from ..units_and_labels import units_of_files
 from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
 

@@ -11,7 +11,7 @@ from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
 from .....sweep.points.points import lines_along
 from ....hopf_points import LocatedThreshold, StoredThresholds
-from ..units import PLAIN_UNITS, CycleUnits
+from ..units_and_labels import PLAIN_UNITS, CycleUnits
 from .square_root import SquareRootLaw, square_root_laws
 
 

@@ -1,15 +1,15 @@
-"""Timer that runs a callback when the user has not changed the controls for some time."""
+"""Timer that runs a callback once the user has paused: the controls have not changed for some time."""
 
 from collections.abc import Callable
 
 from bokeh.document import Document
 
-IDLE_MILLISECONDS = 900
+PAUSE_MILLISECONDS = 900
 """Questions that take seconds are sent when the controls have not changed for this time, in milliseconds."""
 
 
-class IdleTimer:
-    """Runs `callback` on the event loop of a document, IDLE_MILLISECONDS after the last `restart`."""
+class PauseTimer:
+    """Runs `callback` on the event loop of a document, PAUSE_MILLISECONDS after the last `restart`."""
 
     def __init__(self, document: Document, callback: Callable[[], None]):
         self.document = document
@@ -19,7 +19,7 @@ class IdleTimer:
     def restart(self) -> None:
         """Starts the waiting time, again if it has not ended."""
         self.cancel()
-        self._scheduled = self.document.add_timeout_callback(self._run, IDLE_MILLISECONDS)
+        self._scheduled = self.document.add_timeout_callback(self._run, PAUSE_MILLISECONDS)
 
     def cancel(self) -> None:
         """Ends the waiting time without the callback."""

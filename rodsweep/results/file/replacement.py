@@ -57,7 +57,7 @@ class FileReplacement:
         path.parent.mkdir(parents=True, exist_ok=True)
         self.lock = ResultFileLock(self.journal_directory, path)
         self.last_identity: FileIdentity = ()
-        """Identity of the file at the last check or exchange."""
+        """Identity of the file at the last check or replacement."""
 
     @contextmanager
     def replacing(self, source: Path | None) -> Iterator[Path]:

@@ -1,4 +1,4 @@
-"""Units in figures of cycles: the dimensionless units of the paper, or SI units for an arm."""
+"""Units and axis labels in figures of cycles: dimensionless units of the paper, or SI units for an arm."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,0 +1,71 @@
+"""Status of the branches of one rod and of a row of a phase diagram with cycles, with a sentence of cause and
+remedy for the user."""
+
+from ..changes.status import ThresholdStatus
+from ..status import PointStatus
+
+
+class BranchStatus(PointStatus):
+    """Outcome of the search for Hopf points of one rod and of the continuation of its branches."""
+
+    ok = (
+        0,
+        "every branch from a Hopf point within the range, and every branch from a symmetry breaking on these "
+        "branches, is followed to its end to the requested accuracy, and all special points are located",
+        True,
+    )
+    stopped = (
+        1,
+        "no further cycle was found on a branch before its end, or the limit `work` was reached; the message "
+        "says where; all other branches are complete; raise `work` if it is reached, use a smaller or larger "
+        "number for the accuracy, or shorten the range",
+    )
+    list_full = 2, "there are more cycles or special points than the file holds; raise `cycles` or `special`"
+    special_undecided = (
+        3,
+        "the error of a special point exceeds the requested accuracy, or multipliers cross the unit circle "
+        "where no special point was found; try a smaller number for the accuracy",
+    )
+    search_open = (
+        4,
+        "the branches are complete, but a Hopf point may be missing: two Hopf points may nearly coincide "
+        "within an open range, the search may have ended early, or a count of unstable modes may disagree; "
+        "`certify: false` ignores the count",
+    )
+    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
+
+
+def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:
+    """(value, sentence, success) of a `ThresholdStatus`, from which the `CoexistenceStatus` with the same
+    name is made."""
+    return int(status), status.sentence, status.succeeded
+
+
+class CoexistenceStatus(PointStatus):
+    """Outcome of a row with cycles: the status of the search for thresholds of the straight rod if this
+    search has a problem, otherwise the status of the branches."""
+
+    ok = _status_as_in_thresholds(ThresholdStatus.ok)
+    not_certified = _status_as_in_thresholds(ThresholdStatus.not_certified)
+    window_open = _status_as_in_thresholds(ThresholdStatus.window_open)
+    accuracy_not_reached = _status_as_in_thresholds(ThresholdStatus.accuracy_not_reached)
+    list_full = _status_as_in_thresholds(ThresholdStatus.list_full)
+    failed = _status_as_in_thresholds(ThresholdStatus.failed)
+    ended_early = _status_as_in_thresholds(ThresholdStatus.ended_early)
+    branches_stopped = (
+        6,
+        "the thresholds of the straight rod are found, but a branch of cycles is incomplete or a Hopf point "
+        "may be missing: the stable states are undecided where no stable cycle is known; the message says "
+        "where",
+    )
+    special_undecided = (
+        7,
+        "the branches are complete, but the error of a special point exceeds the requested accuracy, or a "
+        "stable state is undecided: multipliers of cycles between two special points disagree about "
+        "stability or have modulus 1 within their errors; try a smaller number for the accuracy",
+    )
+    special_full = (
+        8,
+        "there are more special points on the branches of the row than the file holds; choose a smaller "
+        "range of the parameter along the row",
+    )

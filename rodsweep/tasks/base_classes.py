@@ -1,0 +1,114 @@
+"""Base classes of tasks: `CertifiedTask` of tasks with a certificate, `NonlinearTask` of tasks on cycles."""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ..discretization.elements.elements import Elements
+from ..discretization.elements.resolution import mesh_accuracy
+from ..model.rod import Rod
+from ..solve.changes.anchors import ANCHOR_SETTINGS
+from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
+from .check_rows import arms_line, material_check_rows, rod_check_rows
+from .protocol import CheckRow, Task
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedTask(Task):
+    """Base class of tasks with a certificate, which proves that the list of modes or crossings is
+    complete.
+    """
+
+    uncertified_risk: ClassVar[str]
+    """Consequence of a missing certificate, as `check` prints it."""
+    count_location: ClassVar[str] = ""
+    """Rods at which the certificate counts modes: "point" for every point, "line" for some rods on each
+    line."""
+    never_modelled: ClassVar[tuple[str, str]] = (
+        "gravity, inertia, nonlinear motion",
+        "not part of the linear overdamped problem",
+    )
+    """(effects that the task never models, reason), as `check` prints them."""
+
+    @abstractmethod
+    def option_rows(self) -> list[CheckRow]:
+        """Rows of `check` on the results that the task's options request."""
+
+    @property
+    def parameter_values(self) -> dict[str, np.ndarray]:
+        """All values of each parameter at points, in searches and on lines, by name of the parameter, in
+        arrays of any shape.
+        """
+        return self.points.rod_values | self.searched_limits() | self.coordinates()
+
+    def arms_line(self) -> str:
+        return arms_line(self.config, self.parameter_values, self.first_mesh)
+
+    def first_mesh(self) -> Elements | None:
+        """The finest of the initial meshes of all points; None if the rod model applies to no point.
+
+        By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
+        imaginary axis.
+        """
+        accuracy = mesh_accuracy(ANCHOR_SETTINGS.arm_accuracy, vectors=False)
+
+        def mesh_of(rod: Rod) -> Elements:
+            return spectrum_mesh(rod, ANCHOR_SETTINGS.min_known_modes, accuracy)
+
+        return largest_first_mesh(self.points, mesh_of, self.searched_limits())
+
+    def searched_limits(self) -> dict[str, np.ndarray]:
+        """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
+        search.
+        """
+        return {}
+
+    def certificate(self) -> tuple[bool, str]:
+        """Returns (whether the run proves completeness, method of the proof or reason why there is no
+        proof).
+        """
+        task = self.config.task
+        if not getattr(self.config, task).certify:
+            return False, f"{task}.certify: false; {self.uncertified_risk}"
+        proof = "winding number of D"
+        if self.count_location == "line" and not self.config.standard:
+            proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
+        if self.count_location == "point" and self._has_varying_arm:
+            proof += ", estimated in part"
+        return True, proof
+
+    @property
+    def _has_varying_arm(self) -> bool:
+        """Whether the material or the cross-section of some arm varies along its length. The characteristic
+        determinant D then has no closed form.
+        """
+        tapers = self.points.columns_by_name.get("taper", np.ones(1))
+        return self.config.build.profile is not None or bool((tapers != 1).any())
+
+    def check_rows(self) -> list[CheckRow]:
+        what, why = self.never_modelled
+        parts = [
+            *rod_check_rows(self.parameter_values),
+            *material_check_rows(self.config, self.parameter_values),
+            *self.option_rows(),
+        ]
+        return [*parts, ("certificate", *self.certificate()), (what, False, why)]
+
+
+@dataclass(frozen=True, slots=True)
+class NonlinearTask(CertifiedTask):
+    """Base class of tasks on cycles: near Hopf points, or on branches from Hopf points."""
+
+    uncertified_risk: ClassVar[str] = "Hopf points may be missed"
+    never_modelled: ClassVar[tuple[str, str]] = (
+        "gravity, inertia, motion out of the plane",
+        "not part of the overdamped problem",
+    )
+    AXIAL_DRAG_ROW: ClassVar[CheckRow] = (
+        "axial drag",
+        True,
+        "parameters.gamma1; it changes cycles, but no Hopf point",
+    )
+    """Row of `check` on the axial drag."""
