@@ -67,7 +67,8 @@ def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", a
     v |= {"period": period * kept, "tip_y_max": size * kept}
     v |= {"tip_x_min": (0.9 - size) * kept, "tip_x_max": (0.9 + size) * kept}
     v |= {"injection_mean": 2000 * kept, "energy_imbalance": 1e-9 * kept}
-    v |= {"period_error": 1e-9 * kept, "amplitude_error": 1e-9 * kept}
+    v |= {"period_error": 1e-9 * kept, "amplitude_error": 1e-9 * kept, "extrema_error": 1e-9 * kept}
+    v |= {"multiplier": 0.5 * kept}
     phase, few = np.arange(SAMPLES) / SAMPLES, np.arange(SHAPES) / SHAPES
 
     def fill(names, arrays):

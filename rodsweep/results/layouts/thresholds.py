@@ -67,7 +67,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to be resolved"
     return (
-        integer("crossing_count", "number of crossings found, stored or not; -1: the search failed"),
+        integer("crossing_count", "number of crossings found, stored or not"),
         *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),

@@ -501,4 +501,4 @@ def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
     assert c.status == CycleStatus.not_settled
     assert c.periods < REQUEST.most_periods
     assert "the motion repeats within" in c.message
-    assert "but finer meshes have no cycle near this motion" in c.message
+    assert "but Newton's method finds no cycle near this motion on finer meshes" in c.message

@@ -212,7 +212,8 @@ class Transient:
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (
-                f"the motion repeats within {distance:.0e}, but finer meshes have no cycle near this motion"
+                f"the motion repeats within {distance:.0e}, but Newton's method finds no cycle near this "
+                "motion on finer meshes"
             )
             return None
         if distance >= self._newton_start_distance() or self.returns < self.next_attempt:
