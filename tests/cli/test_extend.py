@@ -148,7 +148,7 @@ def test_kill_while_the_file_is_exchanged_loses_nothing(command, step):
     command.solved("small.yaml", "c.h5")
     path, words = command.directory / "c.h5", ("run", "large.yaml", "-o", "c.h5", "--extend")
     before = path.read_bytes()
-    module = "exchange" if step == "seal" else "store"
+    module = "replacement" if step == "seal" else "store"
     patch = f"""
 import os, signal
 from rodsweep.results.file import {module}

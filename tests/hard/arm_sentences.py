@@ -163,12 +163,27 @@ def _quantity_lines(view, page):
     found = []
     for name, values in view.quantities.items():
         true = np.unique(np.asarray(values, float))
+        if name == "drag":
+            found += _drag_line(page, [DRAG_NAMES[int(number)] for number in true])
+            continue
         for line, why, low, high, unit in parameter_lines(page, name, true):
             ends = (
                 as_stated(low, true.min() / UNITS.get(unit, 1.0)),
                 as_stated(high, true.max() / UNITS.get(unit, 1.0)),
             )
             found.append((line, "; ".join(filter(None, (why, *ends)))))
+    return found
+
+
+def _drag_line(page, names):
+    """The row of the drags: their number, the first and the last name."""
+    counted = "NUMBER +" * any(re.match("parameter +values", line) is not None for line in page)
+    ends = " +".join(dict.fromkeys([names[0], names[-1]]))
+    found = []
+    for line, match in read(page, rf"^drag +{counted}(.*?) *$"):
+        right = re.fullmatch(ends, match.groups()[-1].strip())
+        right = right and (not counted or int(match[1]) == len(names))
+        found.append((line, "" if right else f"the drags are {names}"))
     return found
 
 
