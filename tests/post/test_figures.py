@@ -433,7 +433,7 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
         (edge,) = (each for each in axes.collections if isinstance(each, QuadContourSet))
         F, k1 = np.concatenate([path.vertices for path in edge.get_paths()]).T
         assert len(F) > 100
-        assert pytest.approx(k1, rel=1e-6) == F
+        assert pytest.approx(k1, rel=1e-4) == F  # a pixel is 4e-3 of k1
         marks = [line for line in axes.lines if line.get_marker() not in (None, "None", "")]
         assert len(marks) == len({line.get_marker() for line in marks}) == 2
         assert {text.get_text() for text in axes.texts} == {r"$\tilde F_*$", r"$\tilde F_{**}$"}

@@ -39,7 +39,7 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
         return read_header(path)
     except IncompleteFile as error:
         ways = _remedies_clause(plan, journals)
-        if not is_rodsweep_file(path):
+        if not is_rodsweep_file(path) and not journals_with_fingerprint(journals, plan.fingerprint):
             ways = "choose another file with -o, or move this file away"
         raise InputError(f"{error}; the file is left unchanged: {ways}") from None
 
