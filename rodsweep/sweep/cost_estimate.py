@@ -52,6 +52,10 @@ THRESHOLD_SEARCH_MS = 24.0
 four times as long."""
 SEARCH_CERTIFICATE_MS = 16.0
 """Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
+SOFT_SEARCH_MS = 0.014
+"""Time to search one uniform rod for exchanges of the leading eigenvalue, divided by F^2/k2, in ms. F:
+largest force of the search. The number of exchanges grows with F^2/k2: 30 rods with k2 from 0.3 to 3 took 0.8
+to 3 times this time, for F up to 200."""
 ARM_SEARCH_MS = 200.0
 """Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
 half take 40 ms and a few soft arms 2000 ms."""
@@ -115,6 +119,20 @@ def estimate_searches(lines: int, certify: bool, of_arms: bool) -> Estimate:
     """
     uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
     return Estimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
+
+
+def estimate_thresholds(points: Points, F_max: float, certify: bool, of_arms: bool) -> Estimate:
+    """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
+    whether each list is certified. of_arms: whether any arm is not uniform.
+    """
+    lines = estimate_searches(points.count, certify, of_arms)
+    indices = sampled_points(points)
+    if of_arms or not indices.size:
+        return lines
+    values = points.values_of(indices)
+    exchanges = np.minimum(F_max, values["k1"]) ** 2 / np.asarray(values["k2"])
+    more = points.count * 1e-3 * SOFT_SEARCH_MS * float(np.mean(exchanges))
+    return replace(lines, seconds=lines.seconds + more)
 
 
 def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:

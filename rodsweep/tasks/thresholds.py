@@ -10,7 +10,7 @@ import numpy as np
 from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_searches
+from ..sweep.cost_estimate import Estimate, estimate_thresholds
 from .base_classes import CertifiedTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -50,7 +50,8 @@ class ThresholdsTask(CertifiedTask):
 
     def cost(self) -> Estimate:
         of_arms = not self.config.standard
-        return estimate_searches(self.points.count, self.config.thresholds.certify, of_arms)
+        options = self.config.thresholds
+        return estimate_thresholds(self.points, options.F_max, options.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.changes.status import ThresholdStatus

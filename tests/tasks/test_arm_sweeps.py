@@ -341,3 +341,13 @@ def test_the_curves_of_a_diagram_of_arms_are_part_of_its_cost():
             cost[taper, curves] = job_of_tree(tree).task.cost().seconds
     assert cost[1.0, True] == cost[1.0, False]
     assert cost[0.5, True] > cost[0.5, False] + 1
+
+
+@pytest.mark.parametrize(
+    ("k2", "seconds"), [(1e4, (0.01, 0.1)), (1.0, (0.3, 1.5)), (0.1, (3, 15)), (np.inf, (0.01, 0.1))]
+)
+def test_thresholds_of_rods_soft_in_shear_are_expected_to_take_longer(k2, seconds):
+    """At k1 = 1000, k2 = 1 takes 0.6 s and k2 = 0.1 takes 12 s."""
+    tree = {"task": "thresholds", "parameters": {"k1": 1000.0, "k2": k2, "gamma3": 1e-3}}
+    low, high = seconds
+    assert low < job_of_tree(tree).task.cost().seconds < high
