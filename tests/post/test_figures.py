@@ -24,7 +24,7 @@ from rodsweep.post.figures.lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.sections import section_at_values
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
-from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS, class_along_row
+from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import (
     PIXEL_COUNT,
@@ -32,6 +32,7 @@ from rodsweep.post.figures.stability.regions import (
     DrawnPlane,
     pixel_classes,
 )
+from rodsweep.post.figures.stability.row_classes import class_along_row
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
 from rodsweep.post.summary import SUMMARIES
@@ -711,6 +712,33 @@ def test_growing_roots_are_drawn_unless_other_roots_are_chosen(command, monkeypa
     assert (view.variables["growth_rate"].max(axis=-1) > 0).all()
     assert "the two rightmost roots" in shown
     assert "smallest" in draw(view, command.directory / "f.png", roots="smallest")
+
+
+@pytest.mark.parametrize(
+    ("parameters", "inside", "word"),
+    [
+        # between the restabilization at F = 174.6 and the crushing force 180
+        (
+            "{F: {start: 0, stop: 200, num: 21}, gamma3: [0.1, 0.5, 1], k1: 180, k2: 2000}",
+            (177.0, 0.9),
+            "oscillatory",
+        ),
+        # between crushing at k1 = 120 and the onset at 124.8
+        ("{F: 120, k1: [60, 150, 300, 600], k2: [5000, 1.0e4], gamma3: 1.0e-3}", (121.0, 9900.0), "monotone"),
+    ],
+)
+def test_an_outer_part_of_a_row_without_a_computed_point_has_its_own_class(
+    command, monkeypatch, parameters, inside, word
+):
+    figure, _ = drawn_of(command, monkeypatch, f"task: phase_diagram\nparameters: {parameters}\n")
+    classes = figure.axes[0].images[0].get_array()
+    view = read_view(command.directory / "c.h5")
+    line, row = ("F", "gamma3") if "180" in parameters else ("k1", "k2")
+    column, line_of_pixels = (
+        np.abs(DrawnPlane.pixel_centres(view.variables[name]) - place).argmin()
+        for name, place in zip((line, row), inside, strict=True)
+    )
+    assert classes[line_of_pixels, column] == flag_number(word, CLASSES)
 
 
 def test_what_a_figure_leaves_out_is_said(command, monkeypatch):

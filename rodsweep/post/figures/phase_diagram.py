@@ -22,9 +22,10 @@ from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, class_along_row, classes_between_crossings
+from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS
 from .stability.diagram_curves import draw_boundary_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
+from .stability.row_classes import class_along_row, classes_between_crossings
 from .style import (
     LABELS,
     SYMBOLS,
@@ -225,7 +226,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, map_: Cl
     computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), map_.classes[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
-        x, at, found = classes_between_crossings(view, row)
+        x, at, found = classes_between_crossings(view, line, row)
         further = ClassifiedPoints(plane.fractions_of_axes(x, at), found)
     curves = []
     v = view.variables

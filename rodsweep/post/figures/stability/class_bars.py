@@ -2,23 +2,16 @@
 thresholds."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from ....arrays import Array
-from ....model.crushing import uncrushed_interval
 from ....results.file.view import View
-from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS
-from ....results.layouts.variables import flag_number
 from ....wording import plural
-from ...crushing import build_of_rods
 from ..lists import label_point_numbers, shared_parameters
 from ..style import (
     BLUE,
@@ -31,14 +24,8 @@ from ..style import (
     parameter_text,
     require_content,
 )
+from .row_classes import class_above_crossing
 
-CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
-"""(code, word) of the values of the variables `class` and `stable_states`, by variable."""
-STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
-"""Codes of the kinds of crossings at which the stability of the straight rod may change."""
-CHANGE_TOLERANCE = 1e-9
-"""A point closer to a change of class than this relative distance is not used, because its class is
-uncertain."""
 CLASS_COLOURS = {
     "missing": "white",
     "monotone": "#DCE9F5",
@@ -49,14 +36,6 @@ CLASS_COLOURS = {
 }
 """Colours of the classes: blue for stable rods, orange for unstable rods. The colours also differ in grey
 prints."""
-STABLE_CLASS = {
-    "onset": "oscillatory",
-    "restabilization": "oscillatory",
-    "real_again": "monotone",
-    "real_leads": "monotone",
-    "pair_leads": "oscillatory",
-}
-"""Class of a stable rod at forces above a crossing, by kind of the crossing."""
 FURTHER_HOPF = "later"
 """Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
 unstable."""
@@ -118,40 +97,11 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
     for index in np.flatnonzero(kinds > 0):
         yield start, float(F[index]), word
         start = float(F[index])
-        word = _class_above_crossing(int(kinds[index]), int(after[index]))
+        word = class_above_crossing(int(kinds[index]), int(after[index]))
     if found > np.count_nonzero(kinds > 0):  # the file has no room for all crossings
         word = "undecided"
     if np.isfinite(end):
         yield start, end, word
-
-
-def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
-    """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows.
-
-    x: value along the row. y: value of the row, the parameter `row`. The class of a midpoint is known even if
-    the crossings are close. Rows at infinity are left out.
-    """
-    numbers = {word: number for number, word in CLASSES}
-    kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
-    values = view.point_columns[row]
-    found: list[tuple[float, float, int]] = []
-    for index in np.flatnonzero(np.isfinite(values)):
-        for this, following in pairwise(np.flatnonzero(kinds[index] > 0)):
-            word = _class_above_crossing(int(kinds[index, this]), int(after[index, this]))
-            middle = (at[index, this] + at[index, following]) / 2
-            found.append((float(middle), float(values[index]), numbers[word]))
-    x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
-    return x, y, classes.astype(np.intp)
-
-
-def _class_above_crossing(kind: int, unstable: int) -> str:
-    """Class of a rod at F just above a crossing. kind: code of the crossing. unstable: number of unstable
-    modes above the crossing; -1 if unknown.
-    """
-    stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
-    if unstable > 0:
-        return "flutter"
-    return stable if unstable == 0 else "undecided"
 
 
 def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
@@ -198,53 +148,3 @@ def mark_thresholds_on_bars(
             x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
         )
     return handles
-
-
-def class_along_row(
-    view: View, variable: str, line: str, row: str, index: int, edges: Array
-) -> NDArray[np.intp]:
-    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
-    parameters along and across rows. index: index of the row. edges: edges of the pixels, (n + 1,).
-
-    A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
-    there is no such point.
-    """
-    x = view.variables[line]
-    classes = view.by_point(variable)[index]
-    changes = _class_changes(view, variable, line, index)
-    if variable == "class":
-        between, rows, found = classes_between_crossings(view, row)
-        own = rows == view.parameter_values[row][index]
-        x = np.append(x, between[own])
-        classes = np.append(classes, found[own])
-    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
-    pixels = (edges[1:] + edges[:-1]) / 2
-    piece_of_pixels = np.searchsorted(changes, pixels)
-    piece_of_points = np.searchsorted(changes, x)
-    found = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
-    for piece in np.unique(piece_of_pixels):
-        own_pixels = piece_of_pixels == piece
-        own_points = decided & (piece_of_points == piece)
-        if own_points.any():
-            nearest = np.abs(x[own_points] - pixels[own_pixels][:, None]).argmin(axis=1)
-            found[own_pixels] = classes[own_points][nearest]
-    return found
-
-
-def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
-    """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
-    `stable_states`. line: parameter along the row. index: index of the row.
-    """
-    names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
-    v = {name: view.by_point(name)[index] for name in names if name in view.variables}
-    at = v["crossing_at"]
-    kinds = v["crossing_kind"]
-    if variable == "class":
-        found = [at[kinds > 0]]
-    else:
-        found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
-    rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    row_ends = view.variables[line][[0, -1]]
-    ends = np.array(uncrushed_interval(build_of_rods(view), rod, (line, *row_ends.tolist())))
-    changes = np.concatenate([*found, ends[ends != row_ends]])
-    return np.unique(changes[np.isfinite(changes)])

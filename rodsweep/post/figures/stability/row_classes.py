@@ -1,0 +1,131 @@
+"""Stability classes along the rows of a phase diagram, between the located crossings."""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....model.crushing import uncrushed_interval
+from ....model.material.build import Build
+from ....results.file.view import View
+from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ....results.layouts.thresholds import CROSSING_KINDS
+from ....results.layouts.variables import flag_number
+from ...crushing import build_of_rods
+
+CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
+"""(code, word) of the values of the variables `class` and `stable_states`, by variable."""
+STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
+"""Codes of the kinds of crossings at which the stability of the straight rod may change."""
+ONSET = CROSSING_KINDS.index("onset")
+"""Code of an onset of oscillations."""
+CHANGE_TOLERANCE = 1e-9
+"""A point closer to a change of class than this relative distance is not used, because its class is
+uncertain."""
+STABLE_CLASS = {
+    "onset": "oscillatory",
+    "restabilization": "oscillatory",
+    "real_again": "monotone",
+    "real_leads": "monotone",
+    "pair_leads": "oscillatory",
+}
+"""Class of a stable rod at forces above a crossing, by kind of the crossing."""
+
+
+def classes_between_crossings(view: View, line: str, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
+    """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows, and of
+    the midpoints of the two outer parts, which end at the ends of the row or where the force crushes the rod.
+
+    line, row: parameters along a row, and constant on a row. x: value of `line`. y: value of `row`. The class
+    of a midpoint is known even if the crossings are close. The first part has a midpoint only before an onset
+    of a stable rod, and the last part only if all crossings are stored. Rows at infinity are left out.
+    """
+    names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
+    kinds, after, at, counts, open_from = map(view.by_point, names)
+    values = view.point_columns[row]
+    build = build_of_rods(view)
+    found: list[tuple[float, float, int]] = []
+    for index in np.flatnonzero(np.isfinite(values)):
+        stored = np.flatnonzero(kinds[index] > 0)
+        if not len(stored):
+            continue
+        low, high = _uncrushed_row(view, build, line, int(index))
+        ends = [low, *at[index, stored].tolist(), high]
+        is_monotone = kinds[index, stored[0]] == ONSET and after[index, stored[0]] == 0
+        words = ["monotone" if is_monotone else ""]
+        words += [class_above_crossing(int(kinds[index, i]), int(after[index, i])) for i in stored]
+        if len(stored) < counts[index] or np.isfinite(open_from[index]):
+            words[-1] = ""
+        for word, (start, end) in zip(words, pairwise(ends), strict=True):
+            if word and start < end:
+                found.append(((start + end) / 2, float(values[index]), flag_number(word, CLASSES)))
+    x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
+    return x, y, classes.astype(np.intp)
+
+
+def _uncrushed_row(view: View, build: Build, line: str, index: int) -> tuple[float, float]:
+    """First and last value of `line` on a row at which the force does not crush the rod. build: of the rods.
+    index: index of the row."""
+    rod = {name: float(column[index]) for name, column in view.point_columns.items()}
+    first, last = view.variables[line][[0, -1]].tolist()
+    return uncrushed_interval(build, rod, (line, first, last))
+
+
+def class_above_crossing(kind: int, unstable: int) -> str:
+    """Class of a rod at F just above a crossing. kind: code of the crossing. unstable: number of unstable
+    modes above the crossing; -1 if unknown.
+    """
+    stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
+    if unstable > 0:
+        return "flutter"
+    return stable if unstable == 0 else "undecided"
+
+
+def class_along_row(
+    view: View, variable: str, line: str, row: str, index: int, edges: Array
+) -> NDArray[np.intp]:
+    """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
+    parameters along and across rows. index: index of the row. edges: edges of the pixels, (n + 1,).
+
+    A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
+    there is no such point.
+    """
+    x = view.variables[line]
+    classes = view.by_point(variable)[index]
+    changes = _class_changes(view, variable, line, index)
+    if variable == "class":
+        between, rows, found = classes_between_crossings(view, line, row)
+        own = rows == view.parameter_values[row][index]
+        x = np.append(x, between[own])
+        classes = np.append(classes, found[own])
+    decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
+    pixels = (edges[1:] + edges[:-1]) / 2
+    piece_of_pixels = np.searchsorted(changes, pixels)
+    piece_of_points = np.searchsorted(changes, x)
+    found = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
+    for piece in np.unique(piece_of_pixels):
+        own_pixels = piece_of_pixels == piece
+        own_points = decided & (piece_of_points == piece)
+        if own_points.any():
+            nearest = np.abs(x[own_points] - pixels[own_pixels][:, None]).argmin(axis=1)
+            found[own_pixels] = classes[own_points][nearest]
+    return found
+
+
+def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
+    """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
+    `stable_states`. line: parameter along the row. index: index of the row.
+    """
+    names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
+    v = {name: view.by_point(name)[index] for name in names if name in view.variables}
+    at = v["crossing_at"]
+    kinds = v["crossing_kind"]
+    if variable == "class":
+        found = [at[kinds > 0]]
+    else:
+        found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
+    row_ends = view.variables[line][[0, -1]]
+    ends = np.array(_uncrushed_row(view, build_of_rods(view), line, index))
+    changes = np.concatenate([*found, ends[ends != row_ends]])
+    return np.unique(changes[np.isfinite(changes)])
