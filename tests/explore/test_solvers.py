@@ -13,7 +13,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.explore.solving.questions import Question, Reply
-from rodsweep.explore.solving.solvers import SolverProcess, Solvers, SolverTimeLimits
+from rodsweep.explore.solving.solvers import CancellationDelays, SolverProcess, Solvers
 from rodsweep.explore.state import PageState
 
 HARD = PageState().with_values(taper="0.6")
@@ -48,7 +48,7 @@ def loop():
 @pytest.fixture(scope="module")
 def solver():
     """One process for the tests that leave it idle: to start it takes a second."""
-    made = SolverProcess(SolverTimeLimits(interrupt_seconds=0.05, kill_seconds=LONGEST))
+    made = SolverProcess(CancellationDelays(interrupt_seconds=0.05, kill_seconds=LONGEST))
     yield made
     made.close()
 
@@ -122,7 +122,7 @@ def test_a_page_that_ends_takes_its_questions_along(solver):
 
 
 def test_a_solver_that_does_not_answer_is_killed_and_started_again():
-    solver = SolverProcess(SolverTimeLimits(interrupt_seconds=0.05, kill_seconds=0.2))
+    solver = SolverProcess(CancellationDelays(interrupt_seconds=0.05, kill_seconds=0.2))
     try:
         replies: list[Reply] = []
         solver.ask(("page", "branch"), SLOW, replies.append)

@@ -45,8 +45,8 @@ compiled code."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SolverTimeLimits:
-    """Time limits of a solver process, in seconds.
+class CancellationDelays:
+    """Delays before a superseded solve is cancelled and a deaf process is killed, in seconds.
 
     interrupt_seconds: a solve of at least this age is cancelled when a newer question with the same key
     waits. Younger solves finish, so that pictures follow a moving slider. kill_seconds: a process that has
@@ -59,11 +59,11 @@ class SolverTimeLimits:
 
 class SolverProcess:
     """One solver process, and the queue of its questions. A question starts the process if it is not running.
-    patience: time limits. niceness: Unix niceness.
+    delays: before cancellation. niceness: Unix niceness.
     """
 
-    def __init__(self, patience: SolverTimeLimits | None = None, niceness: int = 0):
-        self.time_limits = patience or SolverTimeLimits()
+    def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):
+        self.delays = delays or CancellationDelays()
         self.niceness = niceness
         self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
         self.current_question: tuple[Key, ReplyCallback, ReplyCallback] | None = None
@@ -98,7 +98,7 @@ class SolverProcess:
             age = time.monotonic() - self.solve_start_time
             number = self.question_number
             IOLoop.current().call_later(
-                max(0.0, self.time_limits.interrupt_seconds - age), lambda: self._cancel(number, key)
+                max(0.0, self.delays.interrupt_seconds - age), lambda: self._cancel(number, key)
             )
 
     def cancel_session(self, session: str) -> None:
@@ -186,7 +186,7 @@ class SolverProcess:
             return
         if self._process.is_alive() and self._process.pid is not None:
             os.kill(self._process.pid, signal.SIGINT)
-        IOLoop.current().call_later(self.time_limits.kill_seconds, lambda: self._kill(number))
+        IOLoop.current().call_later(self.delays.kill_seconds, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
         if self.current_question is None or number != self.question_number:
@@ -211,8 +211,8 @@ class SolverProcess:
 class Solvers:
     """Solver processes of all groups, shared by all pages of a server."""
 
-    def __init__(self, patience: SolverTimeLimits | None = None):
-        self.groups = {group: SolverProcess(patience, niceness) for group, niceness in GROUP_NICENESS.items()}
+    def __init__(self, delays: CancellationDelays | None = None):
+        self.groups = {group: SolverProcess(delays, niceness) for group, niceness in GROUP_NICENESS.items()}
 
     def warm_up(self) -> None:
         """Sends one question of each of the WARM_UP_KINDS, to start their processes and load compiled

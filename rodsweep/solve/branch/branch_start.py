@@ -17,8 +17,8 @@ from ..changes.kinds import Threshold
 from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
-from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
-from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
+from ..hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
@@ -132,7 +132,7 @@ def hopf_branch_start(path: Path, crossing: Threshold) -> HopfBranchStart:
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
-    normal = accurate_normal_form(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
+    normal = normal_form_by_mesh_rule(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return HopfBranchStart(
         crossing=crossing,
         rod=at,

@@ -18,7 +18,7 @@ from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
-from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import newton, with_matrix_within_distance
 from ..orbit.orbit import Orbit, node_times
@@ -208,7 +208,7 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
     """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of the mesh's eigenvalue."""
-    normal = accurate_normal_form(form.rod, w, HOPF_START_SETTINGS.normal_form_accuracy)
+    normal = normal_form_by_mesh_rule(form.rod, w, HOPF_START_SETTINGS.normal_form_accuracy)
     return replace(normal, w=w)
 
 

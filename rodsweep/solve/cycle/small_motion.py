@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
-from ..hopf.normal_form import accurate_normal_form
+from ..hopf.normal_form import normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..unsolvable import Unsolvable
 from .accuracy.cycle_verdict import RefinedCycle
@@ -64,7 +64,7 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, w, SMALL_MOTION_SETTINGS.max_cubic_growth_ratio)
+        normal = normal_form_by_mesh_rule(rod, w, SMALL_MOTION_SETTINGS.max_cubic_growth_ratio)
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.

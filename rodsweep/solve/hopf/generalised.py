@@ -22,7 +22,7 @@ from ..changes.diagram.boundary_curves import BoundaryCurve
 from ..changes.kinds import ChangeKind, Threshold
 from ..point import FAILURES
 from ..unsolvable import Unsolvable
-from .coefficient_errors import HopfCoefficients, hopf_coefficients
+from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

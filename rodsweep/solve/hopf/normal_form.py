@@ -147,7 +147,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     )
 
 
-def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
+def normal_form_by_mesh_rule(rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w, or too many nodes, as in `normal_form_on`.

@@ -11,7 +11,7 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import find_axis_crossings
 from ..changes.unstable_modes import end_below_crushing
-from .coefficient_errors import hopf_coefficients
+from .hopf_coefficients import hopf_coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,7 +18,7 @@ from rodsweep.solve.cycle.straight_rod import (
     eigenvalues_to_follow,
     straight_rod_stability,
 )
-from rodsweep.solve.hopf.normal_form import accurate_normal_form
+from rodsweep.solve.hopf.normal_form import normal_form_by_mesh_rule
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -106,7 +106,7 @@ def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():
     c = ended(BESIDE)
     assert (c.status, c.linear_growth_rate > 0) == (CycleStatus.cycle, True)
     rod = Rod(F=BESIDE.F, k1=BESIDE.k1, k2=BESIDE.k2, gamma3=BESIDE.gamma3)
-    form = accurate_normal_form(
+    form = normal_form_by_mesh_rule(
         rod.with_values(gamma1=BESIDE.gamma1), complex(c.linear_growth_rate, c.linear_frequency), 1e-3
     )
     assert c.measures.tip_y_max == pytest.approx(form.squared_y_and_frequency(BESIDE.F)[0] ** 0.5, rel=1e-2)

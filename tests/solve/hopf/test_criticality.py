@@ -24,7 +24,7 @@ from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
-from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
+from rodsweep.solve.hopf.normal_form import normal_form, normal_form_by_mesh_rule
 from rodsweep.solve.hopf.status import CriticalityStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable
@@ -76,7 +76,7 @@ def test_coefficients_are_those_of_another_code(rod, signs):
 def cycle_near(at, hopf, known, gamma1, part):
     """(largest tip y squared, frequency less that of the Hopf point), both over F - F_H, of a cycle."""
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
-    normal = accurate_normal_form(at.with_values(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
+    normal = normal_form_by_mesh_rule(at.with_values(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
     form = StressForm(
         (replace(at, F=F)).with_values(gamma1=gamma1), uniform_mesh(1, normal.form.mesh.node_count)
     )

@@ -15,7 +15,7 @@ from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import newton_correction_and_scales
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
+from rodsweep.solve.hopf.normal_form import normal_form, normal_form_by_mesh_rule
 from rodsweep.solve.unsolvable import Unsolvable
 
 INF = np.inf
@@ -124,8 +124,8 @@ def test_accuracy_asked_for_is_reached(accuracy):
     """At all Hopf points of the reference."""
     seen = 0
     for rod, w in hopf_points():
-        normal = accurate_normal_form(rod, w, accuracy)
-        exact = accurate_normal_form(rod, w, accuracy**1.5)
+        normal = normal_form_by_mesh_rule(rod, w, accuracy)
+        exact = normal_form_by_mesh_rule(rod, w, accuracy**1.5)
         assert exact.form.unknown_count > normal.form.unknown_count
         assert abs(normal.landau / exact.landau - 1) <= accuracy
         seen += 1
@@ -146,9 +146,9 @@ def hopf_points():
 def test_what_is_no_eigenvalue_has_no_normal_form():
     said = "^w = 0.01\\+191.2j is no eigenvalue of the mesh at F = 37.656; the nearest eigenvalue is"
     with pytest.raises(Unsolvable, match=said):
-        accurate_normal_form(STIFF[0], 0.01 + 191.2j, 1e-8)
+        normal_form_by_mesh_rule(STIFF[0], 0.01 + 191.2j, 1e-8)
     with pytest.raises(Unsolvable, match="needs [0-9]+ mesh nodes, more than"):
-        accurate_normal_form(STIFF[0], 1e12j, 1e-8)
+        normal_form_by_mesh_rule(STIFF[0], 1e12j, 1e-8)
 
 
 def test_filament_is_the_limit_of_rods():
