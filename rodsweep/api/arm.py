@@ -58,7 +58,12 @@ class Arm(SlenderArm):
 
     @cached_property
     def flutter(self) -> "ThresholdsOverDrags":
-        """Flutter threshold and frequency in the arm's plane of motion, over the uncertainty of its drag."""
+        """Flutter threshold and frequency for each estimate of the drag, for motion in the plane of the
+        section's `height`.
+
+        An arm with a rectangular section may flutter earlier in the plane of its `width`, the motion of
+        `turned`; `report` compares both.
+        """
         from ..verdict.flutter import thresholds_over_drags
 
         return thresholds_over_drags(self)

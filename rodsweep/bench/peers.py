@@ -34,7 +34,7 @@ PEER_NAMES = {
     "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
 }
 """Phrase that names the peers of each study, for a report without peers."""
-PeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
+MakePeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
 """Comparison with separate tables: a function (number of rounds) -> (blocks of text, measurements)."""
 
 
@@ -45,7 +45,7 @@ class Peers:
     contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
-    sections: Sequence[PeerSection] = ()
+    sections: Sequence[MakePeerSection] = ()
     """Functions that make further comparisons, in addition to the races of the study."""
     notes: Sequence[str] = ()
     """Sentences on the contenders, for the introduction of the report."""

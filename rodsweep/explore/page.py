@@ -134,9 +134,9 @@ class Page:
         try:
             subject = state.subject()
             state.largest_force()
-            F = rod_of(subject).get("F")
-            if F is None:
-                raise InputError(f"parameters.{state.load} is missing; give the load")
+            if (F := rod_of(subject).get("F")) is None:
+                section = "parameters.arm" if state.tab == "arm" else "parameters"
+                raise InputError(f"{section}.{state.load} is missing; give the load")
         except InputError as error:
             self._show_error(str(error))
             return

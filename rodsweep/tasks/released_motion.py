@@ -90,5 +90,5 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
         step=cycle.motion_shapes.time_step,
         x=x,
         y=y,
-        is_whole=cycle.motion_shapes.is_complete,
+        is_whole=cycle.motion_shapes.covers_whole_motion,
     )

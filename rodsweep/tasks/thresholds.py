@@ -26,7 +26,8 @@ addition to F."""
 
 @dataclass(frozen=True, slots=True)
 class ThresholdsTask(CertifiedTask):
-    """The task thresholds: thresholds and all crossings of every rod along F."""
+    """The task thresholds: for every rod the first crossing of each kind, and up to `crossings` crossings,
+    for F from 0 to `F_max`."""
 
     config: ThresholdsConfig
 

@@ -73,7 +73,7 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 
 def slenderness_check(arm: SlenderArm) -> Check:
     """Check of the ratio of the arm's length to its radius against MIN_SLENDERNESS."""
-    ratio = arm.si.length / arm.shape.drag_radius
+    ratio = arm.si.length / arm.shape.largest_drag_radius
     fine = ratio >= MIN_SLENDERNESS
     why = (
         "slender enough for local drag"

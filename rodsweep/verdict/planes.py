@@ -57,8 +57,8 @@ class Planes:
 
 
 def planes_of(arm: SlenderArm) -> Planes:
-    """Planes of motion of an arm, with solved thresholds: two for a rectangular section, one for other
-    sections.
+    """Planes of motion of an arm, each with its solved thresholds: two for a rectangular section with unequal
+    sides, in order of the flutter load for the likeliest drag; otherwise one.
     """
     if arm.is_equally_stiff:
         return Planes(PlaneOfMotion(arm, thresholds_over_drags(arm)))

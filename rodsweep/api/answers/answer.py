@@ -23,7 +23,7 @@ EIGENVALUE = ("growth_rate", "frequency")
 """Variables with the real and the imaginary part of an eigenvalue."""
 UNPRINTED_VARIABLES = ("status", "seconds")
 """Variables that a printed answer omits: the heading has the status, and the time depends on the machine."""
-SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
+UNITS_OF_ARM_VARIABLES = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
 """SI units of the variables of an arm. Variables with other units are in units of the rod."""
 TOTAL_VARIABLES = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
 """For each list, by name: the variable with the number of items found, including items that are not stored.
@@ -215,7 +215,7 @@ def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
 
 def _is_dimensionless(column: Column) -> bool:
     """Whether a column is in dimensionless units of the rod. Columns in SI units are printed first."""
-    return column.unit not in SI_UNITS
+    return column.unit not in UNITS_OF_ARM_VARIABLES
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:

@@ -177,7 +177,7 @@ class ArmSection(StrictSection):
         if self.load and not forced:
             raise ValueError(
                 f"parameters.arm.{self.load} is given, but the task solves for the load; remove it, and set "
-                "the end of the search by the option F_max (in branch: stop)"
+                "the end of the search by F_max (for the task branch, by branch.stop)"
             )
         if forced and not (self.load or "F" in given_parameters):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")

@@ -140,7 +140,8 @@ def _flat_entry_positions(
 @compiled
 def _pencil_of_coefficients(F: float, local: Array, pieces: _MeshMatrices) -> tuple[Array, Array, Array]:
     """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. local:
-    coefficients of the arm, (6, elements, 2 order + 1)."""
+    coefficients of the arm at the Gauss points and then the nodes of each element, (6, elements, 2 order +
+    1)."""
     elements, order = pieces.weights_times_half_length.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)

@@ -229,7 +229,7 @@ def reynolds_number_effect(arm: SlenderArm, rate: Array, amplitude: Array) -> Ef
     """
     # The tip is the fastest point of the arm.
     speed = rate * amplitude * arm.si.length
-    value = arm.si.fluid_density * speed * 2 * arm.shape.drag_radius / arm.si.viscosity
+    value = arm.si.fluid_density * speed * 2 * arm.shape.largest_drag_radius / arm.si.viscosity
     return Effect(
         name="Reynolds number",
         value=value,

@@ -166,7 +166,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         raise InputError(f"{given} gives the arm no positive mass; the difference must be above {least}")
     length = "segments: their length" if arm.length is None else arm.text_of("length")
     try:
-        slenderness = arm.shape.length / arm.shape.drag_radius
+        slenderness = arm.shape.length / arm.shape.largest_drag_radius
         fine = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
         # The drags of too short an arm mean nothing, and are not always numbers.
         if slenderness >= LEAST_SLENDERNESS:

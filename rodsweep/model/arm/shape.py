@@ -72,7 +72,7 @@ class Shape:
         return any(each[1:] != self.base[1:] for each in self.stations)
 
     @property
-    def drag_radius(self) -> float:
+    def largest_drag_radius(self) -> float:
         """The largest drag radius along the arm, in m."""
         return max(each.section.drag_radius for each in self.stations)
 

@@ -125,7 +125,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
             raise ValueError(f"{shown} lies in another file")
         address = h5py.h5o.get_info(data.id).addr
         if address in places:
-            raise ValueError(f"{shown} is another name of a variable")
+            raise ValueError(f"{shown} is a second hard link to another variable")
         places.add(address)
         if not is_user_added(name):
             yield name, data

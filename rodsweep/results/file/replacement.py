@@ -24,7 +24,8 @@ file."""
 
 
 def file_identity(path: Path) -> FileIdentity:
-    """Identity of the file at `path`, read from the disk. Empty if there is no file."""
+    """Identity of the file at `path`, read from the disk; () if there is no file, or its status cannot be
+    read."""
     try:
         status = path.stat()
     except OSError:

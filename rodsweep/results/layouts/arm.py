@@ -56,7 +56,7 @@ class SIUnit(NamedTuple):
 
 NO_UNIT = SIUnit()
 """Used for variables that are not stored in SI units."""
-SI_UNITS = {
+SI_UNIT_BY_DIMENSIONLESS_UNIT = {
     "tau2": SIUnit("s", ("tau2",)),
     "1/tau2": SIUnit("1/s", (), ("tau2",)),
     ANGULAR_UNIT: SIUnit(HERTZ, (), ("tau2",)),
@@ -157,7 +157,7 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
         "F" in variable.name.split("_") or variable.name in FORCE_VARIABLES_OF_BRANCHES
     ):
         return FORCE_UNITS["force" if as_force else "pressure"]
-    return SI_UNITS.get(variable.units, NO_UNIT)
+    return SI_UNIT_BY_DIMENSIONLESS_UNIT.get(variable.units, NO_UNIT)
 
 
 def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:

@@ -166,9 +166,8 @@ def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> t
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables of the boundary curves of a phase diagram and their folds, by name. line, row: parameters
-    that vary along a row, and between rows.
-    """
+    """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
+    rows, and reference values of filament and partial beam. line: along a row. row: between rows."""
     kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     force = PARAMETERS["F"].unit

@@ -29,7 +29,8 @@ class BoundaryProblem(Protocol[Curve]):
         """The curve through the seed point `seed`; None if this curve cannot be traced."""
 
     def distance(self, curve: Curve, seed: int) -> float:
-        """Distance of the seed point `seed` from a curve, divided by the length of a row."""
+        """Distance of the seed point `seed` from a curve along its row, divided by the length of a row; inf
+        if no point of the curve is near."""
 
     def are_identical(self, one: Curve, other: Curve) -> bool:
         """Whether the curves `one` and `other` are identical."""

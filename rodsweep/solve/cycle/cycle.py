@@ -18,13 +18,13 @@ from .second_state import SecondState
 class MotionShapes:
     """Shapes of the rod at equidistant times from the start of a motion, for an animation.
 
-    shapes: x, y in L, (2, frames, nodes). time_step: time between two shapes, in tau2. is_complete: False if
-    the maximum number of time steps or of shapes cut off the end of the motion.
+    shapes: x, y in L, (2, frames, nodes). time_step: time between two shapes, in tau2. covers_whole_motion:
+    False if the maximum number of time steps or of shapes cut off the end of the motion.
     """
 
     time_step: float
     shapes: Array
-    is_complete: bool
+    covers_whole_motion: bool
 
 
 @dataclass(frozen=True, slots=True)

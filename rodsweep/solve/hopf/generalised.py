@@ -91,7 +91,8 @@ class _HopfNormalForm:
 
 
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
-    """The sign of Re c at every stored point of the Hopf curve `curve`, and the generalised Hopf points.
+    """The sign of Re c at every stored point of the Hopf curve `curve`, 0 if it is undecided, and the
+    generalised Hopf points that are located between points of different sign.
 
     accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""

@@ -30,7 +30,7 @@ def test_a_rod_that_flutters_comes_to_its_cycle_from_every_place():
         found = released(FLUTTER, *place)
         assert found.status == CycleStatus.cycle
         assert found.measures.period == pytest.approx(cycle.measures.period, rel=1e-6)
-        assert found.motion_shapes.is_complete
+        assert found.motion_shapes.covers_whole_motion
         assert found.motion_shapes.shapes[:, 0, -1] == pytest.approx(place, abs=1e-6)
 
 

@@ -116,8 +116,9 @@ class CycleSelection:
 
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> CycleSelection:
-    """Cycles at the points with the numbers `points`, or the first cycles if `points` is empty. needs:
-    variables that the figure needs. Raises InputError if a cycle or a variable is missing.
+    """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
+    empty. needs: variables that the figure needs. Raises InputError if a point, a cycle or a variable is
+    missing, or for more than MAX_CYCLES points.
     """
     _refuse_missing(view, needs)
     words = view.status_names

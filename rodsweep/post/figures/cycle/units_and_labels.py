@@ -25,9 +25,9 @@ POWER_VARIABLES = ("injection", "dissipation", "injection_mean", "dissipation_me
 """Names of variables that are powers."""
 PREFIXED_BELOW_SECONDS = 0.1
 """If the longest period is below this value, in s, times have a prefix such as ms."""
-Factor = Any
+NumberOrArray = Any
 """A number, or an array with a number for each point, (points,)."""
-SI_UNITS = ("m", "s", "J", "W")
+SI_UNITS_OF_SCALES = ("m", "s", "J", "W")
 """SI units of length, time, energy and power."""
 REQUIRED_QUANTITIES = ("length", "tau2", "force_scale")
 """Quantities of an arm from which the units of a figure are computed."""
@@ -41,10 +41,10 @@ class CycleUnits:
     numbers, or as arrays, (points,), for several points.
     """
 
-    length: Factor = 1.0
-    time: Factor = 1.0
-    energy: Factor = 1.0
-    power: Factor = 1.0
+    length: NumberOrArray = 1.0
+    time: NumberOrArray = 1.0
+    energy: NumberOrArray = 1.0
+    power: NumberOrArray = 1.0
     in_si: bool = False
     """Whether the units are SI units, with prefixes."""
     names: tuple[str, str, str, str] = ("L", r"$\tau_2$", "", "")
@@ -99,7 +99,7 @@ class CycleUnits:
 
     def converted(self, values: dict[str, Array]) -> dict[str, Array]:
         """The variables `values` of a point, of any shape, by name, converted to these units."""
-        factors: dict[str, Factor] = (
+        factors: dict[str, NumberOrArray] = (
             dict.fromkeys((*LENGTH_VARIABLES, *CYCLE_LENGTH_VARIABLES), self.length)
             | dict.fromkeys(TIME_VARIABLES, self.time)
             | dict.fromkeys(ENERGY_VARIABLES, self.energy)
@@ -143,7 +143,7 @@ def units_of_files(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> li
     joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
     watt = with_si_prefix(mean, "W")[1]
     names = (length, second, joule, watt)
-    scales = [value_in_unit(1.0, unit, si) for unit, si in zip(names, SI_UNITS, strict=True)]
+    scales = [value_in_unit(1.0, unit, si) for unit, si in zip(names, SI_UNITS_OF_SCALES, strict=True)]
     columns = zip(lengths, times, energies, powers, strict=True)
     scaled = ([scale * column for scale, column in zip(scales, each, strict=True)] for each in columns)
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]

@@ -52,8 +52,8 @@ def quantity_words(name: str) -> str:
 
 def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
-    converts the numbers to this unit. The unit is typed by the user, or has a prefix suitable for numbers up
-    to `largest`.
+    converts the numbers to this unit. The unit is typed by the user, else, for energies, powers and short
+    times, it has a prefix suitable for numbers up to `largest`, else it is `si`.
     """
     typed = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
     if typed != si:

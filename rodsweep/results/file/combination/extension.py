@@ -107,7 +107,8 @@ class Extension:
 def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
     """Extension of the stored file of `header`, with the points `points`, to the file of `plan`.
 
-    Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file.
+    Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file, or has
+    another task, arm, material, accuracy or option that cannot be increased.
     """
     theirs = config_from_resolved(header.config).settings_of_results
     ours = config_from_resolved(plan.config).settings_of_results

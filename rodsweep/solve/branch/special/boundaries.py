@@ -110,7 +110,7 @@ class _CurvesOfKind:
 
     def next_seed(self, left: Sequence[int]) -> int:
         """Index, from `left`, of the median special point: both halves of its curve have similar lengths."""
-        return sorted(left, key=self._position)[len(left) // 2]
+        return sorted(left, key=self._sort_key)[len(left) // 2]
 
     def missing_items(self, seed: int) -> list[int]:
         """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
@@ -128,7 +128,7 @@ class _CurvesOfKind:
         where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
-            (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._position
+            (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._sort_key
         )
         return [item for i in beside for item in self.missing_items(i)]
 
@@ -163,7 +163,7 @@ class _CurvesOfKind:
         distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
         return all(distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances)
 
-    def _position(self, i: int) -> tuple[float, float]:
+    def _sort_key(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
         return self.special_points[i].row_value, self.special_points[i].at
 

@@ -83,7 +83,10 @@ class CycleFamily:
         is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
-        usable = derivatives and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine
+        usable = (
+            derivatives
+            and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine_for_reuse
+        )
         known = derivatives if usable else None
         search = SecantSearch(self, start, row_coordinate, line, known, is_other_mesh)
         for _ in range(CURVE_SECANT_SETTINGS.max_secant_steps):

@@ -48,7 +48,7 @@ class CurveSecantSettings:
     curvature exceeds 1."""
     curvature_factor: float = 4.0
     """Assumed curvature of the test function at a point, divided by the curvature at the previous point."""
-    min_cosine: float = 0.9
+    min_cosine_for_reuse: float = 0.9
     """Derivatives along one direction across the curve are used for another direction only if the cosine of
     the angle between the two directions is at least this number."""
     min_cycle_distance: float = 1e-6
