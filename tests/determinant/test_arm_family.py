@@ -6,17 +6,19 @@ from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.along_path import ArmAlongPath
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.family import (
+from rodsweep.determinant.arm.family import interpolated_family
+from rodsweep.determinant.arm.family_values import (
     determinant_of_family_arm,
     eigenvalue_of_family_arm,
-    interpolated_family,
     write_propagators,
 )
+from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
 from rodsweep.determinant.arm.value import path_value_by_chain
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 PLACES = (-3.0 + 0j, 60j, -300 + 70j, -2000 + 0j, 3000 + 100j)
 
@@ -98,3 +100,35 @@ def test_errors_of_double_eigenvalues_hold_where_minors_are_large_amid_the_arm()
     of_family = ArmAlongPath(path, lambda p: family).double_eigenvalue(254.4652, 22.71770, 0.5)
     of_arms = ArmAlongPath(path).double_eigenvalue(254.4652, 22.71770, 0.5)
     assert abs(of_family.p - of_arms.p) <= of_family.error_of_p + of_arms.error_of_p < 1e-9
+
+
+RUBBER_CONE = Rod(F=1.0, k1=2000.0, k2=30.0, gamma3=1e-3, taper=0.6, build=Build("neo_hookean", "fixed"))
+SOFT_IN_SHEAR = Rod(F=1.0, k1=664.0, k2=1.05, gamma3=0.0017, build=Build("neo_hookean", "fixed"))
+
+
+@pytest.mark.parametrize("rod", [RUBBER_CONE, SOFT_IN_SHEAR], ids=["cone", "soft in shear"])
+def test_eigenvalues_at_the_low_end_of_a_long_interval_are_within_their_errors(rod):
+    """Interpolation errors are relative to the largest force of the interval."""
+    path = Path(rod, "F")
+    family = interpolated_family(path, 0.0, 400.0, 4.0**8)
+    for F in (0.1, 0.4, 1.3, 2.4):
+        arm = ArmDeterminant(path.rod_at(F))
+        for guess in solve_spectrum(
+            path.rod_at(F), SpectrumRequest(4, 1e-8, certify=False)
+        ).eigenvalues.tolist():
+            own, own_error = refine_eigenvalue_and_error(guess, arm)
+            w, _, error = eigenvalue_of_family_arm(family, guess, F)
+            assert abs(w - own) <= error + own_error < 1e-11 * abs(w)
+
+
+@pytest.mark.parametrize(
+    "rod, x, F", [(RUBBER_CONE, -39.1, 5.08), (SOFT_IN_SHEAR, -6.17, 2.49)], ids=["cone", "soft in shear"]
+)
+def test_double_eigenvalues_have_no_interpolation_error(rod, x, F):
+    """Newton's method ends with D of the arms themselves: D of the family alone is off by up to 1e-12."""
+    path = Path(rod, "F")
+    family = interpolated_family(path, 0.0, 400.0, 4.0**8)
+    by_family = ArmAlongPath(path, lambda p: family).double_eigenvalue(x, F, 0.1)
+    own = ArmAlongPath(path).double_eigenvalue(x, F, 0.1)
+    assert abs(by_family.p - own.p) <= by_family.error_of_p + own.error_of_p < 1e-14 * 2 * F
+    assert abs(by_family.eta_or_x - own.eta_or_x) <= by_family.error + own.error

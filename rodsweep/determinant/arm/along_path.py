@@ -10,6 +10,7 @@ be accurate: only Jacobians of Newton's method and predictors use them.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import Path
@@ -17,15 +18,11 @@ from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .determinant import ArmDeterminant, arm_determinant
-from .family import (
-    ARM_FAMILY_SETTINGS,
-    ArmFamily,
-    determinant_of_family_arm,
-    eigenvalue_of_family_arm,
-    propagators_at,
-)
+from .family import ArmFamily
+from .family_values import determinant_of_family_arm, eigenvalue_of_family_arm, propagators_at
 from .newton import refine_eigenvalue_and_error
 from .rounding import rounding_error_by_chain
+from .value import determinant_along_chain
 
 CENTRAL_DIFFERENCE_STENCIL = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
@@ -43,6 +40,36 @@ class ArmDoubleEigenvalueSettings:
 
 
 ARM_DOUBLE_EIGENVALUE_SETTINGS = ArmDoubleEigenvalueSettings()
+
+
+class _DoubleEigenvalueJacobian(NamedTuple):
+    """Derivatives of D and D_w by p and w at real w, all times exp(-S)."""
+
+    S: float
+    D_p: float
+    D_ww: float
+    D_wp: float
+
+
+class _DoubleEigenvalueStep(NamedTuple):
+    """A step of Newton's method to a double eigenvalue: changes of x and p, and their rounding errors."""
+
+    in_x: float
+    in_p: float
+    rounding_error_of_x: float
+    rounding_error_of_p: float
+
+    @property
+    def errors(self) -> tuple[float, float]:
+        """Errors of x and p after the last step."""
+        return max(self.rounding_error_of_x, abs(self.in_x)), max(self.rounding_error_of_p, abs(self.in_p))
+
+    def is_converged(self, last: float) -> bool:
+        """Whether the step is of the size of rounding errors. last: |change of x| in the previous step."""
+        converged = ROOT_NEWTON_SETTINGS.converged_step
+        return abs(self.in_p) <= converged * self.rounding_error_of_p and (
+            abs(self.in_x) <= converged * self.rounding_error_of_x or abs(self.in_x) > last / 2
+        )
 
 
 class ArmAlongPath:
@@ -94,50 +121,71 @@ class ArmAlongPath:
         start = x
         first = p
         last = math.inf
+        jacobian: _DoubleEigenvalueJacobian | None = None
+        uses_families = True
         for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
-            value = self._determinant_value(x, p)
-            D = value.D.real
-            D_w = value.D_w.real
-            S = value.S
-            h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
-            D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
-            stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
-            samples = [(weight, self._real_determinant(x, p + offset * k, S)) for offset, weight in stencil]
-            D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
-            cross = D_w * D_wp - D_p * D_ww
-            if cross == 0 or not math.isfinite(cross):
-                return FAILED_ZERO
-            in_x = (D_p * D_w - D_wp * D) / cross
-            in_p = (D_ww * D - D_w * D_w) / cross
-            rounding = self._rounding_error(x, p, S)
-            blur = rounding + ROUND_OFF * abs(p * D_p)
-            blur_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
-            e_p = blur * abs(D_ww) / abs(cross)
-            e_x = (blur * abs(D_wp) + blur_of_slope * abs(D_p)) / abs(cross)
-            x += in_x
-            p += in_p
+            family = self._usable_family(x, p) if uses_families else None
+            if uses_families or jacobian is None:
+                jacobian = self._jacobian(x, p, reach)
+            step = self._newton_step(x, p, jacobian, family)
+            x += step.in_x
+            p += step.in_p
+            # Negated comparisons are also true for NaN.
             if not abs(p - first) <= 2 * reach or not x * start > 0 or not self._is_valid_at(p):
                 return FAILED_ZERO
-            small = abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
-            if small and (abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2):
-                e_p = max(e_p, abs(in_p)) + ARM_FAMILY_SETTINGS.interpolation_error * abs(p)
-                return LocatedZero(x, p, max(e_x, abs(in_x)), e_p)
-            last = abs(in_x)
+            if step.is_converged(last):
+                if family is None:
+                    return LocatedZero(x, p, *step.errors)
+                # The interpolation error of a family is relative to its largest p. The last steps use D of
+                # the arms themselves.
+                uses_families = False
+            last = abs(step.in_x)
         return FAILED_ZERO
 
-    def _rounding_error(self, x: float, p: float, S: float) -> float:
-        """Bound of the rounding error of D exp(-S) at real w = x, for the arm at p."""
-        family = self.family_at(p)
-        if family is not None and abs(x) < family.largest_w:
+    def _jacobian(self, x: float, p: float, reach: float) -> _DoubleEigenvalueJacobian:
+        """Derivatives of D and D_w at real w = x and p, by differences; reach: see `double_eigenvalue`."""
+        S = self._determinant_value(x, p).S
+        h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
+        D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
+        stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
+        samples = [(weight, self._real_determinant(x, p + offset * k, S)) for offset, weight in stencil]
+        D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
+        return _DoubleEigenvalueJacobian(S, D_p, D_ww, D_wp)
+
+    def _newton_step(
+        self, x: float, p: float, jacobian: _DoubleEigenvalueJacobian, family: ArmFamily | None
+    ) -> _DoubleEigenvalueStep:
+        """One step of Newton's method for D = D_w = 0 from real w = x and p. D is that of the `family`, or of
+        the arm at p itself without a family. The step is nan if the Jacobian is singular."""
+        if family is not None:
             W, polynomials = propagators_at(family, p)
         else:
             W, polynomials = self.determinant(p).propagators_for(abs(x))
-        return rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
+        value = determinant_along_chain(complex(x, 0.0), W, polynomials)
+        S, D_p, D_ww, D_wp = jacobian
+        scale = math.exp(value.S - S)
+        D = value.D.real * scale
+        D_w = value.D_w.real * scale
+        cross = D_w * D_wp - D_p * D_ww
+        if cross == 0 or not math.isfinite(cross):
+            return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
+        rounding = rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
+        blur = rounding + ROUND_OFF * abs(p * D_p)
+        blur_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
+        in_x = (D_p * D_w - D_wp * D) / cross
+        in_p = (D_ww * D - D_w * D_w) / cross
+        e_x = (blur * abs(D_wp) + blur_of_slope * abs(D_p)) / abs(cross)
+        return _DoubleEigenvalueStep(in_x, in_p, e_x, blur * abs(D_ww) / abs(cross))
+
+    def _usable_family(self, x: float, p: float) -> ArmFamily | None:
+        """The family of arms that contains p, if it is valid at w = x; else None."""
+        family = self.family_at(p)
+        return family if family is not None and abs(x) < family.largest_w else None
 
     def _determinant_value(self, x: float, p: float) -> DeterminantValue:
         """D and D_w at real w = x, for the arm at p."""
-        family = self.family_at(p)
-        if family is not None and abs(x) < family.largest_w:
+        family = self._usable_family(x, p)
+        if family is not None:
             return determinant_of_family_arm(family, complex(x, 0.0), p)
         return self.determinant(p).value(complex(x, 0.0))
 

@@ -1,10 +1,15 @@
-"""Rounding error of an arm's D(w), from the propagators of its elements and the sensitivities of D.
+"""Rounding and interpolation errors of an arm's D(w), from the propagators of its elements and the
+sensitivities of D.
 
 D = a_e . C_e x_e for every element e: x_e are the minors at the start of the element, C_e is its
 propagator, and a_e are the derivatives of D by the minors at its end. Rounding changes each product C_ij x_j
 by a relative error of about the spacing of doubles at 1. The rounding error of D is therefore at most this
 spacing times the sum over elements of |a_e| . |C_e| |x_e|. The products at the tip alone are not enough:
 close to crushing, minors are large in the middle of an arm, and their errors exceed those at the tip.
+
+Propagators that are interpolated in a path variable p have errors relative to their largest entries on the
+interval of p, which |C_e| then contains. At the low end of a long interval of forces these errors are the
+larger ones.
 """
 
 import math
@@ -21,6 +26,7 @@ from .elements.evaluation import (
     apply_transposed_propagator,
     fill_propagator_value,
     modulus_sum_of_form,
+    modulus_sum_of_real_form,
     powers_and_derivatives,
 )
 from .elements.minor_rates import PADDED, SM
@@ -36,6 +42,10 @@ class ArmRoundingSettings(CompiledSettings):
     """Relative rounding error of a product of propagator and minor, divided by the spacing of doubles at 1.
     Measured: 1.5 times the difference of 700 eigenvalues of random arms, half of them close to crushing,
     between four divisions of the arm into elements exceeds the resulting bound by at most 1 %."""
+    error_per_interpolated_entry: float = 1.0
+    """Error of an interpolated entry of a propagator, divided by the spacing of doubles at 1 and by the
+    largest modulus of the entry on the interval. Measured: 1300 eigenvalues of random arms on intervals of F,
+    k1, gamma3 and taper differ from those of the arms themselves by at most half of the resulting bound."""
 
 
 ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
@@ -46,6 +56,19 @@ def rounding_error_by_chain(w: complex, W: float, polynomials: Array, S: float) 
     """Bound of the rounding error of D exp(-S) at w, to first order.
 
     polynomials: propagators valid for |w| <= W, (elements, terms, PADDED). S: scale of the result.
+    """
+    return error_of_interpolated_chain(w, W, polynomials, S, np.empty((0, 2, PADDED)))
+
+
+@compiled
+def error_of_interpolated_chain(
+    w: complex, W: float, polynomials: Array, S: float, entry_sizes: Array
+) -> float:
+    """Bound of the rounding and interpolation error of D exp(-S) at w, to first order.
+
+    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED). S: scale of the
+    result. entry_sizes: as in `rodsweep.determinant.arm.family.ArmFamily`; no elements if nothing is
+    interpolated.
     """
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(w / W, terms)
@@ -63,8 +86,12 @@ def rounding_error_by_chain(w: complex, W: float, polynomials: Array, S: float) 
     scale_after = -S
     total = 0.0
     for e in range(elements - 1, -1, -1):
-        total += math.exp(scale[e] + scale_after) * modulus_sum_of_form(after, C[e], x[e])
+        errors = ARM_ROUNDING_SETTINGS.error_per_product * modulus_sum_of_form(after, C[e], x[e])
+        if len(entry_sizes):
+            sizes = modulus_sum_of_real_form(after, entry_sizes[e], abs(w / W), x[e])
+            errors += ARM_ROUNDING_SETTINGS.error_per_interpolated_entry * sizes
+        total += math.exp(scale[e] + scale_after) * errors
         apply_transposed_propagator(C[e], after, before)
         scale_after += divide_by_norm(before)
         after, before = before, after
-    return ARM_ROUNDING_SETTINGS.error_per_product * ROUND_OFF * total
+    return ROUND_OFF * total

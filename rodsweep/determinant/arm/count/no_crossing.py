@@ -28,7 +28,8 @@ from ....model.rod import Rod
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
-from ..family import ArmFamily, propagators_at
+from ..family import ArmFamily
+from ..family_values import propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ArmSamples, wave_number_and_length_at
 from ..value import chain_value, determinant_along_chain

@@ -170,6 +170,20 @@ def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
 
 
 @compiled_for_vectors
+def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> float:
+    """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2, PADDED), and
+    vectors a and x, (2, MINORS); moduli of a and x as in `modulus_sum_of_form`."""
+    total = 0.0
+    for j in range(MINORS):
+        column = 0.0
+        for i in range(MINORS):
+            k = MINORS * j + i
+            column += (sizes[0, k] + t * sizes[1, k]) * (abs(a[0, i]) + abs(a[1, i]))
+        total += column * (abs(x[0, j]) + abs(x[1, j]))
+    return total
+
+
+@compiled_for_vectors
 def apply_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
     (2, MINORS).

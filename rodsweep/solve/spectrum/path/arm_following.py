@@ -17,9 +17,10 @@ from ....determinant.arm.completeness import (
     proves_completeness,
     remainder_of_sum,
 )
-from ....determinant.arm.family import ARM_FAMILY_SETTINGS, ArmFamily, write_propagators
+from ....determinant.arm.family import ArmFamily
+from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
-from ....determinant.arm.rounding import rounding_error_by_chain
+from ....determinant.arm.rounding import error_of_interpolated_chain
 from ....determinant.arm.value import determinant_along_chain, path_value_by_chain
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
@@ -36,9 +37,10 @@ from .following import (
 )
 from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
 
-PropagatorsWithSlopes = tuple[float, Array, Array]
+PropagatorsWithSlopes = tuple[float, Array, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
-variable p); both arrays: (elements, terms, PADDED)."""
+variable p, sizes of their entries); the first two arrays: (elements, terms, PADDED), the third as
+`ArmFamily.entry_sizes`."""
 
 
 @compiled
@@ -56,16 +58,16 @@ def _converged_step_and_error(
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
     first: result of the first step. crowding: as in `converged_error`. exact: whether the remainder must be
-    below the rounding error, and the error must contain the rounding error of the whole arm. level:
-    propagators of the arm. The error is inf without convergence.
+    below the rounding error, and the error must contain rounding and interpolation along the whole arm.
+    level: propagators of the arm. The error is inf without convergence.
     """
     here = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(here, crowding, exact)
         if error < math.inf:
             if exact:
-                rounding = rounding_error_by_chain(here.w, level[0], level[1], here.S)
-                error = max(error, rounding / here.D_slope)
+                of_D = error_of_interpolated_chain(here.w, level[0], level[1], here.S, level[3])
+                error = max(error, of_D / here.D_slope)
             return here, error
         here = correct_eigenvalue_of_arm(here.w, level)
     return here, math.inf
@@ -84,13 +86,13 @@ def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[com
 
 @compiled
 def _refine_all_eigenvalues(
-    track: Track, i: int, p: float, guess: Complex, modes: int, level: PropagatorsWithSlopes
+    track: Track, i: int, guess: Complex, modes: int, level: PropagatorsWithSlopes
 ) -> bool:
-    """Refines the guesses for all eigenvalues of point i, at path variable p, and writes the eigenvalues to
-    the track.
+    """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track.
 
-    guess: (m,). The `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
-    converged, no two coincide, and every complex pair stayed complex.
+    guess: (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm.
+    Returns True if all eigenvalues converged, no two
+    coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
@@ -110,9 +112,6 @@ def _refine_all_eigenvalues(
             if mate[k] >= 0:
                 w[mate[k]] = w[k].conjugate()
             last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
-            # Interpolation changes D as relative changes of w and p by `ARM_FAMILY_SETTINGS.converged_tail`
-            # would.
-            error[k] += ARM_FAMILY_SETTINGS.converged_tail * (abs(last.w) + abs(p * last.slope))
             if not store_root(track, i, k, mate[k], last):
                 return False
     sort_descending(w, order)
@@ -166,7 +165,7 @@ def follow_eigenvalues_of_arms(
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
-    level = (family.largest_w, polynomials, changes)
+    level = (family.largest_w, polynomials, changes, family.entry_sizes)
     guess = track.w[0].copy()
     decided = np.empty(len(guess), np.int64)
     for i in range(len(p)):
@@ -178,7 +177,7 @@ def follow_eigenvalues_of_arms(
                     two = (k, decided[k])
                     set_two_guesses(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
             track.descending_order[i] = track.descending_order[i - 1]
-        if not _refine_all_eigenvalues(track, i, p[i], guess, modes, level):
+        if not _refine_all_eigenvalues(track, i, guess, modes, level):
             return i
         known[i] = proved_count_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
     return len(p)

@@ -1,0 +1,124 @@
+"""Propagators, D and eigenvalues of the arms of a family, by summation of its Chebyshev series.
+
+`rodsweep.determinant.arm.family` makes families.
+"""
+
+import math
+
+import numpy as np
+
+from ...arrays import Array
+from ...model.compiled.compilation import compiled, compiled_for_vectors
+from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
+from ..roots.newton import ROOT_NEWTON_SETTINGS
+from ..value import DeterminantValue
+from .family import LINEAR_SCALE, ArmFamily
+from .newton import ARM_ROOT_SETTINGS
+from .rounding import error_of_interpolated_chain
+from .value import determinant_along_chain, path_value_by_chain
+
+
+@compiled
+def write_propagators(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
+    """Writes the propagators of the arm at p into polynomials, and their derivatives by p into changes, both
+    (elements, terms, PADDED).
+    """
+    half = (family.p_high - family.p_low) / 2
+    t = (p - (family.p_low + family.p_high) / 2) / half
+    if family.scale < LINEAR_SCALE:
+        whole = math.log1p(2 * half / family.scale)
+        t = 2 * math.log1p((p - family.p_low) / family.scale) / whole - 1
+        half = (p - family.p_low + family.scale) * whole / 2
+    nodes = len(family.coefficients)
+    T = np.empty(nodes)
+    rates = np.empty(nodes)
+    # T_0 and T_(-1), as T_(-1) = T_1
+    here = 1.0
+    before = t
+    rate = 0.0
+    rate_before = -1.0
+    for k in range(nodes):
+        T[k] = here
+        rates[k] = rate / half
+        if k == 0:
+            here = t
+            before = 1.0
+            rate = 1.0
+            rate_before = 0.0
+        else:
+            rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
+            here, before = 2 * t * here - before, here
+    series = family.coefficients.reshape(nodes, -1)
+    _sum_series(series, T, rates, polynomials.reshape(-1), changes.reshape(-1))
+
+
+@compiled_for_vectors
+def _sum_series(series: Array, T: Array, rates: Array, values: Array, slopes: Array) -> None:
+    """values = sum_k T[k] series[k], slopes = sum_k rates[k] series[k], (n,) each; series: (nodes, n)."""
+    nodes, n = series.shape
+    values[:] = 0.0
+    slopes[:] = 0.0
+    for k in range(nodes % 4):
+        t = T[k]
+        p = rates[k]
+        for i in range(n):
+            values[i] += t * series[k, i]
+            slopes[i] += p * series[k, i]
+    for k in range(nodes % 4, nodes, 4):  # four at a time save passes over the sums
+        t, u, v, w = T[k], T[k + 1], T[k + 2], T[k + 3]
+        p, q, r, s = rates[k], rates[k + 1], rates[k + 2], rates[k + 3]
+        for i in range(n):
+            a = series[k, i]
+            b = series[k + 1, i]
+            c = series[k + 2, i]
+            d = series[k + 3, i]
+            values[i] += t * a + u * b + v * c + w * d
+            slopes[i] += p * a + q * b + r * c + s * d
+
+
+@compiled
+def propagators_at(family: ArmFamily, p: float) -> tuple[float, Array]:
+    """(W, propagators for |w| <= W, (elements, terms, PADDED)) of the arm at p of a family."""
+    polynomials = np.empty(family.coefficients.shape[1:])
+    write_propagators(family, p, polynomials, np.empty_like(polynomials))
+    return family.largest_w, polynomials
+
+
+@compiled
+def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> DeterminantValue:
+    """D and dD/dw times exp(-S) of the arm at p of a family; |w| <= W."""
+    shape = family.coefficients.shape[1:]
+    polynomials = np.empty(shape)
+    changes = np.empty(shape)
+    write_propagators(family, p, polynomials, changes)
+    return determinant_along_chain(w, family.largest_w, polynomials)
+
+
+@compiled
+def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
+    """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family. Newton's
+    method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for nearly
+    double eigenvalues.
+    """
+    polynomials = np.empty(family.coefficients.shape[1:])
+    changes = np.empty_like(polynomials)
+    write_propagators(family, p, polynomials, changes)
+    w = guess
+    last = math.inf
+    for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
+        value = determinant_along_chain(w, family.largest_w, polynomials)
+        step = value.D / value.D_w if value.D_w != 0 else 0j
+        if w.imag == 0:
+            step = complex(step.real, 0.0)
+        if not abs(step) < last / 2 or abs(w) > family.largest_w:
+            break
+        last = abs(step)
+        w -= step
+    W = family.largest_w
+    D, D_w, D_p, S, _ = path_value_by_chain(w, W, polynomials, changes)
+    size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
+    slope = -D_p / D_w if D_w != 0 else 0j
+    if w.imag == 0:
+        slope = complex(slope.real, 0.0)
+    e = error_of_interpolated_chain(w, W, polynomials, S, family.entry_sizes)
+    return w, slope, (e + ARM_ROOT_SETTINGS.residual * abs(D)) / size + ROUND_OFF * abs(w)
