@@ -7,3 +7,5 @@ Array = NDArray[np.float64]
 """NumPy array of floating-point numbers, of any shape."""
 Complex = NDArray[np.complex128]
 """NumPy array of complex numbers, of any shape."""
+COMPLEX_NAN = complex(np.nan, np.nan)
+"""Unknown complex number. In `nan + 0j` only the real part would be unknown."""

@@ -2,12 +2,12 @@
 rest."""
 
 from dataclasses import dataclass, replace
-from math import isfinite, nan
+from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import Complex
+from ..arrays import COMPLEX_NAN, Complex
 from ..config.task.limit_cycle import LimitCycleConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
@@ -215,9 +215,7 @@ class LimitCycleTask(Task):
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
         found = cycle.multipliers
-        stored = _StoredMultipliers(
-            np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found
-        )
+        stored = _StoredMultipliers(np.full(STORED_MULTIPLIERS, COMPLEX_NAN) if found is None else found)
         values = outcome_values(
             CYCLE_VARIABLES, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
         )

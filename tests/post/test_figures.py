@@ -44,6 +44,7 @@ from rodsweep.tasks import TASKS
 from rodsweep.tasks.running.job import job_of_file
 
 NO_PIXELS = np.zeros((PIXEL_COUNT, PIXEL_COUNT), bool)
+NO_POINTS = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
 
 
 def test_every_task_has_a_summary_and_a_figure():
@@ -478,7 +479,7 @@ def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
     places = ClassifiedPoints(
         np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1])
     )
-    table = pixel_classes(places, places, [np.column_stack([x, x**2])], NO_PIXELS)
+    table = pixel_classes(places, places, [np.column_stack([x, x**2])], NO_PIXELS, 0)
     centres = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
     off = centres[:, None] - centres[None, :] ** 2
     away = np.abs(off) > 3 / PIXEL_COUNT
@@ -489,9 +490,11 @@ def test_a_region_between_curves_without_a_computed_point_has_the_class_of_a_pla
     rails = [np.array([[0.0, y], [1.0, y]]) for y in (0.5, 0.52)]
     computed = ClassifiedPoints(np.array([[0.5, 0.2], [0.5, 0.8]]), np.array([1, 2]))
     further = ClassifiedPoints(np.array([[0.3, 0.51]]), np.array([3]))
-    assert pixel_classes(computed, further, rails, NO_PIXELS)[int(0.51 * PIXEL_COUNT), ::100].tolist() == [
-        3
-    ] * (PIXEL_COUNT // 100)
+    middle = int(0.51 * PIXEL_COUNT)
+    assert (pixel_classes(computed, further, rails, NO_PIXELS, 0)[middle] == 3).all()
+    assert (pixel_classes(computed, NO_POINTS, rails, NO_PIXELS, 0)[middle] == 0).all()
+    hidden = [np.array([[0.0, y], [1.0, y]]) for y in (0.5, 0.503)]  # the lines over the rails cover it
+    assert set(pixel_classes(computed, NO_POINTS, hidden, NO_PIXELS, 0).ravel()) == {1, 2}
 
 
 def test_all_stored_roots_are_drawn_where_asked(command, drawn):

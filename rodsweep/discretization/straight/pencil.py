@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Complex
+from ...arrays import COMPLEX_NAN, Array, Complex
 from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Rod
 from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
@@ -155,7 +155,7 @@ def factors_to_unit_tip(y: Complex, theta: Complex) -> Complex:
     y, theta: the modes at all nodes, (nodes + 1, k).
     """
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * size, 1 / y[-1], np.nan + 0j)
+    return np.where(np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * size, 1 / y[-1], COMPLEX_NAN)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:

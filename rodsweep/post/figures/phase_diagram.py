@@ -236,5 +236,6 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, map_: Cl
             number = np.where(v["curve_kind"] == 1, number, 0)
         ones = [number == one for one in np.unique(number[number > 0])]
         curves += [plane.fractions_of_axes(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
-    pixels = pixel_classes(computed, further, curves, map_.crushing_ratio > CURVES_END_AT_RATIO)
+    undecided = flag_number("undecided", palette.words)
+    pixels = pixel_classes(computed, further, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
     return np.where(map_.crushing_ratio < 1, pixels, crushed)

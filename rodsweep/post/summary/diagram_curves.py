@@ -12,7 +12,7 @@ from .ranges import error_text, number_with_error, span_text
 CURVE_END_WORDS = {
     "none": "continues",
     "edge": "edge of the diagram",
-    "crushed": "F close to k1",
+    "crushed": "a force that almost crushes the rod",
     "hopf": "Hopf point, where the cycles vanish",
     "left_the_model": "h1 = 0",
     "resonance": "resonance",

@@ -9,7 +9,7 @@ from .ranges import NONE_TEXT, span_text
 from .spectrum import (
     eigenvalue_table,
     error_lines,
-    leading_line,
+    leading_lines,
     stability_line,
     stable_line,
     threshold_lines,
@@ -31,7 +31,7 @@ def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
         lines, how, arm_sentences = threshold_lines(view)
         answer = [stable_line(view, done), *lines]
         reliability = [*error_lines(view, done), stability_line(view, done), *how]
-        details = [leading_line(view, done), *unknowns]
+        details = [*leading_lines(view, done), *unknowns]
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
         unknown = int((~np.isfinite(errors)).any(axis=-1).sum())

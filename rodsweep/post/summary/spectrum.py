@@ -32,7 +32,7 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
         )
     lines, how, arm_sentences = threshold_lines(view)
     reliability = [*error_lines(view, done), stability_line(view, done), *how]
-    details = [leading_line(view, done), *unknowns_lines(view, done)]
+    details = [*leading_lines(view, done), *unknowns_lines(view, done)]
     return SummaryLines([stable_line(view, done), *lines], reliability, details, arm_sentences)
 
 
@@ -52,14 +52,17 @@ def stable_line(view: View, done: np.ndarray) -> str:
     return f"straight rod, of {whole}: {', '.join(counts)}"
 
 
-def leading_line(view: View, done: np.ndarray) -> str:
-    """Line on the leading eigenvalues. done: mask of the computed points, of the shape of the points."""
+def leading_lines(view: View, done: np.ndarray) -> list[str]:
+    """List with a line on the leading eigenvalues; empty if none is known. done: mask of the computed points,
+    of the shape of the points."""
     v = view.variables
+    if not np.isfinite(v["growth_rate"][done][:, 0]).any():
+        return []
     rate, frequency = (
         span_text(v[name][done][:, 0], v["error_estimate"][done][:, 0])
         for name in ("growth_rate", "frequency")
     )
-    return f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
+    return [f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
@@ -124,9 +127,11 @@ def stability_line(view: View, done: np.ndarray) -> str:
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
+    if (unstable < 0).all():
+        return "number of unstable modes: not known at any point"
     certified = int(view.variables["certified"][done].sum())
     how = "counted by an estimate" if estimates_counts(view.config) else "proved"
-    text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, {how} at "
+    text = f"number of unstable modes: at most {int(unstable.max())}, {how} at "
     text += count_of_total(certified, points, "point")
     unknown = int((unstable < 0).sum())
     return text + (f", not known at {unknown}" if unknown else "")

@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Complex
+from ...arrays import COMPLEX_NAN, Array, Complex
 from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_form
@@ -93,14 +93,14 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
 def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
     """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of modes and
     points."""
-    shape = np.full((2, modes, points), np.nan + 0j)
+    shape = np.full((2, modes, points), COMPLEX_NAN)
     numbers = np.full(modes, np.nan)
     return ModeVectors(
         resolution=resolution,
         right_modes=shape,
         deformation=shape,
         left_modes=shape,
-        pairing=numbers + 0j,
+        pairing=np.full(modes, COMPLEX_NAN),
         condition=numbers,
         rounding=numbers,
         mode_error=numbers,

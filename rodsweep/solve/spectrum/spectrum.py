@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Complex
+from ...arrays import COMPLEX_NAN, Array, Complex
 from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import factors_to_unit_tip
@@ -136,9 +136,12 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
 
 def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome of a failed solve: all eigenvalues, errors and eigenmodes are NaN."""
-    empty = np.full(request.modes, np.nan)
     shape = (2, request.modes, request.vector_node_count)
-    vectors = np.full(shape, np.nan + 0j) if request.vector_node_count else None
+    vectors = np.full(shape, COMPLEX_NAN) if request.vector_node_count else None
     return Spectrum(
-        status=status, eigenvalues=empty + 0j, error_estimate=empty, vectors=vectors, message=message
+        status=status,
+        eigenvalues=np.full(request.modes, COMPLEX_NAN),
+        error_estimate=np.full(request.modes, np.nan),
+        vectors=vectors,
+        message=message,
     )

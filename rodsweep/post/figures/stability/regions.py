@@ -16,6 +16,8 @@ from ..style import is_logarithmic
 PIXEL_COUNT = 900
 """Number of pixels along each axis. In a figure of 183 mm width a pixel measures 0.2 mm, half the width of
 the line that is drawn over a boundary."""
+LINE_WIDTH = 2
+"""Width, in pixels, of the line that is drawn over a boundary."""
 CURVE_STEP = 0.4
 """Distance, in pixels, between points of a boundary; with a distance below 1 the boundary has no gap."""
 
@@ -66,13 +68,18 @@ class ClassifiedPoints:
 
 
 def pixel_classes(
-    computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array], closed: NDArray[Any]
+    computed: ClassifiedPoints,
+    further: ClassifiedPoints,
+    curves: Sequence[Array],
+    closed: NDArray[Any],
+    undecided: int,
 ) -> NDArray[Any]:
     """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
     The lowest row of pixels comes first. further: points that are used in regions without a computed point.
     curves: boundaries as fractions of the axes, (m, 2) each. closed: mask of pixels that belong to no region,
-    (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class of the nearest computed point.
+    (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class `undecided`, or, if the lines over
+    its boundary cover it, the class of the nearest computed point.
     """
     walls = scipy.ndimage.binary_dilation(closed)
     for curve in curves:
@@ -81,10 +88,14 @@ def pixel_classes(
     regions, count = scipy.ndimage.label(~walls)
     known, region_of_known = computed.with_regions(regions)
     sources = [(known, region_of_known), further.with_regions(regions), (known, None)]
-    table = np.zeros((PIXEL_COUNT, PIXEL_COUNT), computed.classes.dtype)
+    table = np.full((PIXEL_COUNT, PIXEL_COUNT), undecided, computed.classes.dtype)
+    distance_to_wall = scipy.ndimage.distance_transform_edt(~walls) if walls.any() else None
     for region in range(1, count + 1):
         pixels = np.nonzero(regions == region)
+        is_visible = distance_to_wall is None or distance_to_wall[pixels].max() > LINE_WIDTH
         for source, of_region in sources:
+            if of_region is None and is_visible:
+                break
             own = np.full(len(source.at), True) if of_region is None else of_region == region
             if own.any():
                 table[pixels] = _nearest_classes(pixels, source.at[own], source.classes[own])

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import Array, Complex
+from ....arrays import COMPLEX_NAN, Array, Complex
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod, coefficients_of
@@ -114,7 +114,7 @@ def _unsolved_fields(n: int, modes: int) -> dict[str, Any]:
     """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
     whole = np.zeros(n, np.int64)
     return {
-        "eigenvalues": np.full((n, modes), np.nan + 0j),
+        "eigenvalues": np.full((n, modes), COMPLEX_NAN),
         "error_estimate": np.full((n, modes), np.nan),
         "unstable_count": whole - 1,
         "certified": np.zeros(n, np.bool_),
