@@ -57,6 +57,7 @@ class Arm(SlenderArm):
     __init__ = refusing_wrong_arguments(ARM_EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
+    @refusing_wrong_arguments("arm.flutter()")
     def flutter(self) -> "ThresholdsOverDrags":
         """Flutter threshold and frequency for each estimate of the drag, for motion in the plane of the
         section's `height`.
@@ -68,6 +69,7 @@ class Arm(SlenderArm):
 
         return thresholds_over_drags(self)
 
+    @refusing_wrong_arguments("arm.report()")
     def report(self) -> "ArmReport":
         """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
         neglects.

@@ -40,7 +40,7 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
 
     A misspelt key is put into the section with the most similar key, so that validation suggests this key. A
     complete section may be given as a mapping. Raises InputError for a masked value, and for a key that is
-    not similar to any known key.
+    not similar to any known key, or given twice.
     """
     task = plain_keyword("task", task)
     tree: ConfigTree = {"task": task}
@@ -50,15 +50,23 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
     for given, value in keywords.items():
         name = plain_value(given)
         if name in sections and isinstance(value, Mapping):
-            tree.setdefault(name, {}).update(plain_keyword(name, dict(value)))
+            for key, one in plain_keyword(name, dict(value)).items():
+                _add_key(tree.setdefault(name, {}), key, one)
             continue
         section = _section_of(name, sections)
         if section is None:
             section = _section_of(_similar_key(name, sections), sections)
         values_of_section = tree.setdefault(section, {}) if section else tree
-        values_of_section[name] = plain_keyword(f"{section}.{name}" if section else name, value)
+        _add_key(values_of_section, name, plain_keyword(f"{section}.{name}" if section else name, value))
     _write_out_arm(task, tree)
     return tree
+
+
+def _add_key(section: dict[str, Any], key: str, value: Any) -> None:
+    """Adds a key to a section of a config tree. Raises InputError if the section has the key already."""
+    if key in section:
+        raise InputError(f"{key} is given twice, as an argument and in a mapping; give it once")
+    section[key] = value
 
 
 def _write_out_arm(task: str, tree: ConfigTree) -> None:
@@ -106,15 +114,17 @@ def job_of_tree(tree: ConfigTree) -> Job:
     return job
 
 
-def require_valid_tree(tree: ConfigTree) -> None:
-    """Raises InputError for a config tree that `job_of_tree` refuses, before any rank of a run starts.
+def point_count_of_valid_tree(tree: ConfigTree) -> int | None:
+    """Number of points of a config tree. Raises InputError for a tree that `job_of_tree` refuses, before any
+    rank of a run starts.
 
     For loads relative to flutter only the config is validated, because the points need a search for flutter,
-    which the ranks of the run share.
+    which the ranks of the run share; the result is then None.
     """
     arm = validated_config(with_file_contents(tree, Path())).parameters.arm
     if arm is None or arm.load_key not in LOAD_OF_RATIO:
-        job_of_tree(tree)
+        return job_of_tree(tree).points.count
+    return None
 
 
 def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:

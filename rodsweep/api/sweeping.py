@@ -17,8 +17,9 @@ from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.document.reading import tree_yaml
 from ..errors import EnvironmentIncomplete, InputError
 from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
+from ..wording import counted
 from .dataset import open_result
-from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, require_valid_tree
+from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, point_count_of_valid_tree
 from .solving import Display, progress_display, solve_in_process
 
 COMPLETE_STATUSES = (0, 1)
@@ -60,7 +61,8 @@ def sweep(
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)
     if ranks is not None:
-        require_valid_tree(tree)
+        points = point_count_of_valid_tree(tree)
+        _refuse_idle_ranks(ranks, points)
         return _solve_on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_in_process(job_of_tree(tree), None if strict else _warn_of_failed_points, progress).dataset
 
@@ -74,6 +76,17 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
     points = f"point {first}" if first == last else f"points {first} to {last}"
     trace = "".join(traceback.format_exception(error))
     warnings.warn(f"{points}: {describe_exception(error)}\n{trace}", RuntimeWarning, stacklevel=2)
+
+
+def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
+    """Raises InputError if there are more ranks than both processors of this machine and points; points: None
+    if not known."""
+    useful = max(os.cpu_count() or 1, points or 0)
+    if points is not None and ranks > useful:
+        raise InputError(
+            f"ranks = {ranks} is not allowed for {counted(points, 'point')}; ranks would be idle; it should "
+            f"be at most {useful}"
+        )
 
 
 def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:

@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
+from ...config.document.call_arguments import refusing_wrong_arguments
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES
 from ...post.tables.columns import Column, column_of
@@ -156,6 +157,7 @@ class Answer:
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._attribute_names()})
 
+    @refusing_wrong_arguments("answer.table()")
     def table(self) -> "WholeTable":
         """All numbers with units and meanings, and the short lists, as a text in a terminal and as a table in
         a notebook. Of long lists, such as `cycles`, only the number of rows is shown.

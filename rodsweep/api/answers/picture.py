@@ -129,6 +129,7 @@ class Picture:
     """The rendered figure, PNG, or GIF for an animation."""
 
     @one_at_a_time
+    @refusing_wrong_arguments('picture.save("figure.pdf")')
     @naming_python_arguments
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg; .gif or .mp4 for an animation) and returns a
@@ -136,6 +137,7 @@ class Picture:
         return draw(self.views, Path(path), **self.choices)
 
     @one_at_a_time
+    @refusing_wrong_arguments("picture.figure()")
     def figure(self) -> FigureClass:
         """A new `matplotlib.figure.Figure`, whose axes are ordered row by row; InputError for an
         animation.
@@ -179,6 +181,11 @@ def plot(
                 name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
             )
     _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))
+    if not isinstance(title := look.get("title", False), bool):
+        raise InputError(
+            f"title = {short_repr(title)} is not allowed; it should be True, to draw the title of the "
+            "config, or False"
+        )
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")

@@ -88,6 +88,7 @@ class RodPortrait:
         return None if view is None else self._task_answer(view)
 
     @one_at_a_time
+    @refusing_wrong_arguments("rod.portrait().figure()")
     def figure(self) -> FigureClass:
         """The picture as a new `matplotlib.figure.Figure`, without the paragraph."""
         return portrait_figure(self.results, with_words=False)

@@ -19,6 +19,7 @@ from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters,
 from .cycle.selection import shared_and_own_of_points
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
+from .sections import left_out_clause
 
 MAX_DRAWN_DISTANCE = 0.1
 """Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
@@ -63,7 +64,8 @@ def draw_criticality(request: FigureRequest) -> str:
     varied = varied_parameters(view)
     if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
         return request.write(
-            _curves_figure(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}"
+            _curves_figure(view, varied[0]),
+            f"the normal forms of Hopf points along {varied[0]}{left_out_clause(view.point_columns, varied)}",
         )
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))

@@ -22,6 +22,7 @@ from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
+from .sections import left_out_clause
 from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS
 from .stability.diagram_curves import draw_boundary_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
@@ -148,7 +149,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     missing = (
         "; curves are missing, the file is not finished" if lacks_joint_variables_in(view.attributes) else ""
     )
-    infinite = "" if keep.all() else f"; {row} = inf has no place on an axis and is left out"
+    infinite = left_out_clause(view.parameter_values, [row])
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
 
 

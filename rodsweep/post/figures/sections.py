@@ -1,6 +1,6 @@
 """Sections of a grid or a list of points: the points at which some parameters have given values."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import inf
 
@@ -103,6 +103,14 @@ def without_infinite_values(view: View) -> View:
         if len(values) > 1 and not finite.all():
             view = _grid_at(view, name, finite)
     return view
+
+
+def left_out_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> str:
+    """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
+    finite. columns: values by parameter.
+    """
+    left_out = [f"{name} = inf" for name in names if not np.isfinite(columns[name]).all()]
+    return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
 
 
 def checked_section_values(given: Mapping[str, float | str]) -> dict[str, float | str]:

@@ -16,7 +16,7 @@ from ...results.file.view import View
 from .layout.fitting import MAP_ASPECT
 from .lists import as_grid_if_possible
 from .request import FigureRequest
-from .sections import section_at_values, without_infinite_values
+from .sections import left_out_clause, section_at_values, without_infinite_values
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
     ROOT_CHOICE_TEXTS,
@@ -80,12 +80,13 @@ def draw_spectrum(request: FigureRequest) -> str:
     few = min(long, key=lambda name: len(view.parameter_values[name]))
     if len(long) > 1 and len(view.parameter_values[few]) <= MAX_LINE_PANELS:
         return _draw_line_per_value(view, few, request)
+    left_out = left_out_clause(view.parameter_values, long)
     view = without_infinite_values(view)
     long = varied_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
-        return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots])
-    return request.write(_growth_map(view, long), "the leading growth rate", MAP_ASPECT)
+        return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots] + left_out)
+    return request.write(_growth_map(view, long), f"the leading growth rate{left_out}", MAP_ASPECT)
 
 
 def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
@@ -96,11 +97,13 @@ def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
         for value in view.parameter_values[few]
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
-    return _draw_line_panels(views, request, few)
+    others = [name for name in varied_axes(view) if name != few]
+    return _draw_line_panels(views, request, f"{few}{left_out_clause(view.parameter_values, others)}")
 
 
 def _draw_line_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
-    """Draws a panel for each view, a line of spectra; returns a sentence. each: noun for a view."""
+    """Draws a panel for each view, a line of spectra; returns a sentence. each: noun for a view, and a clause
+    on what is left out."""
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.is_narrow)
     return request.write(figure, f"{ROOT_CHOICE_TEXTS[roots]}, in a panel for each {each}")
@@ -117,7 +120,9 @@ def _draw_files(request: FigureRequest) -> str:
             f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
         )
     views = [_line_of_spectra(view, request) for view in request.views]
-    return _draw_line_panels(views, request, f"of {len(views)} files")
+    grids = map(as_grid_if_possible, request.views)
+    left_out = [left_out_clause(grid.parameter_values, varied_axes(grid)) for grid in grids]
+    return _draw_line_panels(views, request, f"of {len(views)} files{max(left_out, key=len)}")
 
 
 def _line_of_spectra(view: View, request: FigureRequest) -> View:

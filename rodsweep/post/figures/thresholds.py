@@ -75,7 +75,12 @@ def _draw_files(request: FigureRequest) -> str:
             f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
         )
     for view in views:
-        if view.task != views[0].task or not view.is_grid or style.varied_axes(view) != along or along[1:]:
+        if view.task != views[0].task:
+            raise InputError(
+                f"{view.path} is of the task {view.task} and {views[0].path} of the task {views[0].task}; "
+                "files of different tasks share no figure"
+            )
+        if not view.is_grid or style.varied_axes(view) != along or along[1:]:
             raise InputError(
                 f"{view.path}: files of thresholds share a figure only if all are grids over one parameter, "
                 "the same in every file"

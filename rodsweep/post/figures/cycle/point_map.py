@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
+from ..sections import left_out_clause
 from ..style import is_logarithmic
 
 
@@ -58,8 +59,7 @@ def point_map(view: View) -> PointMap:
     finite = np.isfinite(x), np.isfinite(y)
     if min(np.count_nonzero(is_finite) for is_finite in finite) < 2:
         raise InputError(f"{view.path} has fewer than two finite values of {varied[0]} or {varied[1]} to map")
-    without = [name for name, is_finite in zip(varied, finite, strict=True) if not is_finite.all()]
-    left_out = f"; {' and '.join(without)} = inf has no place on an axis and is left out" if without else ""
+    left_out = left_out_clause(columns, varied)
     shared = {name: float(values[0]) for name, values in columns.items() if name not in varied}
     at = at[np.ix_(*finite[::-1])]
     return PointMap((varied[0], varied[1]), x[finite[0]], y[finite[1]], at, shared, left_out)

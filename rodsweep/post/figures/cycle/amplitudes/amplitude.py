@@ -13,6 +13,7 @@ from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
+from ...sections import left_out_clause
 from ...style import (
     BLUE,
     GREEN,
@@ -80,7 +81,8 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     if legend := [handle for handle in handles if handle.get_label()]:
         legend_below(figure, legend, columns=min(2, len(legend)))
     figure.suptitle(heading_text(first, shared))
-    return figure, f"amplitudes of the tip, period and power against {name}"
+    left_out = [left_out_clause(view.point_columns, [name]) for view in views]
+    return figure, f"amplitudes of the tip, period and power against {name}{max(left_out, key=len)}"
 
 
 def _draw_branches(
