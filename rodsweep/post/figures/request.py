@@ -12,6 +12,7 @@ from ...model.units import quantity_in_si
 from ...results.file.view import View
 from .arm.axes import add_si_scales
 from .arm.validity import hatch_invalid_points
+from .layout.dark_background import adapt_to_dark_background
 from .layout.fitting import MIN_ASPECT, fit_layout
 
 ShapeFunction = Callable[[View, Sequence[int]], View]
@@ -167,6 +168,7 @@ class FigureRequest:
         # Figures over an arm's quantities show the validity themselves.
         if not any(view.arm_axes for view in self.views):
             hatch_invalid_points(figure, self.views)
+        adapt_to_dark_background(figure)
         if self.keep is not None:
             self.look.fit(figure, min_aspect)
             self.keep(figure)
