@@ -24,7 +24,24 @@ def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
     assert answer.data["F_hopf"].size == 1
     loaded = rs.Arm(**THICK, pressure="1 kPa").thresholds()
     assert loaded.F_hopf == answer.F_hopf
-    assert str(answer).splitlines()[1].startswith("Arm(length='15 cm', young='100 kPa'")
+    assert "\nArm(length='15 cm', young='100 kPa'" in str(answer)
+
+
+@pytest.mark.parametrize(
+    "viscosity, density_difference, first",
+    [
+        ("20 Pa s", "0 kg/m^3", "oscillates from "),
+        ("1 mPa s", "0 kg/m^3", "the model does not apply: inertia of the arm is "),
+        ("20 Pa s", "8 kg/m^3", "the model is doubtful: weight is 0.69 times its limit"),
+    ],
+)
+def test_an_answer_about_an_arm_begins_with_the_validity_of_the_model(viscosity, density_difference, first):
+    given = dict(length="14 cm", radius="4 mm", young="100 kPa", viscosity=viscosity)
+    answer = rs.Arm(**given, density_difference=density_difference).thresholds()
+    lines = str(answer).splitlines()
+    assert lines[0].startswith(first)
+    assert ("if the model applied: oscillates from " in str(answer)) == (viscosity == "1 mPa s")
+    assert first in answer._repr_html_()
 
 
 def test_spectrum_and_cycle_of_an_arm_are_those_of_its_rod():

@@ -20,10 +20,10 @@ from rodsweep.explore.pictures.diagram import (
     diagram_cells,
     unstable_count_words,
 )
-from rodsweep.explore.pictures.numbers import number_text
+from rodsweep.explore.pictures.numbers import NumbersTable, number_text
 from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from rodsweep.explore.solving.needs import INSTANT_KINDS
-from rodsweep.explore.solving.questions import Question, Reply, answer_to
+from rodsweep.explore.solving.questions import Question, Reply, answer_to, answer_variables
 from rodsweep.explore.state import PageState
 from rodsweep.explore.stored import page_state_of_file
 
@@ -416,3 +416,13 @@ def test_a_title_of_the_thresholds_never_needs_a_new_layout():
     before = growth.figure.title.text
     page.contents.show("thresholds", answer_to(Question("thresholds", page.state)), page.state)
     assert before.count("\n") == growth.figure.title.text.count("\n") == 1
+
+
+@pytest.mark.parametrize("viscosity, caveat", [("1 mPa s", "the model does not apply: "), ("20 Pa s", "")])
+def test_the_numbers_of_an_arm_stand_below_the_validity_of_the_model(viscosity, caveat):
+    arm = rs.Arm(length="14 cm", radius="4 mm", young="100 kPa", viscosity=viscosity, pressure="0.6 kPa")
+    table = NumbersTable()
+    table.show("spectrum", answer_variables(arm.spectrum()))
+    table.show("thresholds", answer_variables(arm.thresholds()))
+    assert table.root.text.startswith(f'<p class="caveat">{caveat}' if caveat else "<table>")
+    assert "flutters from" in table.root.text

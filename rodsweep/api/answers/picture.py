@@ -95,6 +95,21 @@ def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> Non
             raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
 
 
+def _require_allowed_look(look: Mapping[str, object]) -> None:
+    """Raises InputError for an unknown option of the appearance, and for a title that is not a bool. look:
+    keyword arguments of a call of `plot`."""
+    for name in look:
+        if name not in FigureOptions.__annotations__:
+            raise unknown_argument_error(
+                name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
+            )
+    if not isinstance(title := look.get("title", False), bool):
+        raise InputError(
+            f"title = {short_repr(title)} is not allowed; it should be True, to draw the title of the "
+            "config, or False"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class SolvedShapes:
     """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
@@ -175,17 +190,8 @@ def plot(
     what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError if
     there is nothing to draw.
     """
-    for name in look:
-        if name not in FigureOptions.__annotations__:
-            raise unknown_argument_error(
-                name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
-            )
+    _require_allowed_look(look)
     _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))
-    if not isinstance(title := look.get("title", False), bool):
-        raise InputError(
-            f"title = {short_repr(title)} is not allowed; it should be True, to draw the title of the "
-            "config, or False"
-        )
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")

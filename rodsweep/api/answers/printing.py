@@ -8,8 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from ...model.arm.neglected import Validity
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
+from ...post.summary.arm.validity import validity_caveat
 from ...post.tables.alignment import (
     COLUMN_GAP,
     LINE_WIDTH,
@@ -67,7 +69,8 @@ class PrintedAnswer:
 
 
 def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: str) -> tuple[str, ...]:
-    """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning.
+    """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning. The
+    first line says if the model does not apply to an arm, or is doubtful.
 
     name: text of the rod. sentence: meaning of the status. message: message of the solve. If the result has
     no sentence, the meaning of the status comes first.
@@ -79,7 +82,10 @@ def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: s
     proof = "" if certified is None else f", {PROOF_WORDS[certified]}"
     if not answer:
         return f"{task}: {meaning}", f"{name}, {task}: {status}"
-    return answer, f"{name}, {task}: {status}{proof}", meaning
+    caveat = validity_caveat(rod.view.variables)
+    if caveat and rod.count("model_applies") == Validity.does_not_apply:
+        answer = f"if the model applied: {answer}"
+    return *filter(None, (caveat, answer)), f"{name}, {task}: {status}{proof}", meaning
 
 
 def brief_text(printed: PrintedAnswer) -> str:

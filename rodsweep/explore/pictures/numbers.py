@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ...post.summary.arm.validity import validity_caveat
 from ..texts import PageText
 
 ROW_LABELS_BY_KIND = {
@@ -44,7 +45,8 @@ SI_NAMES = {
 
 
 class NumbersTable:
-    """Table of numbers from the latest answer to each kind of question."""
+    """Table of numbers from the latest answer to each kind of question, below sentences that say where the
+    model does not apply to an arm, or is doubtful."""
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
@@ -66,7 +68,9 @@ class NumbersTable:
             for name in ROW_LABELS_BY_KIND
             if name in self.answers_by_kind
         ]
-        self.root.text = f"<table>{''.join(parts)}</table>"
+        caveats = dict.fromkeys(map(validity_caveat, self.answers_by_kind.values()))
+        sentences = "".join(f'<p class="caveat">{escape(caveat)}</p>' for caveat in caveats if caveat)
+        self.root.text = f"{sentences}<table>{''.join(parts)}</table>"
 
 
 def number_text(value: Any, factor: float = 1.0) -> str:

@@ -107,7 +107,7 @@ def without_infinite_values(view: View) -> View:
 
 def left_out_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
-    finite. columns: values by parameter.
+    finite. columns: values by parameter, (n,) each.
     """
     left_out = [f"{name} = inf" for name in names if not np.isfinite(columns[name]).all()]
     return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""

@@ -25,6 +25,17 @@ def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
     return [OTHER_PLANE] if np.max(height) > np.min(width) else []
 
 
+def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
+    """Sentence on the validity of the model for one arm, if the model does not apply, is doubtful, or this is
+    not known; empty if the model applies, and for a rod. variables: of a result with one point, by name, ()
+    or (1,) each.
+    """
+    if any(variable.name not in variables for variable in VALIDITY):
+        return ""
+    validity = {variable.name: np.ravel(variables[variable.name]) for variable in VALIDITY}
+    return "" if validity["model_applies"][0] == Validity.applies else validity_sentence(validity)
+
+
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
     largest neglected effect. validity: variables of VALIDITY, (n,) each. when: conditional clause to insert.
