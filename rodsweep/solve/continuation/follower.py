@@ -48,7 +48,8 @@ class CurveProblem(Protocol[Solution]):
 
     def located_zero(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
         """The solution between `behind[-1]` and `outer` at which the margin with the index `margin` is 0;
-        None if this solution is not found."""
+        None if `behind[-1]` is to be the last solution. Raises an error of FAILURES if no solution is found:
+        the step is then repeated with half its length."""
 
     def is_closed_by(self, behind: Sequence[Solution], there: Solution) -> bool:
         """Whether the first solution of the curve lies on the step from `behind[-1]` to the next solution
@@ -135,8 +136,8 @@ class Curve(Generic[Solution]):
     """Solutions in order from the start of the curve, and the reason for the end of the curve. A closed curve
     has its start as the last solution, too.
 
-    margin_index: index of the margin that becomes negative at the end; -1 for another end. If the zero of
-    this margin was located, the last solution is the solution at the zero.
+    margin_index: index of the margin that becomes negative at the end; -1 for another end. The last solution
+    is the solution at the zero of this margin, if `located_zero` returns one.
     """
 
     solutions: list[Solution]
@@ -181,7 +182,13 @@ def follow_curve(
         ahead = problem.margins(there.solution)
         outside = first_crossed_margin(margins, ahead)
         if outside >= 0:
-            last = problem.located_zero(solutions, there.solution, outside)
+            try:
+                last = problem.located_zero(solutions, there.solution, outside)
+            except FAILURES:
+                if length / 2 < control.min_length:
+                    return Curve(solutions, CurveStop.no_further_solution)
+                length /= 2
+                continue
             return Curve(solutions if last is None else [*solutions, last], CurveStop.zero_margin, outside)
         if problem.is_closed_by(solutions, there.solution):
             # `start` is appended again, so that the curve is closed exactly.

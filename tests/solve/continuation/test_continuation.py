@@ -83,6 +83,18 @@ class Ellipse:
         return len(behind) > 3 and bool(near)
 
 
+@dataclass(frozen=True)
+class LocatedOnShortSteps(Ellipse):
+    """An ellipse whose point at the margin is found only from a step of at most `longest`."""
+
+    longest: float = 0.0
+
+    def located_zero(self, behind, outer, margin):
+        if np.linalg.norm(outer - behind[-1]) > self.longest:
+            raise Unsolvable("the start is too far")
+        return super().located_zero(behind, outer, margin)
+
+
 def followed(curve, control=STEPS, start=0.0):
     return follow_curve(curve, curve.at(start), control, lambda points: None)
 
@@ -104,6 +116,15 @@ def test_a_curve_ends_where_its_margin_is_zero(b, share):
     assert (found.end_reason, found.margin_index) == (CurveStop.zero_margin, 0)
     assert found.solutions[-1] == pytest.approx([share, b * np.sqrt(1 - share**2)], abs=1e-12)
     assert (np.array(found.solutions[:-1])[:, 0] > share).all()
+
+
+def test_a_step_from_which_the_end_is_not_located_is_shortened():
+    found = followed(LocatedOnShortSteps(1.0, 1.0, least=0.3, longest=1e-3))
+    assert (found.end_reason, found.margin_index) == (CurveStop.zero_margin, 0)
+    assert found.solutions[-1] == pytest.approx([0.3, np.sqrt(1 - 0.3**2)], abs=1e-12)
+    lost = followed(LocatedOnShortSteps(1.0, 1.0, least=0.3))
+    assert lost.end_reason is CurveStop.no_further_solution
+    assert 0.3 < lost.solutions[-1][0] < 0.3 + 2 * STEPS.min_length
 
 
 def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():

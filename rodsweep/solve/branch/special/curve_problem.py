@@ -14,7 +14,6 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from .augmented.functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
@@ -188,20 +187,17 @@ class SpecialCurveProblem:
         self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
         """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
-        this point is not found or is `behind[-1]` itself. For the margin of the amplitude: `outer`."""
+        this point is `behind[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
         inner = behind[-1]
         if END_BY_MARGIN[margin] is CurveEnd.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
         if ends[0] <= END_SETTINGS.max_edge_distance:
             return None
-        try:
-            if margin in ROW_EDGE_MARGINS:
-                point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGINS[0]))
-            else:
-                point = self._zero_of_margin(inner, outer, margin, ends)
-        except Unsolvable:
-            return None
+        if margin in ROW_EDGE_MARGINS:
+            point = self.point_on_row(inner, outer, float(margin - ROW_EDGE_MARGINS[0]))
+        else:
+            point = self._zero_of_margin(inner, outer, margin, ends)
         return replace(point, measured_error=outer.measured_error and outer.measured_error.for_next_point)
 
     def _zero_of_margin(

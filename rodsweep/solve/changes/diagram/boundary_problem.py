@@ -121,20 +121,16 @@ class BoundaryCurveProblem:
         self, behind: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
         """The point on the edge `margin` crossed by the step from the last of `behind` to `outer`; None for a
-        crushed rod, or if the point is not found or lies beyond a second edge."""
+        crushed rod. Raises Unsolvable if the point is not found or lies beyond a second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)
         inner = behind[-1].v
         share = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
         found = self.boundary.point_near(inner + share * (outer.v - inner), np.eye(3)[axis])
-        if (
-            found is None
-            or not -BOUNDARY_CURVE_SETTINGS.edge_tolerance
-            <= found.v[1 - axis]
-            <= 1 + BOUNDARY_CURVE_SETTINGS.edge_tolerance
-        ):
-            return None
+        tolerance = BOUNDARY_CURVE_SETTINGS.edge_tolerance
+        if found is None or not -tolerance <= found.v[1 - axis] <= 1 + tolerance:
+            raise Unsolvable("no point of the curve was found on the edge")
         return BoundaryPoint.oriented(found, behind[-1].tangent)
 
     def is_closed_by(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
