@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array
+from ...model.rod import Rod
 from ..arm_on_mesh import jump_derivatives, material_derivative_at_nodes
 from ..elements.mesh import Mesh, interpolation_matrix
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
@@ -33,6 +34,11 @@ OMEGA_COMPONENT = (2,)
 """Index of the angular velocity Omega among the components of V, as a tuple."""
 
 
+def has_small_rotational_drag(rod: Rod) -> bool:
+    """Whether the rotational drag is somewhere so small that Omega must be an unknown."""
+    return rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_drag
+
+
 @dataclass(frozen=True, eq=False)
 class StressForm(RodOnMesh):
     """One nonlinear rod on one mesh with stresses as unknowns.
@@ -42,10 +48,14 @@ class StressForm(RodOnMesh):
     gamma3, the angular velocity Omega in 1/tau2 at all nodes.
     """
 
+    keeps_omega: bool = False
+    """Whether Omega is an unknown for any rotational drag, so that states of rods with small and with large
+    drags can be compared."""
+
     @property
     def is_omega_unknown(self) -> bool:
         """Whether the angular velocity Omega is an unknown."""
-        return self.rod.least_rotational_drag < STRESS_FORM_SETTINGS.min_eliminated_drag
+        return self.keeps_omega or has_small_rotational_drag(self.rod)
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:

@@ -75,6 +75,8 @@ class HopfBranchStart:
     """Normal form on a mesh that suffices for the prediction of the first cycle."""
     coefficients: HopfCoefficients
     """Coefficients of the normal form with error estimates, from a comparison of meshes."""
+    keeps_omega: bool = False
+    """Whether Omega is an unknown of all cycles of the branch, see `StressForm`."""
 
     @property
     def period(self) -> float:
@@ -126,9 +128,9 @@ class HopfBranchStart:
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_branch_start(path: Path, crossing: Threshold) -> HopfBranchStart:
+def hopf_branch_start(path: Path, crossing: Threshold, keeps_omega: bool = False) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
-    `path`; raises Unsolvable."""
+    `path`; raises Unsolvable. keeps_omega: whether Omega is an unknown of all cycles of the branch."""
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
@@ -141,6 +143,7 @@ def hopf_branch_start(path: Path, crossing: Threshold) -> HopfBranchStart:
         growth_slope=complex(slope),
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
+        keeps_omega=keeps_omega,
     )
 
 
@@ -217,7 +220,7 @@ def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
     """The cycle that the normal form predicts for the largest tip y `amplitude`, in L, on the normal form's
     mesh in space and a coarse mesh in time; raises Unsolvable."""
     change, frequency = hopf.parameter_change_and_frequency(amplitude)
-    form = StressForm(hopf.rod, hopf.normal_form.form.mesh)
+    form = StressForm(hopf.rod, hopf.normal_form.form.mesh, hopf.keeps_omega)
     try:
         form = form.with_coordinate(hopf.parameter_name, hopf.parameter_coordinate + change)
     except (ValueError, ZeroDivisionError) as error:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 
 from ...determinant.parameter_path import Path
+from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ...watch import solve_part
@@ -90,14 +91,16 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
     path = Path(rod.with_values(**{request.along: low}), request.along)
     found = find_axis_crossings(path, low, high, request.certify)
+    ends = (path.coordinate(low), path.coordinate(high))
+    # The smallest drag of the range is at one of its ends.
+    keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     hopfs = []
     failures = []
     for crossing in found.thresholds:
         try:
-            hopfs.append(hopf_branch_start(path, crossing))
+            hopfs.append(hopf_branch_start(path, crossing, keeps_omega))
         except FAILURES as error:
             failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
-    ends = (path.coordinate(low), path.coordinate(high))
     crushed = (low > request.start, high < request.stop)
     reasons = [EndReason.crushed if end else EndReason.range_end for end in crushed]
     if path.is_compliance_path:

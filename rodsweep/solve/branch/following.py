@@ -12,6 +12,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
+from .asymmetric_start import first_asymmetric_cycle
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
@@ -25,7 +26,6 @@ from .special.point import EndReason, SpecialKind, SpecialPoint
 from .symmetry import (
     BRANCH_END_SETTINGS,
     SymmetryBreaking,
-    first_asymmetric_cycle,
     reaches_symmetric_cycle,
     symmetry_breaking_between,
 )

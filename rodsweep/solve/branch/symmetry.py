@@ -1,4 +1,4 @@
-"""Symmetry breaking of cycles, and the branch of asymmetric cycles that starts at a symmetry breaking.
+"""Symmetry breaking of cycles, and the end of a branch of asymmetric cycles at a symmetry breaking.
 
 A symmetric cycle equals its own mirror image half a period later. A branch of asymmetric cycles crosses the
 symmetric branch where a multiplier of the half-period map composed with the reflection is -1. The two halves
@@ -14,21 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
-from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
-from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.measures import CyclePath
-from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit, node_times
-from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
-from .bordered.condition import BorderCondition, moved_orbit
-from .bordered.matrix import BorderedMatrix
-from .bordered.scale import ArcLengthScale, deflection_of
-from .branch_start import ALONG_DEFLECTION
-from .mesh_choice import first_measured_cycle
 from .special.point import SpecialKind, SpecialPoint
 
 
@@ -77,18 +66,6 @@ class BranchEndSettings:
 BRANCH_END_SETTINGS = BranchEndSettings()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AsymmetricStartSettings:
-    """Settings for the first asymmetric cycle near a symmetry breaking."""
-
-    first_cycle_distances: tuple[float, ...] = (0.03, 0.01, 0.1)
-    """Relative differences between the predicted first asymmetric cycle and the symmetric cycle, tried in
-    this order."""
-
-
-ASYMMETRIC_START_SETTINGS = AsymmetricStartSettings()
-
-
 @dataclass(frozen=True, slots=True)
 class SymmetryBreaking:
     """A symmetry breaking on a branch. branch_number: number of the branch, from 1. special_point_index:
@@ -134,50 +111,6 @@ def asymmetry(orbit: Orbit) -> Array:
 def _bending_moments(states: Array, orbit: Orbit) -> Array:
     """Bending moments, (..., nodes), of states, (..., n), at the nodes of an orbit's mesh."""
     return orbit.form.layout.stress_field(states, "m3")
-
-
-def first_asymmetric_cycle(
-    breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
-) -> BranchCycle:
-    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
-    relative accuracy; raises Unsolvable. The tip's y reaches a larger maximum than on the mirror image."""
-    if breaking.special_point.orbit is None:
-        raise Unsolvable("the cycle at which the symmetry breaks is not known")
-    whole = extended_to_whole_period(breaking.special_point.orbit)
-    scale = ArcLengthScale.at_orbit(whole, name, 0.0)
-    matrix = BorderedMatrix(whole, scale, workspace)
-    # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
-    way = matrix.approximate_null_vector()
-    way = way / relative_change(whole, way[:-1])
-    for share in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
-        try:
-            ways = [moved_orbit(whole, name, sign * share * way) for sign in (1, -1)]
-            # The two signs give mirror images. The cycle with the larger y is followed, so that the result
-            # does not depend on the sign of the null vector.
-            start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
-            return _first_cycle_near(start, matrix, deflection_of(start) - deflection_of(whole), accuracy)
-        except Unsolvable as error:
-            why = error
-    raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
-
-
-def _first_cycle_near(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> BranchCycle:
-    """The asymmetric cycle near the prediction `start`, as the first cycle of a branch; raises Unsolvable.
-    whole: bordered matrix of the symmetric cycle over the whole period. change: deflection of the prediction
-    minus deflection of the symmetric cycle. accuracy: relative accuracy of the cycle."""
-    scale = whole.scale
-    border = np.sign(change) * ALONG_DEFLECTION
-    condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, whole.workspace)
-    near = rough.orbit
-    expected = asymmetry(start)
-    found = float(asymmetry(near) @ expected) / float(expected @ expected)
-    if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
-        raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
-    aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
-    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
-    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
-    return first_measured_cycle(first, scale, border, abs(change) / scale.deflection_unit, accuracy)
 
 
 def reaches_symmetric_cycle(

@@ -2,11 +2,16 @@
 
 import pytest
 
+from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_start import hopf_branch_start
 from rodsweep.solve.branch.branches import solve_branches
+from rodsweep.solve.branch.following import BranchLimits, follow_branch
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 FOLDED = Rod(F=0.0, k1=175.0, k2=1e4, gamma3=1e-4)
 
@@ -38,3 +43,29 @@ def test_branch_passes_a_fold_within_the_range(fold):
     (curve, *_) = branches_to(fold.at * (1 + 1e-4)).curves
     (same,) = (one for one in curve.special_points if one.kind == SpecialKind.fold)
     assert same.at == pytest.approx(fold.at, abs=fold.error + same.error)
+
+
+def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
+    """Along the taper of a rod with gamma3 = 1e-4 the rotational drag of the tip is 1e-5 at 0.316."""
+    rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    whole = solve_branches(rod, BranchRequest("taper", 0.25, 0.45, 1e-5, True, 100, 10))
+    assert whole.status == BranchStatus.ok
+    (curve,) = whole.curves
+    assert curve.special_points[-1].reason == EndReason.range_end
+    assert min(point.at for point in curve.points) == pytest.approx(0.25, rel=1e-9)
+
+
+def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
+    path = Path(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
+    (crossing,) = find_axis_crossings(path, 0.33, 0.45).thresholds
+    ends = []
+    for keeps_omega in (False, True):
+        hopf = hopf_branch_start(path, crossing, keeps_omega)
+        reasons = (EndReason.range_end,) * 2
+        limits = BranchLimits([hopf], (0.33, 0.45), reasons, 1e-6, 100, NewtonWorkspace())
+        last = follow_branch(0, limits).special_points[-1]
+        assert last.reason == EndReason.range_end
+        ends.append(last)
+    one, other = ends
+    assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-7
+    assert abs(one.tip_y_max - other.tip_y_max) <= one.size_error + other.size_error < 1e-5

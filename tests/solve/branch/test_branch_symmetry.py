@@ -14,6 +14,7 @@ from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
 from rodsweep.solve.branch import following
 from rodsweep.solve.branch.arc import next_cycle
+from rodsweep.solve.branch.asymmetric_start import first_asymmetric_cycle
 from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branch_start import hopf_branch_start
 from rodsweep.solve.branch.branches import BranchesOfRod
@@ -31,7 +32,6 @@ from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
     extended_to_whole_period,
-    first_asymmetric_cycle,
     symmetry_breakings_in,
 )
 from rodsweep.solve.changes.along_path import find_axis_crossings

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....arrays import Array
+from ....discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
 from ....watch import report
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_change
@@ -87,6 +88,16 @@ class BorderCondition:
         return self.solve_cycle(mesh.interpolated_orbit(found.orbit), tolerance, found.workspace, distance)
 
 
+def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
+    """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`: then they
+    cannot be compared."""
+    if form.is_omega_unknown != orbit.form.is_omega_unknown:
+        raise Unsolvable(
+            f"the smallest rotational drag along the rod passes {STRESS_FORM_SETTINGS.min_eliminated_drag:.0e} "
+            "gamma2 L^2, below which the equations have other unknowns"
+        )
+
+
 def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     """An orbit plus a change, (N + 1,), of the orbit values and of the coordinate of the parameter `name`;
     raises Unsolvable if the new parameter value is not allowed, if Omega becomes an unknown or is eliminated
@@ -95,14 +106,8 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
         form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
+    require_equal_unknowns(form, orbit)
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
-    # Where gamma3 passes the least eliminated drag, the unknowns of the states change: states cannot be
-    # compared.
-    if form.is_omega_unknown != orbit.form.is_omega_unknown:
-        raise Unsolvable(
-            f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
-            "or is eliminated"
-        )
     if not result.period > 0:
         raise Unsolvable("Newton's method lost the cycle: its period is not positive")
     return result

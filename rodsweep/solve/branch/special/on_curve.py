@@ -13,6 +13,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
 from ...unsolvable import Unsolvable
+from ..bordered.condition import require_equal_unknowns
 from ..bordered.scale import ArcLengthScale
 
 
@@ -221,11 +222,7 @@ def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
         form = replace(orbit.form, rod=orbit.form.rod.with_values(**changed))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
-    if form.is_omega_unknown != orbit.form.is_omega_unknown:
-        raise Unsolvable(
-            f"cycles cannot be followed past gamma3 = {form.rod.gamma3:.3g}, where Omega becomes an unknown "
-            "or is eliminated"
-        )
+    require_equal_unknowns(form, orbit)
     return replace(orbit, form=form)
 
 

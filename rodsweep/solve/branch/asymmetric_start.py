@@ -1,0 +1,142 @@
+"""The first cycle of a branch of asymmetric cycles, from the symmetry breaking where the branch starts.
+
+Near the symmetry breaking the asymmetry t grows along the null vector of the linearised equations, and the
+parameter is an even function of t, p0 + A t^2 + B t^4. If A and B have opposite signs, the branch has a fold
+at t^2 = -A/(2B). The first cycle lies before such a fold, so that the fold is found on a later step.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from ...arrays import Array
+from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
+from ..orbit.matrix.workspace import NewtonWorkspace
+from ..orbit.measures import CyclePath
+from ..orbit.newton import relative_change
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
+from ..unsolvable import Unsolvable
+from .arc import BranchCycle, branch_derivatives, tangent_at
+from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.matrix import BorderedMatrix, bordered_matrix_of
+from .bordered.scale import ArcLengthScale, deflection_of
+from .branch_start import ALONG_DEFLECTION
+from .mesh_choice import first_measured_cycle
+from .symmetry import BRANCH_END_SETTINGS, SymmetryBreaking, asymmetry, extended_to_whole_period
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AsymmetricStartSettings:
+    """Settings for the first asymmetric cycle near a symmetry breaking."""
+
+    first_cycle_distances: tuple[float, ...] = (0.03, 0.01, 0.1)
+    """Relative differences between the predicted first asymmetric cycle and the symmetric cycle, tried in
+    this order."""
+    share_of_fold: float = 0.5
+    """If the branch has a fold before the first cycle, the asymmetry of the first cycle is reduced to this
+    fraction of the asymmetry at the fold."""
+
+
+ASYMMETRIC_START_SETTINGS = AsymmetricStartSettings()
+
+
+def first_asymmetric_cycle(
+    breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
+) -> BranchCycle:
+    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
+    relative accuracy; raises Unsolvable. The tip's y reaches a larger maximum than on the mirror image."""
+    if breaking.special_point.orbit is None:
+        raise Unsolvable("the cycle at which the symmetry breaks is not known")
+    whole = extended_to_whole_period(breaking.special_point.orbit)
+    matrix = BorderedMatrix(whole, ArcLengthScale.at_orbit(whole, name, 0.0), workspace)
+    # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
+    way = matrix.approximate_null_vector()
+    way = way / relative_change(whole, way[:-1])
+    near = ASYMMETRIC_START_SETTINGS.first_cycle_distances[0]
+    # The two signs give mirror images. The cycle with the larger y is followed, so that the result does not
+    # depend on the sign of the null vector.
+    ways = [_WayFromSymmetry(whole, matrix, sign * way, accuracy) for sign in (1, -1)]
+    chosen = max(ways, key=lambda one: CyclePath(one.predicted_orbit(near)).extrema["tip_y_max"])
+    for distance in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
+        try:
+            return chosen.first_cycle(chosen.distance_before_fold(distance))
+        except Unsolvable as error:
+            why = error
+    raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _WayFromSymmetry:
+    """Asymmetric cycles at small relative distances from a symmetric cycle along a branch."""
+
+    symmetric: Orbit
+    """The symmetric cycle at the symmetry breaking, over the whole period."""
+    matrix: BorderedMatrix
+    """Bordered matrix of the symmetric cycle, with the units of arc length."""
+    way: Array
+    """Change of orbit values and parameter coordinate at the relative distance 1, (N + 1,)."""
+    accuracy: float
+    """Relative accuracy of the cycles."""
+
+    def predicted_orbit(self, distance: float) -> Orbit:
+        """The prediction of the cycle at a relative distance; raises Unsolvable."""
+        return moved_orbit(self.symmetric, self.matrix.scale.parameter_name, distance * self.way)
+
+    def distance_before_fold(self, distance: float) -> float:
+        """The relative distance, or a smaller one if the branch has a fold between the symmetric cycle and
+        the cycle at `distance`; raises Unsolvable."""
+        # The parameter is p0 + A t^2 + B t^4 with t = 1 at `distance`; its derivatives give A and B.
+        whole = self._parameter_rate(distance)
+        half = self._parameter_rate(distance / 2)
+        A = (8 * half - whole) / 6
+        B = (whole - 2 * A) / 4
+        if A * whole >= 0:
+            return distance
+        return distance * ASYMMETRIC_START_SETTINGS.share_of_fold * sqrt(-A / (2 * B))
+
+    def _parameter_rate(self, distance: float) -> float:
+        """Derivative of the scaled parameter coordinate by arc length at the cycle at a relative distance;
+        raises Unsolvable."""
+        found = self._condition(distance).solve_cycle(
+            self.predicted_orbit(distance), newton_tolerance(self.accuracy), self.matrix.workspace
+        )
+        scale = self.matrix.scale
+        tangent = tangent_at(found.orbit, scale, self._border(distance), bordered_matrix_of(found))
+        return branch_derivatives(found, scale, tangent).parameter_rate
+
+    def first_cycle(self, distance: float) -> BranchCycle:
+        """The cycle at a relative distance, as the first cycle of a branch; raises Unsolvable."""
+        start = self.predicted_orbit(distance)
+        condition = self._condition(distance)
+        rough = condition.solve_cycle(
+            start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, self.matrix.workspace
+        )
+        near = rough.orbit
+        expected = asymmetry(start)
+        found = float(asymmetry(near) @ expected) / float(expected @ expected)
+        if not BRANCH_END_SETTINGS.asymmetry_ratios[0] < found < BRANCH_END_SETTINGS.asymmetry_ratios[1]:
+            raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
+        aim = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
+        mesh = mesh_from_tails(near, aim, cheapest_stage_count(self.accuracy))
+        first = condition.solve_on_mesh(
+            mesh, rough, newton_tolerance(self.accuracy), max_matrix_distance(self.accuracy)
+        )
+        scale = self.matrix.scale
+        arc_from_start = abs(self._deflection_change(distance)) / scale.deflection_unit
+        return first_measured_cycle(first, scale, self._border(distance), arc_from_start, self.accuracy)
+
+    def _deflection_change(self, distance: float) -> float:
+        """Deflection of the prediction at a relative distance minus deflection of the symmetric cycle."""
+        return deflection_of(self.predicted_orbit(distance)) - deflection_of(self.symmetric)
+
+    def _border(self, distance: float) -> Array:
+        return np.asarray(np.sign(self._deflection_change(distance)) * ALONG_DEFLECTION)
+
+    def _condition(self, distance: float) -> BorderCondition:
+        """The condition that a cycle has the deflection of the prediction at a relative distance."""
+        return BorderCondition.at_arc_length(
+            self.matrix.scale, self._border(distance), self.predicted_orbit(distance)
+        )

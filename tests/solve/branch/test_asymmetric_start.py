@@ -1,0 +1,29 @@
+"""The first cycle of a branch without mirror symmetry."""
+
+from dataclasses import replace
+
+import pytest
+
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_start import hopf_branch_start
+from rodsweep.solve.branch.following import BranchLimits, follow_asymmetric_branch, follow_branch
+from rodsweep.solve.branch.special.point import EndReason
+from rodsweep.solve.branch.symmetry import symmetry_breakings_in
+from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+
+
+def test_a_fold_close_to_the_birth_of_a_branch_is_found():
+    """The cycles without symmetry are born subcritically, and turn back 3e-6 below the symmetry breaking.
+    F of the fold by the branch at the accuracy 1e-8, with an error of 2e-11."""
+    straight = Rod(F=0.0, k1=30.0, k2=0.61, gamma3=0.1)
+    path = Path(straight, "F")
+    hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
+    limits = BranchLimits([hopf], (0.0, 21.8), (EndReason.range_end,) * 2, 1e-3, 500, NewtonWorkspace())
+    known = replace(limits, breakings=symmetry_breakings_in([follow_branch(0, limits).special_points]))
+    curve = follow_asymmetric_branch(0, "F", known)
+    assert [point.kind.name for point in curve.special_points] == ["symmetry_breaking", "fold", "end"]
+    fold = curve.special_points[1]
+    assert abs(fold.at - 21.72716581562) <= fold.error < 1e-7
+    assert curve.special_points[0].at - fold.at == pytest.approx(2.87e-6, rel=0.05)
