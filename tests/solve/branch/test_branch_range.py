@@ -67,5 +67,5 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
         assert last.reason == EndReason.range_end
         ends.append(last)
     one, other = ends
-    assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-7
+    assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-6
     assert abs(one.tip_y_max - other.tip_y_max) <= one.size_error + other.size_error < 1e-5

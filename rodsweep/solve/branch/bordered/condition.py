@@ -92,9 +92,10 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`: then they
     cannot be compared."""
     if form.is_omega_unknown != orbit.form.is_omega_unknown:
+        limit = STRESS_FORM_SETTINGS.min_eliminated_drag
         raise Unsolvable(
-            f"the smallest rotational drag along the rod passes {STRESS_FORM_SETTINGS.min_eliminated_drag:.0e} "
-            "gamma2 L^2, below which the equations have other unknowns"
+            f"the smallest rotational drag along the rod passes {limit:.0e} gamma2 L^2, below which the "
+            "equations have other unknowns"
         )
 
 
