@@ -703,10 +703,16 @@ def _sizes(page, v, own):
 def _second_states(view, page, w, keywords):
     """Whether straight rods are stable where they are said to be, and Hopf points subcritical."""
     own, columns, found = view.variables, view.point_columns, []
-    straight = (own["second_state"] == 1).ravel()
-    for line, match in read(page, "^two states(?: at NUMBER of NUMBER points?)?: the straight rod"):
-        why = [] if match[1] is None or int(match[1]) == straight.sum() else [f"at {straight.sum()} points"]
-        found.append((line, "; ".join(why + ["it grows"] * bool((w.real[straight] > 0).any()))))
+    ends_stable = np.isin(view.status_names, ("cycle", "torus"))
+    for pattern, settled in (
+        ("^two states(?: at NUMBER of NUMBER points?)?: the straight rod", ends_stable),
+        ("^the straight rod is stable(?: at NUMBER of NUMBER points?)? where the motion", ~ends_stable),
+    ):
+        straight = (own["second_state"] == 1).ravel() & settled.ravel()
+        for line, match in read(page, pattern):
+            right = match[1] is None or int(match[1]) == straight.sum()
+            why = [] if right else [f"at {straight.sum()} points"]
+            found.append((line, "; ".join(why + ["it grows"] * bool((w.real[straight] > 0).any()))))
     possible = (own["second_state"] == 2).ravel()
     for line, match in read(
         page, "^a second state is possible(?: at NUMBER of NUMBER points?)?: .* at F = RANGE is subcritical"

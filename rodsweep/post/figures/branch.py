@@ -202,7 +202,9 @@ def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequenc
     )
     symbol = style.SYMBOLS[along]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
-    axes.set_xlabel(rf"$|{symbol}/{symbol}^\mathrm{{H}} - 1|$, distance from the Hopf point")
+    symbol = f"({symbol})" if "/" in symbol else symbol
+    ratio = rf"{symbol}/{symbol}^\mathrm{{H}}"
+    axes.set_xlabel(rf"$|{ratio} - 1|$, distance from the Hopf point")
     style.label_few_decades(axes.xaxis, *axes.get_xlim())
     style.label_few_decades(axes.yaxis, *axes.get_ylim())
     for axis in (axes.xaxis, axes.yaxis):

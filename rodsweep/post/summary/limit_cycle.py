@@ -40,7 +40,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     beats = done & view.has_status("cycle")
     orbit = done & view.has_status(*CYCLE_WORDS)
     stability, arm_sentences = _threshold_lines(view)
-    answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(v, done)]
+    answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(view, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
         arm_sentences.insert(0, outcome_line(view, done, region_of_arms))
     reliability = _proof_lines(view)
@@ -134,15 +134,21 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
     return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
-def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:
-    """Lines about points at which a second stable state is certain or possible. v: variables of the file.
-    done: mask of the computed points.
+def _second_state_lines(view: View, done: np.ndarray) -> list[str]:
+    """Lines about points at which a second stable state is certain or possible, or at which the straight rod
+    is stable but the motion ended in no stable state. done: mask of the computed points.
     """
+    v = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
     straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
-    if straight.any():
-        lines.append(f"two states{_at_count(straight, done)}: the straight rod is stable too")
+    two = straight & view.has_status("cycle", "torus")
+    if two.any():
+        lines.append(f"two states{_at_count(two, done)}: the straight rod is stable too")
+    if (one := straight & ~two).any():
+        lines.append(
+            f"the straight rod is stable{_at_count(one, done)} where the motion reached no stable state"
+        )
     if cycle.any():
         lines.append(
             f"a second state is possible{_at_count(cycle, done)}: the rod is straight, and its Hopf point at "

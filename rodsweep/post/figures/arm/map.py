@@ -103,13 +103,13 @@ def _section_text(view: View, indices: dict[str, int]) -> str:
 
 
 def can_draw_arm_map(request: FigureRequest) -> bool:
-    """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary, and the user has not
-    chosen another kind of figure.
+    """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary in the only file, and the
+    user has not chosen another kind of figure.
     """
     view = request.views[0]
     chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
     several = any(len(view.variables[name]) > 1 for name in view.arm_axes)
-    return several and view.task in PANEL_MAKERS and not chosen
+    return len(request.views) == 1 and several and view.task in PANEL_MAKERS and not chosen
 
 
 def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:

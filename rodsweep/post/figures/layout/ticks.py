@@ -79,8 +79,10 @@ def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
     removed.
     """
     low, high = sorted(axis.get_view_interval())
+    labelled = getattr(locator, "_subs", None)
+    most = 0 if labelled is None or isinstance(labelled, str) else len(labelled)
     for subs in ((1.0, 3.0), (1.0,), (2.0,)):
-        if len(subs) >= len(getattr(locator, "_subs", None) or ()):
+        if len(subs) >= most:
             continue
         ticks = [tick for tick in LogLocator(subs=subs).tick_values(low, high) if low <= tick <= high]
         if len(ticks) >= 2:
