@@ -46,6 +46,9 @@ class BranchStartSettings:
     allowed_amplitude_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
+    min_amplitude_before_fold: float = 5e-4
+    """Smallest amplitude (largest tip y, in L) to which the first cycle is moved towards the Hopf point if
+    the branch has a fold before it, and the last cycle of a branch that ends at a Hopf point."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
@@ -119,6 +122,15 @@ class HopfBranchStart:
             + BRANCH_START_SETTINGS.frequency_rounding
         )
 
+    @property
+    def direction(self) -> int:
+        """Sign of the change of the parameter coordinate along the branch at the Hopf point; 0 if the error of
+        Re c exceeds |Re c|."""
+        c = self.coefficients.landau
+        if not abs(c.real) > self.coefficients.landau_error * abs(c):
+            return 0
+        return int(np.sign(-c.real / self.growth_slope.real))
+
     def parameter_change_and_frequency(self, amplitude: float) -> tuple[float, float]:
         """(change of the parameter coordinate from the Hopf point, frequency in 1/tau2), by the normal form,
         of the cycle whose largest tip y is `amplitude`, in L."""
@@ -167,12 +179,29 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
 
     workspace: memory of Newton's matrices.
     """
+    first = _cycle_beside_hopf_point(hopf, np.inf, accuracy, workspace)
+    amplitude = first.cycle.measures.tip_y_max
+    # The parameter moves against the normal form: the branch has a fold before this cycle.
+    while first.parameter_rate * hopf.direction < 0 and amplitude > BRANCH_START_SETTINGS.min_amplitude_before_fold:
+        amplitude /= 2
+        try:
+            first = _cycle_beside_hopf_point(hopf, amplitude, accuracy, workspace)
+        except Unsolvable:
+            break
+    return first
+
+
+def _cycle_beside_hopf_point(
+    hopf: HopfBranchStart, largest: float, accuracy: float, workspace: NewtonWorkspace
+) -> BranchCycle:
+    """A cycle of the branch from the Hopf point `hopf`, as its first cycle, to a relative accuracy; raises
+    Unsolvable. largest: upper limit of its amplitude, in L."""
     a = abs(hopf.amplitude_coefficient)
     usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
     for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
         for share in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a)
+            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a, largest)
             try:
                 return _cycle_of_amplitude(hopf, amplitude, aim, finer, accuracy, workspace)
             except Unsolvable as error:

@@ -12,7 +12,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
-from .asymmetric_start import first_asymmetric_cycle
+from .asymmetric_start import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
@@ -60,7 +60,9 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
 
 def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
-    `limits.breakings[which]`; a failure is stored in the last special point."""
+    `limits.breakings[which]`, solved at least to the accuracy `max_accuracy` of asymmetric cycles; a failure
+    is stored in the last special point."""
+    limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
     breaking = limits.breakings[which]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
