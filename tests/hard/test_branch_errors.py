@@ -19,8 +19,9 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import BranchCycle, next_cycle
 from rodsweep.solve.branch.branch_curve import BranchPoint
-from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
 from rodsweep.solve.branch.mesh_choice import is_measurement_due, with_errors_within_accuracy
+from rodsweep.solve.branch.start.first_cycle import first_cycle
+from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath

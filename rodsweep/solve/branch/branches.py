@@ -16,11 +16,12 @@ from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, outcome_or_failure
 from .branch_curve import BranchCurve
+from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
-from .branch_start import hopf_branch_start
 from .computing_time import fractions_before_branches
-from .following import BranchLimits, follow_asymmetric_branch, follow_branch
+from .following import follow_asymmetric_branch, follow_branch
 from .special.point import SPECIAL_POINT_SETTINGS, EndReason
+from .start.hopf_point import hopf_branch_start
 from .status import BranchStatus
 from .symmetry import SymmetryBreaking, symmetry_breakings_in
 

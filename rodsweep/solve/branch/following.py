@@ -1,21 +1,19 @@
 """Continuation of one branch of cycles, from a Hopf point or a symmetry breaking to the end of the branch."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from math import nan
 
 from ...model.parameters import PARAMETERS
 from ...watch import SolvePosition, report
 from ...wording import counted
-from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.orbit_mesh import mesh_of
 from ..unsolvable import Unsolvable
-from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
-from .asymmetric_start import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
+from .arc import BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
+from .branch_ends import end_at_mirror_image, passed_mirror_image
+from .branch_limits import BranchLimits
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
-from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
 from .computing_time import fraction_done
 from .mesh_choice import is_measurement_due
 from .range_end import cycle_within_range, range_end_condition
@@ -23,31 +21,12 @@ from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.point import EndReason, SpecialKind, SpecialPoint
+from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
+from .start.first_cycle import first_cycle
+from .start.hopf_point import hopf_as_special_point
 from .symmetry import (
     BRANCH_END_SETTINGS,
-    SymmetryBreaking,
-    reaches_symmetric_cycle,
-    symmetry_breaking_between,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class BranchLimits:
-    """Range, number of cycles, and possible ends of branches of a rod; relative accuracy of the cycles."""
-
-    hopfs: Sequence[HopfBranchStart]
-    """Hopf points of the rod within the range."""
-    coordinate_range: tuple[float, float]
-    """Smallest and largest coordinate of the continuation parameter, at which branches end."""
-    end_reasons: tuple[EndReason, EndReason]
-    """Reasons for the end of a branch at the smallest and at the largest coordinate."""
-    accuracy: float
-    max_cycles: int
-    """Maximum number of cycles of one branch."""
-    workspace: NewtonWorkspace
-    """Memory of Newton's matrices."""
-    breakings: Sequence[SymmetryBreaking] = ()
-    """Symmetry breakings found so far on the branches of the rod."""
 
 
 def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
@@ -150,9 +129,9 @@ def _append_next_cycle(
         return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
         end = next_cycle(start, limits.accuracy)
-        if _passed_mirror_image(start, end, limits):
+        if passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
-            return (_end_at_hopf if start.orbit.is_symmetric else _end_at_breaking)(start, end, limits)
+            return end_at_mirror_image(start, end, limits)
         end, outside = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
         range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
         if range_end is not None and _step_hides_corner(start, end):
@@ -184,13 +163,6 @@ def _add_special_points(
     curve.add_special_points(*special_points_between(start, end, step, limits.accuracy))
 
 
-def _passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
-    """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
-    if start.orbit.is_symmetric:
-        return passed_hopf_point(start, end)
-    return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
-
-
 def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
@@ -198,53 +170,3 @@ def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
     apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
     other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
     return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
-
-
-def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
-    """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
-    The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
-    mesh = mesh_of(end.orbit)
-    layout = end.orbit.form.layout
-    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
-    return float(one @ layout.stress_field(end.orbit.start_state, "m3")) < 0
-
-
-def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
-    """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
-    `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
-    shorter = arc_length_between(start, end) / 2
-    if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
-        if shorter < ARC_STEP_CONTROL.min_length:
-            raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
-        return replace(start, next_arc_length=shorter)
-    # Near a Hopf point parameter and period are quadratic in the deflection.
-    tangent = start.tangent
-    # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
-    at = start.parameter_coordinate - share * tangent[-1]
-    period = start.orbit.period - share * tangent[-2]
-    rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
-    for number, hopf in enumerate(limits.hopfs):
-        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.parameter_coordinate - hopf.parameter_coordinate
-        ) + rounding * abs(hopf.parameter_coordinate)
-        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
-        period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
-        if abs(at - hopf.parameter_coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
-            return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
-    why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
-
-
-def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
-    """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
-    near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
-    which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
-    if which is None:
-        return replace(start, next_arc_length=arc_length_between(start, end) / 2)
-    if which >= 0:
-        breaking = limits.breakings[which]
-        special = replace(breaking.special_point, message="", orbit=None)
-        return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric, but no known symmetry breaking is near"
-    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -12,17 +13,20 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve import seldom_used_kernels
-from rodsweep.solve.branch import branch_start, branches, following
+from rodsweep.solve.branch import branches, following
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
-from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import BranchLimits, follow_branch
+from rodsweep.solve.branch.following import follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd
+from rodsweep.solve.branch.start import first_cycle as start_of_branch
+from rodsweep.solve.branch.start.first_cycle import first_cycle
+from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
@@ -318,15 +322,23 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
     assert max(one.error, other.error) < 1e-7 * rod.k1
 
 
+def unmeasured(orbit):
+    """A first cycle without measured errors, on a branch that follows its normal form."""
+    measures = SimpleNamespace(tip_y_max=float(orbit.form.tip_coordinates(orbit.start_state)[1]))
+    return SimpleNamespace(orbit=orbit, parameter_rate=0.0, cycle=SimpleNamespace(measures=measures))
+
+
 def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkeypatch):
     """The sixth Hopf point of a rod that is soft in shear; the mesh's own one lies beyond."""
-    smallest = branch_start.BRANCH_START_SETTINGS.first_amplitudes[-1]
-    beginning = replace(branch_start.BRANCH_START_SETTINGS, first_amplitudes=(smallest,))
-    monkeypatch.setattr(branch_start, "BRANCH_START_SETTINGS", beginning)
-    monkeypatch.setattr(branch_start, "first_measured_cycle", lambda first, *others: first.orbit)
+    smallest = start_of_branch.BRANCH_START_SETTINGS.first_amplitudes[-1]
+    beginning = replace(start_of_branch.BRANCH_START_SETTINGS, first_amplitudes=(smallest,))
+    monkeypatch.setattr(start_of_branch, "BRANCH_START_SETTINGS", beginning)
+    monkeypatch.setattr(
+        start_of_branch, "first_measured_cycle", lambda first, *others: unmeasured(first.orbit)
+    )
     path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
     (crossing,) = find_axis_crossings(path, 159.0, 161.0, False).thresholds
-    orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace())
+    orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace()).orbit
     assert float(orbit.form.tip_coordinates(orbit.start_state)[1]) == pytest.approx(smallest, rel=1e-3)
 
 

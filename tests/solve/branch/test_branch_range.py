@@ -4,11 +4,12 @@ import pytest
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
-from rodsweep.solve.branch.branch_start import hopf_branch_start
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import BranchLimits, follow_branch
+from rodsweep.solve.branch.following import follow_branch
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

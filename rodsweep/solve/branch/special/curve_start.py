@@ -13,7 +13,8 @@ from ...unsolvable import Unsolvable
 from ..arc import tangent_at
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
-from ..branch_start import ALONG_DEFLECTION, BRANCH_START_SETTINGS
+from ..start.first_cycle import ALONG_DEFLECTION
+from ..start.hopf_point import BRANCH_START_SETTINGS
 from .family import CycleFamily
 from .on_curve import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
 from .point import SpecialPoint

@@ -10,22 +10,22 @@ from math import sqrt
 
 import numpy as np
 
-from ...arrays import Array
-from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
-from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
-from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.measures import CyclePath
-from ..orbit.newton import relative_change
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
-from ..unsolvable import Unsolvable
-from .arc import BranchCycle, branch_derivatives, tangent_at
-from .bordered.condition import BorderCondition, moved_orbit
-from .bordered.matrix import BorderedMatrix, bordered_matrix_of
-from .bordered.scale import ArcLengthScale, deflection_of
-from .branch_start import ALONG_DEFLECTION
-from .mesh_choice import first_measured_cycle
-from .symmetry import BRANCH_END_SETTINGS, SymmetryBreaking, asymmetry, extended_to_whole_period
+from ....arrays import Array
+from ...cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
+from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.measures import CyclePath
+from ...orbit.newton import relative_change
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
+from ...unsolvable import Unsolvable
+from ..arc import BranchCycle, branch_derivatives, tangent_at
+from ..bordered.condition import BorderCondition, moved_orbit
+from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
+from ..bordered.scale import ArcLengthScale, deflection_of
+from ..mesh_choice import first_measured_cycle
+from ..symmetry import BRANCH_END_SETTINGS, SymmetryBreaking, asymmetry, extended_to_whole_period
+from .first_cycle import ALONG_DEFLECTION
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +39,9 @@ class AsymmetricStartSettings:
     """Largest relative accuracy of asymmetric cycles: a coarser mesh does not separate them from the
     symmetric cycles nearby. At an accuracy of 1e-3 Newton's method converges to symmetric cycles for 4 of 6
     rods, at 3e-4 for none."""
+    rate_tolerance: float = 1e-9
+    """Tolerance of Newton's method for the cycles whose parameter rates show a fold before the first
+    cycle."""
     share_of_fold: float = 0.5
     """If the branch has a fold before the first cycle, the asymmetry of the first cycle is reduced to this
     fraction of the asymmetry at the fold."""
@@ -115,7 +118,7 @@ class _WayFromSymmetry:
         """Derivative of the scaled parameter coordinate by arc length at the cycle at a relative distance;
         raises Unsolvable."""
         found = self._condition(distance).solve_cycle(
-            self.predicted_orbit(distance), newton_tolerance(self.accuracy), self.matrix.workspace
+            self.predicted_orbit(distance), ASYMMETRIC_START_SETTINGS.rate_tolerance, self.matrix.workspace
         )
         scale = self.matrix.scale
         tangent = tangent_at(found.orbit, scale, self._border(distance), bordered_matrix_of(found))

@@ -6,11 +6,12 @@ import pytest
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
-from rodsweep.solve.branch.branch_start import hopf_branch_start
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import BranchLimits, follow_asymmetric_branch, follow_branch
+from rodsweep.solve.branch.following import follow_asymmetric_branch, follow_branch
 from rodsweep.solve.branch.special.point import EndReason
+from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.symmetry import symmetry_breakings_in
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -34,8 +35,8 @@ def test_a_fold_close_to_the_birth_of_a_branch_is_found():
 @pytest.mark.long
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
 def test_cycles_of_low_accuracy_are_not_the_symmetric_cycles_nearby(accuracy):
-    """F of the fold by the branch at the accuracy 1e-8; collocation in strains with Radau steps finds the same
-    cycles."""
+    """F of the fold by the branch at the accuracy 1e-8; collocation in strains with Radau steps finds the
+    same cycles."""
     rod = Rod(F=0.0, k1=13.7, k2=0.113, gamma3=0.431, gamma1=2.3)
     found = solve_branches(rod, BranchRequest("F", 0.0, 9.7, accuracy, True, 500, 50))
     curve = found.curves[-1]

@@ -1,33 +1,17 @@
-"""The first cycle of a branch, from the normal form of the Hopf point where the branch starts.
-
-The normal form relates the amplitude of a cycle to the distance of the parameter from the Hopf point.
-Newton's method starts at the cycle predicted for a small amplitude. The deflection is prescribed and the
-parameter is unknown; this system is regular at the Hopf point too.
-"""
+"""A Hopf point with its normal form, as the start of a branch of cycles."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...determinant.parameter_path import Path
-from ...discretization.stress.form import StressForm
-from ...model.rod import Rod
-from ..changes.arm.path import path_problem
-from ..changes.kinds import Threshold
-from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
-from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
-from ..cycle.hopf_start import HOPF_START_SETTINGS, orbit_of_amplitude
-from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
-from ..hopf.normal_form import NormalForm, normal_form_by_mesh_rule
-from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
-from ..unsolvable import Unsolvable
-from .arc import BranchCycle
-from .bordered.condition import BorderCondition
-from .bordered.scale import ArcLengthScale, deflection_of
-from .mesh_choice import first_measured_cycle
-from .special.point import SpecialKind, SpecialPoint
+from ....determinant.parameter_path import Path
+from ....model.rod import Rod
+from ...changes.arm.path import path_problem
+from ...changes.kinds import Threshold
+from ...cycle.hopf_start import HOPF_START_SETTINGS
+from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
+from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
+from ..special.point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +39,6 @@ class BranchStartSettings:
 
 
 BRANCH_START_SETTINGS = BranchStartSettings()
-
-
-ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
-"""Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -124,8 +104,8 @@ class HopfBranchStart:
 
     @property
     def direction(self) -> int:
-        """Sign of the change of the parameter coordinate along the branch at the Hopf point; 0 if the error of
-        Re c exceeds |Re c|."""
+        """Sign of the change of the parameter coordinate along the branch at the Hopf point; 0 if the error
+        of Re c exceeds |Re c|."""
         c = self.coefficients.landau
         if not abs(c.real) > self.coefficients.landau_error * abs(c):
             return 0
@@ -172,86 +152,3 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
         amplitude_coefficient=hopf.amplitude_coefficient,
         coefficient_error=hopf.coefficient_error,
     )
-
-
-def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspace) -> BranchCycle:
-    """The first cycle of the branch from the Hopf point `hopf`, to a relative accuracy; raises Unsolvable.
-
-    workspace: memory of Newton's matrices.
-    """
-    first = _cycle_beside_hopf_point(hopf, np.inf, accuracy, workspace)
-    amplitude = first.cycle.measures.tip_y_max
-    # The parameter moves against the normal form: the branch has a fold before this cycle.
-    while first.parameter_rate * hopf.direction < 0 and amplitude > BRANCH_START_SETTINGS.min_amplitude_before_fold:
-        amplitude /= 2
-        try:
-            first = _cycle_beside_hopf_point(hopf, amplitude, accuracy, workspace)
-        except Unsolvable:
-            break
-    return first
-
-
-def _cycle_beside_hopf_point(
-    hopf: HopfBranchStart, largest: float, accuracy: float, workspace: NewtonWorkspace
-) -> BranchCycle:
-    """A cycle of the branch from the Hopf point `hopf`, as its first cycle, to a relative accuracy; raises
-    Unsolvable. largest: upper limit of its amplitude, in L."""
-    a = abs(hopf.amplitude_coefficient)
-    usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
-    # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
-    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
-        for share in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a, largest)
-            try:
-                return _cycle_of_amplitude(hopf, amplitude, aim, finer, accuracy, workspace)
-            except Unsolvable as error:
-                why = error
-    raise Unsolvable(f"no cycle is found near the Hopf point: {why}") from why
-
-
-def _cycle_of_amplitude(
-    hopf: HopfBranchStart,
-    amplitude: float,
-    aim: float,
-    finer: bool,
-    accuracy: float,
-    workspace: NewtonWorkspace,
-) -> BranchCycle:
-    """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
-    L, solved to the relative `accuracy`; raises Unsolvable.
-
-    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
-    whether the starting mesh is chosen for `aim` too; otherwise the starting mesh is the coarser mesh of the
-    normal form.
-    """
-    start = predicted_cycle(hopf, amplitude)
-    if finer:
-        start = mesh_from_tails(start, aim, cheapest_stage_count(aim)).interpolated_orbit(start)
-    least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least)
-    # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
-    border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
-    condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
-    near = rough.orbit
-    y = float(near.form.tip_coordinates(near.start_state)[1])
-    # A different cycle with the same deflection would have an amplitude far from the normal form's.
-    least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
-    if not least_ratio < y / amplitude < largest_ratio:
-        raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
-    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
-    arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
-    return first_measured_cycle(first, scale, border, arc_from_start, accuracy)
-
-
-def predicted_cycle(hopf: HopfBranchStart, amplitude: float) -> Orbit:
-    """The cycle that the normal form predicts for the largest tip y `amplitude`, in L, on the normal form's
-    mesh in space and a coarse mesh in time; raises Unsolvable."""
-    change, frequency = hopf.parameter_change_and_frequency(amplitude)
-    form = StressForm(hopf.rod, hopf.normal_form.form.mesh, hopf.keeps_omega)
-    try:
-        form = form.with_coordinate(hopf.parameter_name, hopf.parameter_coordinate + change)
-    except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
-    return orbit_of_amplitude(hopf.normal_form, form, amplitude, frequency)

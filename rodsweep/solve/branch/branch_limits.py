@@ -1,0 +1,28 @@
+"""Limits of the branches of a rod: range, number of cycles, Hopf points and symmetry breakings."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..orbit.matrix.workspace import NewtonWorkspace
+from .special.point import EndReason
+from .start.hopf_point import HopfBranchStart
+from .symmetry import SymmetryBreaking
+
+
+@dataclass(frozen=True, slots=True)
+class BranchLimits:
+    """Range, number of cycles, and possible ends of branches of a rod; relative accuracy of the cycles."""
+
+    hopfs: Sequence[HopfBranchStart]
+    """Hopf points of the rod within the range."""
+    coordinate_range: tuple[float, float]
+    """Smallest and largest coordinate of the continuation parameter, at which branches end."""
+    end_reasons: tuple[EndReason, EndReason]
+    """Reasons for the end of a branch at the smallest and at the largest coordinate."""
+    accuracy: float
+    max_cycles: int
+    """Maximum number of cycles of one branch."""
+    workspace: NewtonWorkspace
+    """Memory of Newton's matrices."""
+    breakings: Sequence[SymmetryBreaking] = ()
+    """Symmetry breakings found so far on the branches of the rod."""

@@ -1,0 +1,1 @@
+"""First cycles of branches: near a Hopf point, by its normal form, and near a symmetry breaking."""
