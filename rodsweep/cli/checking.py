@@ -6,9 +6,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import quantities_as_typed
 from ..config.arm.section import ArmSection
+from ..config.arm.status import SLENDER
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines

@@ -26,7 +26,7 @@ from .state import (
     DEFAULT_F_MAX,
     DEFAULT_ROD,
     LARGEST_FORCE_KEYS,
-    LAWS,
+    MATERIAL_CHOICES,
     SECOND_PARAMETERS,
     PageState,
 )
@@ -130,14 +130,13 @@ def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
 
 
 def _law_key(config: Config, path: Path) -> str:
-    """Constitutive law of a config, as a key of `LAWS`; "linear" for a law that the page does not offer.
-    Raises InputError if the arm has a profile.
-    """
+    """Constitutive law of a config, as a key of `MATERIAL_CHOICES`; "linear" for a law that the page does not
+    offer. Raises InputError if the arm has a profile."""
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
     words = {"law": build.law, "section": build.section}
-    return next((key for key, value in LAWS.items() if value == words), "linear")
+    return next((key for key, value in MATERIAL_CHOICES.items() if value == words), "linear")
 
 
 def _middle_value_text(values: np.ndarray) -> str:

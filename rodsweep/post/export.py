@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from ..config.axes import joined_names
+from ..config.parameters_section import joined_names
 from ..errors import InputError
 from ..results.file.view import View
 from ..wording import counted

@@ -41,7 +41,7 @@ class CriticalityTask(NonlinearTask):
         return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> Estimate:
-        of_arms = not self.config.standard
+        of_arms = not self.config.is_uniform_and_linear
         return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:

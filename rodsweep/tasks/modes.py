@@ -42,7 +42,7 @@ class ModesTask(CertifiedTask):
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
         as in `Task.variables_from_points`.
         """
-        return force_change_variables(self.points, values) if self.config.standard else ()
+        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
         options = self.config.modes

@@ -89,7 +89,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def cost(self) -> Estimate:
         options = self.config.phase_diagram
-        of_arms = not self.config.standard
+        of_arms = not self.config.is_uniform_and_linear
         asked = options.certify, of_arms, options.curves, options.criticality
         lines = estimate_diagram(self.points.count, *asked)
         if not options.cycles:
@@ -115,7 +115,7 @@ class PhaseDiagramTask(CertifiedTask):
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod_of_row(index), request),
             record=lambda index, result: row_values(result, request.parameter_name, request.max_thresholds),
-            joint_variables=curves if options.curves else None,
+            sweep_wide_solver=curves if options.curves else None,
         )
         if not options.cycles:
             return of_rows

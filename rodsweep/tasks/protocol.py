@@ -35,7 +35,7 @@ class WorkItems(ItemChooser, Protocol):
         """Text describing an item, for the progress display and the log."""
 
 
-class JointVariables(Protocol):
+class SweepWideSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def work_items(self, view: View) -> WorkItems | None:
@@ -80,7 +80,7 @@ class Solver:
     """Solves the point at a flat index; returns an outcome with the attributes `status` and `message`."""
     record: Callable[[int, Any], dict[str, Any]]
     """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
-    joint_variables: JointVariables | None = None
+    sweep_wide_solver: SweepWideSolver | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
     chained: ChainedWork | None = None
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None

@@ -50,7 +50,7 @@ class ThresholdsTask(CertifiedTask):
         return {"F": np.array([self.config.thresholds.F_max])}
 
     def cost(self) -> Estimate:
-        of_arms = not self.config.standard
+        of_arms = not self.config.is_uniform_and_linear
         options = self.config.thresholds
         return estimate_thresholds(self.points, options.F_max, options.certify, of_arms)
 

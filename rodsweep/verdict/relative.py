@@ -22,7 +22,7 @@ from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
 from ..solve.changes.kinds import ChangeKind
-from ..solve.changes.unstable_modes import end_below_crushing
+from ..solve.changes.search_range import end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 SEARCH_END = 1000.0

@@ -10,7 +10,7 @@ from ranks import PATIENCE, pause_until
 from surveyed import few
 
 from rodsweep.config import load_config
-from rodsweep.config.arm.axes import FLUTTER_UNKNOWN
+from rodsweep.config.arm.status import FLUTTER_UNKNOWN
 from rodsweep.errors import BUG_STATUS, InputError
 from rodsweep.model.rod import Rod
 from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_needing_flutter_force

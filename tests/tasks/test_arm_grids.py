@@ -12,7 +12,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
+from rodsweep.config.arm.status import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
 from rodsweep.post.figures.sections import section_at_values

@@ -11,8 +11,8 @@ from matplotlib.collections import PolyCollection
 
 import rodsweep as rs
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
 from rodsweep.config.arm.section import ArmSection
+from rodsweep.config.arm.status import CRUSHED, NO_FLUTTER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAG_NAMES
 from rodsweep.model.arm.neglected import CURVATURE_OVER_AMPLITUDE, LARGE_AMPLITUDE, wall_flattening_effect

@@ -15,11 +15,12 @@ from ...errors import InputError
 from ...model.parameters import OPTIONAL_PARAMETERS
 from ..arm.quantities import drag_names
 from ..arm.section import ArmSection
-from ..axes import joined_names
+from ..axis import Axis, axis_from_resolved
 from ..material import with_profile_read
+from ..parameters_section import joined_names
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
-from ..values import Axis, axis_from_resolved, printable_name, short_repr
+from ..values import printable_name, short_repr
 from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 

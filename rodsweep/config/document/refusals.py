@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from ...model.parameters import PARAMETERS
-from ..axes import joined_names
+from ..parameters_section import joined_names
 from ..schema import Config
 from ..values import printable_name, short_repr
 

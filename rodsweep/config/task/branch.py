@@ -13,7 +13,7 @@ from ...model.parameters import (
     PARAMETERS,
     parameter_names_except,
 )
-from ..axes import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
 from ..schema import Config
 from ..values import Number, StrictSection
 

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from ..arm.axes import SINGLE_PARAMETER_OF
-from ..axes import NonlinearParameters, joined_names
+from ..parameters_section import NonlinearParameters, joined_names
 from ..schema import Config, NodeCount
 from ..values import Number, StrictSection
 
@@ -42,8 +42,8 @@ class LimitCycleOptions(StrictSection):
     """Number of times, from the start of the motion until the cycle is reached, at which the tip is stored; 0
     stores no transient."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
-    """Maximum number of periods of the motion; the maximum number of time steps is 200 times this number. A
-    motion that has not settled by then is `not_settled`."""
+    """Maximum number of periods of the motion, counted as returns of the tip to theta = 0; the maximum number
+    of time steps is 200 times this number. A motion that has not settled by then is `not_settled`."""
     time: Literal["tau2", "tau1"] = "tau2"
     """Unit of time. tau1 adds the period in units of tau1; all other variables stay in units of tau2."""
 

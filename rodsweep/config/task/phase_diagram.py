@@ -10,9 +10,10 @@ from pydantic import Field, model_validator
 from ...model.arm.quantities import LOAD_OF_RATIO
 from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
-from ..axes import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
+from ..axis import Axis
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
 from ..schema import CrossingCount, LinearConfig
-from ..values import Axis, Number, StrictSection
+from ..values import Number, StrictSection
 
 THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
 

@@ -125,7 +125,7 @@ class SlenderArm:
         return self.build_with_drag(self.chosen_drag)
 
     @property
-    def standard(self) -> bool:
+    def is_uniform_and_linear(self) -> bool:
         """Whether the arm is uniform and of linear material."""
         return self.build.is_uniform_and_linear and self.taper == 1
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ..tables.columns import Column
-from ..tables.contents import DEFAULT_TABLE, POINTS
+from ..tables.table_names import DEFAULT_TABLE, POINTS
 from ..tables.tables import Table, Tables
 
 MAX_ROWS = 60

@@ -47,7 +47,7 @@ def damage_refusals(path: Path) -> Iterator[None]:
         yield
     except DAMAGE_EXCEPTIONS as error:
         raise IncompleteFile(
-            f"{path} is not a complete rodsweep result file ({one_line_message(error)})"
+            f"{path} cannot be read as a result of rodsweep: {one_line_message(error)}"
         ) from None
 
 
@@ -117,7 +117,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     """
     attributes = {name: escape_control_characters(value) for name, value in file.attrs.items()}
     if attributes.get("program") != PROGRAM:
-        raise ValueError("it is not a result of rodsweep")
+        raise ValueError("the file was not written by rodsweep")
     _refuse_other_format(path, attributes)
     if check_content:
         refuse_changed(file)

@@ -147,7 +147,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes
 }
 
 
-def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
     found = hopf_point_variables((*LINEAR_PARAMETERS, *optional_parameters_in(config)))

@@ -76,7 +76,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     return (line, row), sizes
 
 
-def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together, including variables that the config does
     not request. config: the resolved config. is_grid: not used.
     """

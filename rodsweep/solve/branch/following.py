@@ -12,6 +12,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..unsolvable import Unsolvable
 from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
+from .bordered.scale import deflection_of
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .branch_start import HopfBranchStart, first_cycle, hopf_as_special_point
@@ -218,7 +219,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
+    share = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     at = start.parameter_coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)

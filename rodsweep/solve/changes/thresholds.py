@@ -9,8 +9,8 @@ from ...model.rod import Rod
 from ..point import outcome_or_failure
 from .along_path import ThresholdList, find_thresholds
 from .kinds import ChangeKind, Threshold
+from .search_range import end_below_crushing
 from .status import ThresholdStatus
-from .unstable_modes import end_below_crushing
 
 
 @dataclass(frozen=True, slots=True)

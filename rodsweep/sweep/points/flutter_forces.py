@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import inf, nan
 from typing import TypeAlias
 
-from ...config.arm.axes import UncoveredArm
 from ...config.arm.section import ArmSection
+from ...config.arm.status import UncoveredArm
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import LOAD_OF_RATIO

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import CRUSHED, MAX_ARM_GRID_POINTS, SLENDER
+from ...config.arm.axes import MAX_ARM_GRID_POINTS
+from ...config.arm.status import CRUSHED, SLENDER
 from ...config.schema import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO

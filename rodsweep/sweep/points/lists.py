@@ -9,7 +9,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from ...arrays import Array
-from ...config.axes import joined_names
+from ...config.parameters_section import joined_names
 from ...config.values import cell_number, short_repr
 from ...errors import InputError
 from ...model.material.build import DEFAULT_BUILD, Build

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config.values import Axis
+from ...config.axis import Axis
 from ...model.parameters import CRUSHING_PARAMETERS
 from ...model.rod import Rod
 from ...results.file.view import View
@@ -113,7 +113,7 @@ class DiagramCurves:
         options = self.task.config.phase_diagram
         found = self._boundaries(plane, view, self.task.points.columns_by_name[row])
         limit = {}
-        if names == CRUSHING_PARAMETERS and self.task.config.standard:
+        if names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_flutter_force
 

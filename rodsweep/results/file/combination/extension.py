@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.axes import joined_names
 from ....config.document.reading import config_from_resolved
+from ....config.parameters_section import joined_names
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis

@@ -150,7 +150,9 @@ class CrossingSearch:
         """
         parts: list[tuple[float, float]] = []
         start = left.p
-        highest = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(left.largest_modulus, right.largest_modulus)
+        max_frequency = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(
+            left.largest_modulus, right.largest_modulus
+        )
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
             before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
@@ -158,7 +160,7 @@ class CrossingSearch:
             beside = None
             if self.axis_modes.has_many_modes(before):
                 beside = self.axis_modes.eigenvalues_near_axis(
-                    p, highest, np.array([1j * crossing.frequency])
+                    p, max_frequency, np.array([1j * crossing.frequency])
                 )
             change = (
                 self.axis_modes.modes_at(behind, beside).unstable_count
@@ -180,7 +182,7 @@ class CrossingSearch:
         if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if many else 1):
             return []
         if many:
-            self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
+            self.problem.ensure_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         grows = change > 0
         found: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are

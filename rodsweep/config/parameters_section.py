@@ -9,7 +9,8 @@ from pydantic import Field, create_model, model_validator
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
 from .arm.axes import MAX_ARM_GRID_POINTS, grid_axis_names, parameter_of_axis
 from .arm.section import ArmSection
-from .values import Axis, Number, ParameterAxis, StrictSection, Text
+from .axis import Axis, ParameterAxis
+from .values import Number, StrictSection, Text
 
 NONLINEAR_ONLY_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 """Names of the parameters on which limit cycles depend but the linear problem does not."""

@@ -60,7 +60,7 @@ ItemResults.write, RankListener.__call__ = write_and_note, hear_and_wait
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory, loaded):
     """The command in a directory with the diagram computed by one rank without a break, `whole.h5`."""
-    command = Command(tmp_path_factory.mktemp("joint"), lambda: loaded)
+    command = Command(tmp_path_factory.mktemp("sweep_wide"), lambda: loaded)
     command.write("c.yaml", DIAGRAM)
     run = command("run", "c.yaml", "-o", "whole.h5")
     assert run.returncode == 0, run.stderr

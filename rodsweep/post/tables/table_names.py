@@ -10,7 +10,7 @@ from ...config.document.refusals import unknown_key_hint
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import joint_variables_of_config, layout_of
+from ...results.layouts import layout_of, sweep_wide_variables
 from ...results.layouts.variables import Variable
 
 LIST_INTRO = "there are"
@@ -61,13 +61,12 @@ class Contents:
     """Variables of a result, divided into tables.
 
     point_variables: variables with one value per point, which are columns of all tables. lists: variables of
-    each list, by name of the table. joint_lists: names of lists that belong to the whole file, not to single
-    points.
-    """
+    each list, by name of the table. sweep_wide_lists: names of lists that belong to the whole file, not to
+    single points."""
 
     point_variables: tuple[Variable, ...]
     lists: dict[str, tuple[Variable, ...]]
-    joint_lists: frozenset[str]
+    sweep_wide_lists: frozenset[str]
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -91,7 +90,7 @@ def contents_of(view: View) -> Contents:
         else:
             own.append(variable)
     with_points = set(lists)
-    for variable in joint_variables_of_config(config, view.is_grid):
+    for variable in sweep_wide_variables(config, view.is_grid):
         if variable.name not in view.variables:
             continue
         of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))
