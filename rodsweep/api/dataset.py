@@ -13,7 +13,7 @@ from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.values import short_repr
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
-from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
+from ..results.file.content_digests import SEAL_ATTRIBUTE, attribute_digests, variable_digest
 from ..results.file.current_state import (
     insert_records,
     journalled_points,
@@ -31,7 +31,7 @@ from ..results.file.view import View
 from ..results.layouts import layout_of, sweep_wide_variables
 from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
 from ..results.run.journal import journal_directory
-from ..solve.exclusive import one_at_a_time
+from ..solve.solve_lock import one_at_a_time
 
 ENGINE = "h5netcdf"
 """Backend with which xarray reads result files."""

@@ -19,7 +19,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAG_NAMES
 from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
 from ..model.material.build import DEFAULT_BUILD
-from ..solve.exclusive import defer_signals
+from ..solve.solve_lock import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)

@@ -15,7 +15,8 @@ from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
-from ..solve.exclusive import exclusive_solve
+from ..solve.solve_lock import exclusive_solve
+from ..solve_progress import reporting_to, solve_part
 from ..sweep.points.stretches import SolveStretch, Stretches
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
@@ -24,7 +25,6 @@ from ..tasks.running.failures import FailureReasons, parameters_text
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
-from ..watch import reporting_to, solve_part
 from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
 

@@ -75,9 +75,9 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("shards", type=FILE_TYPE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
+    from ..errors import STOPPED_STATUS
     from ..results.file.combination.merge import merge as merge_files
     from ..tasks.running.job import plan_without_solver
-    from .run.running import STOPPED_STATUS
 
     output = result_file_path(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)

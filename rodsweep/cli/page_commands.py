@@ -73,8 +73,8 @@ def plot(
 ) -> None:
     """Draw the result FILE, or several: spectra in panels, thresholds or limit cycles in one figure."""
     from ..post.figures import draw
+    from ..post.figures.grid_sections import section_at_values
     from ..post.figures.request import FigureLook
-    from ..post.figures.sections import section_at_values
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
+from ..solve_progress import SolvePosition, reporting_to
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from ..watch import SolvePosition, reporting_to
 
 if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod

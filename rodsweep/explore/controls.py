@@ -10,7 +10,7 @@ from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tab
 from bokeh.models.css import StyleSheet
 
 from ..post.summary.arm.arm import quantity_words
-from .scales import SCALES, ControlScale, PictureAxis
+from .slider_scales import SCALES, ControlScale, PictureAxis
 from .state import MATERIAL_CHOICE_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 LARGEST_FORCE = "Largest force F (k3/L^2)"

@@ -8,13 +8,13 @@ from bokeh.document import Document
 from bokeh.events import Pan, Tap
 
 from ..errors import InputError
-from .contents import PageContents
+from .page_contents import PageContents
 from .pause_timer import PauseTimer
-from .scales import SCALES
 from .sharing import state_from_config_text
-from .solving import needs as kinds
+from .slider_scales import SCALES
+from .solving import question_inputs as kinds
 from .solving.diagrams import has_uniform_rods
-from .solving.needs import AnswerInputs, answer_inputs, state_to_solve
+from .solving.question_inputs import AnswerInputs, answer_inputs, state_to_solve
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .solving.solving_status import progress_text, solving_text

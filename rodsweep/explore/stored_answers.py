@@ -15,7 +15,7 @@ from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
-from .scales import SCALES
+from .slider_scales import SCALES
 from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, flag_words
 from .state import PageState

@@ -8,7 +8,7 @@ import numpy as np
 from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_criticality
+from ..sweep.cost_estimate import CostEstimate, criticality_cost
 from .base_classes import NonlinearTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -40,9 +40,9 @@ class CriticalityTask(NonlinearTask):
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.criticality.F_max])}
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         of_arms = not self.config.is_uniform_and_linear
-        return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
+        return criticality_cost(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up

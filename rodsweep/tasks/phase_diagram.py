@@ -8,8 +8,8 @@ import numpy as np
 from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
-from ..sweep.branch_cost import estimate_branches
-from ..sweep.cost_estimate import Estimate, estimate_diagram
+from ..sweep.branch_cost import branches_cost
+from ..sweep.cost_estimate import CostEstimate, diagram_cost
 from .base_classes import CertifiedTask
 from .diagram.curves import DiagramCurves
 from .diagram.records import cycles_record
@@ -87,17 +87,15 @@ class PhaseDiagramTask(CertifiedTask):
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")
         return [*linear[:-1], nonlinear, ("gravity, inertia", False, "not part of the model")]
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         options = self.config.phase_diagram
         of_arms = not self.config.is_uniform_and_linear
         asked = options.certify, of_arms, options.curves, options.criticality
-        lines = estimate_diagram(self.points.count, *asked)
+        lines = diagram_cost(self.points.count, *asked)
         if not options.cycles:
             return lines
         reach = (float(self.line_values[0]), float(self.line_values[-1]))
-        branches = estimate_branches(
-            self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy
-        )
+        branches = branches_cost(self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy)
         return replace(branches, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:

@@ -11,7 +11,7 @@ from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..sweep.chunk_queue import ItemChooser
-from ..sweep.cost_estimate import Estimate
+from ..sweep.cost_estimate import CostEstimate
 from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
@@ -175,7 +175,7 @@ class Task(ABC):
         """Rows of the table, printed by `check`, of modelled and neglected effects."""
 
     @abstractmethod
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         """Estimated cost of the run."""
 
     @abstractmethod

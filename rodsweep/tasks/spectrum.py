@@ -24,7 +24,7 @@ from ..results.layouts.spectrum import (
     longitudinal_variables,
 )
 from ..results.layouts.variables import FilledVariable, outcome_values
-from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
+from ..sweep.cost_estimate import CostEstimate, followed_spectra_cost, spectra_cost, two_meshes_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .base_classes import CertifiedTask
@@ -143,15 +143,15 @@ class SpectrumTask(CertifiedTask):
             return CertifiedTask.certificate(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         options = self.config.spectrum
         if options.method == "krylov_schur":
-            return estimate_two_meshes(self.points, options.modes, self.config.accuracy)
+            return two_meshes_cost(self.points, options.modes, self.config.accuracy)
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
-        alone = estimate_spectra(self.points, options.modes, accuracy, self.config.certifies)
+        alone = spectra_cost(self.points, options.modes, accuracy, self.config.certifies)
         if self.stretches is None:
             return alone
-        return estimate_followed(alone, self.stretches, self.points, options.modes)
+        return followed_spectra_cost(alone, self.stretches, self.points, options.modes)
 
     def solver(self) -> Solver:
         from ..solve.spectrum.path.neighbouring_rods import warm_up as warm_up_following

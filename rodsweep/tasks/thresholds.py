@@ -10,7 +10,7 @@ import numpy as np
 from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_thresholds
+from ..sweep.cost_estimate import CostEstimate, thresholds_cost
 from .base_classes import CertifiedTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -49,10 +49,10 @@ class ThresholdsTask(CertifiedTask):
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.thresholds.F_max])}
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         of_arms = not self.config.is_uniform_and_linear
         options = self.config.thresholds
-        return estimate_thresholds(self.points, options.F_max, options.certify, of_arms)
+        return thresholds_cost(self.points, options.F_max, options.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.changes.status import ThresholdStatus

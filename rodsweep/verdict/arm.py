@@ -8,9 +8,9 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
 from .checks import Check, checks_of
 from .load import Load
+from .number_rows import NumberRow, number_rows
 from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
-from .table import NumberRow, number_rows
 from .text_wrapping import wrapped_text
 from .validity import Assessment
 

@@ -141,7 +141,7 @@ def _first_hopf_force_of_varied(path: Path, end: float) -> float:
     FlutterSearchFailed if the search along F fails or a smaller F is not excluded.
     """
     from ..solve.changes.along_path import find_axis_crossings
-    from ..solve.point import FAILURES, cause_of
+    from ..solve.point_outcome import FAILURES, cause_of
 
     try:
         found = find_axis_crossings(path, 0.0, end)

@@ -5,13 +5,13 @@ import pytest
 from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.along_path import ArmAlongPath
-from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.family import (
+from rodsweep.determinant.arm.arm_family import (
     determinant_of_family_arm,
     eigenvalue_of_family_arm,
     interpolated_family,
     write_propagators,
 )
+from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.value import path_value_by_chain
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build

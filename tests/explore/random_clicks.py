@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from explore.browser import Browser
 
 from rodsweep.errors import Refusal
-from rodsweep.explore.scales import SCALES
+from rodsweep.explore.slider_scales import SCALES
 from rodsweep.explore.state import MATERIAL_CHOICES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 SECONDS = 600.0

@@ -17,7 +17,7 @@ from surveyed import few
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import BranchCycle, next_cycle
+from rodsweep.solve.branch.arc_length_step import BranchCycle, next_cycle
 from rodsweep.solve.branch.bordered.scale import deflection_of
 from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.branch_start import first_cycle, hopf_branch_start

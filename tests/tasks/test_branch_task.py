@@ -28,7 +28,7 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
 from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import job_of_file
 

@@ -14,13 +14,13 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
-from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
 from rodsweep.solve.branch.special.special_curves import (
     CurveEnd,
     CurvePoint,
     HalfCurve,
     TracedHalfCurve,
 )
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
@@ -35,7 +35,7 @@ phase_diagram: {cycles: true}
 HALT = """
 import pathlib, time
 from rodsweep.results.run.checkpoints import ItemResults
-import rodsweep.watch as watch
+import rodsweep.solve_progress as watch
 from rodsweep.sweep.stop import RankListener
 
 write, hear = ItemResults.write, RankListener.__call__

@@ -15,7 +15,7 @@ from ...post.rod_portrait.results import RodResults
 from ...post.rod_portrait.writing import require_portrait, write_portrait
 from ...post.tables.alignment import wrap_cell_text
 from ...results.file.view import View
-from ...solve.exclusive import one_at_a_time
+from ...solve.solve_lock import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
 from ..dataset import named_file_path, view_of_dataset

@@ -19,9 +19,9 @@ from ...solve.spectrum.problem import transverse_problem
 from ...solve.spectrum.search import warm_up
 from ..peers import Peers
 from ..study import (
+    BenchmarkReport,
     Contender,
     Measurement,
-    Study,
     count_text,
     every_nth_setting,
     grouped_by_fields,
@@ -74,7 +74,7 @@ QUICK_STRIDE = 3
 """On hard rods and arms a quick run uses every n-th size; this number is n."""
 
 
-def spectrum_study(quick: bool, peers: Peers) -> Study:
+def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
     """Runs the benchmark and returns the results: the paper's rods at equal errors, hard rods at all sizes,
     and arms. quick: whether to use fewer rounds, target errors and sizes."""
     warm_up()
@@ -91,7 +91,9 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
     arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
-    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms)
+    return BenchmarkReport(
+        "spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms
+    )
 
 
 def cheapest_contenders(

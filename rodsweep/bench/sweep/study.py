@@ -13,8 +13,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ..study import (
+    BenchmarkReport,
     Measurement,
-    Study,
     count_text,
     grouped_by_fields,
     markdown_table,
@@ -63,7 +63,7 @@ RunCase = Callable[..., CommandRun]
 """`run_case` with its first argument, the start of the measured command, bound."""
 
 
-def sweep_study(quick: bool, command: Sequence[str]) -> Study:
+def sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
     """Runs the benchmark and returns the results: speedup by a second rank, followed eigenvalues, and
     overhead of a point.
 
@@ -80,7 +80,7 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     blocks += [instant_table(instant), growth_table(instant)]
     if len(ranks) == 1:
         blocks.append("Two ranks are skipped: there is no mpiexec in the folder of this Python or on PATH.")
-    return Study("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
+    return BenchmarkReport("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
 
 
 def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from ...config import load_config
+from ...errors import STOPPED_STATUS
 from ...results.file import provenance
 from ...results.file.store import Store
 from ...results.file.view import read_view
@@ -25,10 +26,6 @@ from .contribution import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_ru
 from .options import RunOptions
 from .point_work import PointWork
 from .sweep_wide_work import PendingSweepWideWork, SweepWideWork
-
-STOPPED_STATUS = 75
-"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
-run."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -176,7 +173,8 @@ class _RankRun:
         return parameters_text(self.job.points.values(index))
 
     def _finish_file(self, pending: PendingSweepWideWork) -> bool:
-        """Writes the variables of all points into the file; returns whether these are still missing."""
+        """Writes the variables that depend on all points into the file; returns whether these are still
+        missing."""
         if not pending.is_missing:
             return False
         variables = self.sweep_wide.variables(pending.work_items) if self.sweep_wide else ()

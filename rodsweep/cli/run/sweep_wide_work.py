@@ -10,6 +10,7 @@ from ...results.layouts.variables import FilledVariable
 from ...results.run.checkpoints import ItemResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
+from ...solve_progress import SolveStopped, reporting_to
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
 from ...sweep.loop import Indices, RankWork, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
@@ -17,7 +18,6 @@ from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import NamedArrays, SweepWideSolver, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
-from ...watch import SolveStopped, reporting_to
 
 HALF_CURVE_NOUN = "half curves"
 """Name of the work items in the progress display: a curve is followed in two directions from its start."""

@@ -2,7 +2,7 @@
 eigenvalues.
 
 D depends on p through all coefficients along the arm. Where a family of arms
-(`rodsweep.determinant.arm.family`) contains the arm at p, D and its derivative by p come from the family.
+(`rodsweep.determinant.arm.arm_family`) contains the arm at p, D and its derivative by p come from the family.
 Elsewhere derivatives by p are differences between determinants of neighbouring arms. The differences need not
 be accurate: only Jacobians of Newton's method and predictors use them.
 """
@@ -16,14 +16,14 @@ from ..parameter_path import Path
 from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
-from .determinant import ArmDeterminant, arm_determinant
-from .family import (
+from .arm_family import (
     ARM_FAMILY_SETTINGS,
     ArmFamily,
     determinant_of_family_arm,
     eigenvalue_of_family_arm,
     propagators_at,
 )
+from .determinant import ArmDeterminant, arm_determinant
 from .newton import refine_eigenvalue_and_error
 from .rounding import rounding_error_by_chain
 

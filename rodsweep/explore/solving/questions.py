@@ -106,7 +106,8 @@ def growth_answer(state: PageState) -> AnswerVariables:
 
 
 def cycle_answer(state: PageState) -> AnswerVariables:
-    """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm."""
+    """Limit cycle with shapes of the arm over a period, and x, y: coordinates of the straight arm, whose tip
+    the user can drag."""
     return answer_variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
         state, None
     )

@@ -12,7 +12,7 @@ from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
-from ..scales import length_axis
+from ..slider_scales import length_axis
 from ..state import MATERIAL_CHOICES, PageState, rod_of
 
 Tip = tuple[float, float]

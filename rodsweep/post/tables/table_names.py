@@ -57,7 +57,7 @@ DEFAULT_TABLE = {
 
 
 @dataclass(frozen=True, slots=True)
-class Contents:
+class TableContents:
     """Variables of a result, divided into tables.
 
     point_variables: variables with one value per point, which are columns of all tables. lists: variables of
@@ -79,7 +79,7 @@ class Contents:
         return self.lists[table][0].extra if table in self.lists else ()
 
 
-def contents_of(view: View) -> Contents:
+def table_contents_of(view: View) -> TableContents:
     """Names and variables of the tables of a result."""
     config = view.config
     own: list[Variable] = []
@@ -100,7 +100,7 @@ def contents_of(view: View) -> Contents:
             lists.setdefault(table_name_of(variable.extra), []).append(variable)
     own.sort(key=lambda variable: variable.name != "status")
     found = {name: tuple(variables) for name, variables in lists.items()}
-    return Contents(tuple(own), found, frozenset(found.keys() - with_points))
+    return TableContents(tuple(own), found, frozenset(found.keys() - with_points))
 
 
 def table_name_of(dimensions: tuple[str, ...]) -> str:
@@ -108,7 +108,7 @@ def table_name_of(dimensions: tuple[str, ...]) -> str:
     return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
-def chosen_table(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
+def chosen_table(view: View, contents: TableContents, table: str | None, columns: tuple[str, ...]) -> str:
     """Name of the table that the user requests: `table` if given, else the list that has the columns
     `columns`, else POINTS if only columns of points are named, else the default table of the task. Raises
     InputError for an unknown name, and for columns of two tables."""

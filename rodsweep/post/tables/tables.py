@@ -13,7 +13,15 @@ from ...results.file.view import View
 from ..branch_curves import followed_parameter
 from .columns import Column
 from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
-from .table_names import BRANCHES, GRID, POINTS, Contents, chosen_table, contents_of, refuse_unknown_columns
+from .table_names import (
+    BRANCHES,
+    GRID,
+    POINTS,
+    TableContents,
+    chosen_table,
+    refuse_unknown_columns,
+    table_contents_of,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +53,9 @@ class Tables:
         object.__setattr__(self, "view", self.view.as_list)
 
     @cached_property
-    def contents(self) -> Contents:
+    def contents(self) -> TableContents:
         """Names of the tables of the result, and the variables in each table."""
-        return contents_of(self.view)
+        return table_contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
         """The table with the given name or columns; by default the default table of the task.

@@ -16,7 +16,7 @@ from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
 from .combination.identity import fingerprint_of
-from .content import refuse_changed
+from .content_digests import refuse_changed
 from .points import points_of_open_file
 from .seal import HDF5_SIGNATURE, has_valid_structure_checksum
 

@@ -23,11 +23,11 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..unsolvable import Unsolvable
-from .arc import BranchCycle
+from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .bordered.scale import ArcLengthScale, deflection_of
 from .mesh_choice import first_measured_cycle
-from .special.point import SpecialKind, SpecialPoint
+from .special.special_point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,12 +6,12 @@ from functools import partial
 from math import nan
 
 from ...model.parameters import PARAMETERS
-from ...watch import SolvePosition, report
+from ...solve_progress import SolvePosition, report
 from ...wording import counted
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..unsolvable import Unsolvable
-from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .bordered.scale import deflection_of
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
@@ -22,7 +22,7 @@ from .range_end import cycle_within_range, range_end_condition
 from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
-from .special.point import EndReason, SpecialKind, SpecialPoint
+from .special.special_point import EndReason, SpecialKind, SpecialPoint
 from .symmetry import (
     BRANCH_END_SETTINGS,
     SymmetryBreaking,

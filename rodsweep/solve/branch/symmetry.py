@@ -23,13 +23,13 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
-from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import ArcLengthScale, deflection_of
 from .branch_start import ALONG_DEFLECTION
 from .mesh_choice import first_measured_cycle
-from .special.point import SpecialKind, SpecialPoint
+from .special.special_point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

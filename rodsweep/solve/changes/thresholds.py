@@ -6,7 +6,7 @@ from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from .along_path import ThresholdList, find_thresholds
 from .kinds import ChangeKind, Threshold
 from .search_range import end_below_crushing

@@ -19,7 +19,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from ...arrays import Array
-from ..point import FAILURES
+from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 
 Solution = TypeVar("Solution")

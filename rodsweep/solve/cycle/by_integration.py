@@ -19,14 +19,14 @@ from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from ...watch import SolvePosition, report
+from ...solve_progress import SolvePosition, report
 from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integrator, relax_fast_components
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures

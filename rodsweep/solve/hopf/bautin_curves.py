@@ -13,12 +13,12 @@ from itertools import pairwise
 import numpy as np
 
 from ...arrays import Array
-from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
+from ...determinant.stability_boundary import Boundary
 from ...model.rod import Rod
-from ...watch import SolvePosition, report
+from ...solve_progress import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
-from ..point import FAILURES
+from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
 from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve

@@ -13,7 +13,7 @@ from ...model.rod import Rod
 from ..changes.along_path import ThresholdList, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..changes.search_range import end_below_crushing
-from ..point import FAILURES, cause_of, outcome_or_failure
+from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 from .status import CriticalityStatus
 

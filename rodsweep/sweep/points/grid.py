@@ -18,13 +18,13 @@ from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
+from .csv_points import read_points
 from .flutter_forces import (
     FlutterForces,
     flutter_force_of_arm,
     flutter_force_of_rod,
     rods_needing_flutter_force,
 )
-from .lists import read_points
 from .points import Points
 
 

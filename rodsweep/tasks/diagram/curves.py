@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.boundaries import SpecialBoundaries
-    from ...solve.branch.special.point import SpecialPoint
+    from ...solve.branch.special.special_point import SpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.generalised import CurveCriticality

@@ -43,7 +43,7 @@ class HopfLine:
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import find_axis_crossings
         from ...solve.changes.search_range import SEARCH_RANGE_SETTINGS
-        from ...solve.point import FAILURES
+        from ...solve.point_outcome import FAILURES
 
         start = self.start
         stop = self.stop

@@ -15,7 +15,7 @@ from ...results.file.provenance import utc_time
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING_STATUS, FilledVariable, dimension_attributes, flag_attributes
 from ...solve.backend.availability import require_solvers
-from ...solve.exclusive import exclusive_solve
+from ...solve.solve_lock import exclusive_solve
 from ...sweep.points.ranges import Shard
 from .job import Job, plan_of
 

@@ -5,7 +5,7 @@ import pytest
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
 from rodsweep.solve.branch.status import BranchStatus
 
 FOLDED = Rod(F=0.0, k1=175.0, k2=1e4, gamma3=1e-4)

@@ -6,9 +6,9 @@ from math import inf, log
 import numpy as np
 import pytest
 
-from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.determinant.stability_boundary import Boundary
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram import boundary_curves
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of

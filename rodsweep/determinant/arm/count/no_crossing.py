@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
+from ..arm_family import ArmFamily, propagators_at
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
-from ..family import ArmFamily, propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ArmSamples, mean_wave_number_and_w_scale
 from ..value import chain_value, determinant_along_chain

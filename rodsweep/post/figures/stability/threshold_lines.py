@@ -38,7 +38,7 @@ FORCE_AXIS_RATIO = 1.05
 force divided by the lower limit."""
 
 
-def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
+def draw_lines_of_grid(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
     a line for each value of the other parameter. long: the one or two parameters with several values.
     searched: clause on the searched range. Raises InputError if nothing can be drawn.
@@ -96,7 +96,7 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     )
 
 
-def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
+def draw_selected_lines(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
     parameters `long` as abscissa, with curves for some values of the second parameter. narrow: whether the
     panels are stacked. searched: clause on the searched range.

@@ -20,7 +20,7 @@ from ....config.schema import Config
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ...layouts.variables import MISSING_STATUS, SECONDS
-from ..content import SEAL_ATTRIBUTE
+from ..content_digests import SEAL_ATTRIBUTE
 from ..creation import Plan
 from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....arrays import Array
-from ....watch import report
+from ....solve_progress import report
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_change
 from ...orbit.orbit import Orbit

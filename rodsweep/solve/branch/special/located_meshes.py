@@ -4,8 +4,8 @@ from dataclasses import replace
 from math import ceil, log
 
 from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count
-from ..errors import BranchCalibration
-from .point import SPECIAL_POINT_SETTINGS
+from ..branch_errors import BranchCalibration
+from .special_point import SPECIAL_POINT_SETTINGS
 
 
 def first_mesh(calibration: BranchCalibration, aim: float) -> OrbitMesh:

@@ -8,9 +8,9 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.arm.along_path import ArmAlongPath
+from ....determinant.arm.arm_family import ArmFamily, interpolated_family
 from ....determinant.arm.count.modes_near_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
-from ....determinant.arm.family import ArmFamily, interpolated_family
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import Path

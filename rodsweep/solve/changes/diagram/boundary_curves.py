@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary, BoundarySolution
 from ....determinant.parameter_plane import Plane
-from ....watch import report
+from ....determinant.stability_boundary import Boundary, BoundarySolution
+from ....solve_progress import report
 from ...continuation.follower import CurveStop, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
 from .boundary_problem import (

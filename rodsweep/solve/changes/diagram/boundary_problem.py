@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary, BoundarySolution
+from ....determinant.stability_boundary import Boundary, BoundarySolution
 from ...continuation.follower import Curve, CurveStop, StepControl, StepResult
 from ...unsolvable import Unsolvable
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
-from ...point import outcome_or_failure
+from ...point_outcome import outcome_or_failure
 from ..along_path import ThresholdList, find_thresholds
 from ..search_range import SEARCH_RANGE_SETTINGS
 from ..status import ThresholdStatus

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from ....arrays import Array, Complex
+from ....determinant.arm.arm_family import propagators_at
 from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant
-from ....determinant.arm.family import propagators_at
 from ....determinant.arm.hull.region import hull_at
 from ....determinant.parameter_path import Path
 from ..candidates import lines_for_count

@@ -4,7 +4,7 @@ module `functions`. A new matrix is assembled only if the corrections converge s
 from typing import Protocol
 
 from .....arrays import Array
-from .....watch import report
+from .....solve_progress import report
 from ....orbit.matrix.workspace import NewtonWorkspace
 from ....orbit.newton import ORBIT_NEWTON_SETTINGS, relative_change
 from ....orbit.orbit import Orbit

@@ -55,7 +55,7 @@ class ArmFamilySettings(CompiledSettings):
         return 2 * self.converged_tail
 
     def trials(self) -> list[tuple[int, float]]:
-        """Pairs (number of arms, scale over the length of the interval) of all trials, in order."""
+        """Pairs from `arm_counts` and `spacing_scales`, in the order of the trials."""
         return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 

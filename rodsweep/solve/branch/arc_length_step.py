@@ -23,7 +23,7 @@ from ..orbit.orbit_mesh import mesh_of
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix, bordered_matrix_of
 from .bordered.scale import ArcLengthScale
-from .errors import BranchCalibration, BranchDerivatives
+from .branch_errors import BranchCalibration, BranchDerivatives
 
 ARC_STEP_CONTROL = StepControl(
     first_length=0.02,

@@ -13,7 +13,7 @@ from ..config.document.reading import config_from_resolved, load_config
 from ..config.schema import Config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
-from .scales import SCALES
+from .slider_scales import SCALES
 from .solving.diagrams import (
     Dataset,
     diagram_from_arm_result,
