@@ -9,11 +9,9 @@ from .. import __version__
 from ..errors import InputError
 from ..wording import counted
 from .arm_options import arm_options
-from .file_names import link_target, result_file_path, with_suffix_replaced
+from .file_names import FILE_TYPE, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
 
-FILE_TYPE = click.Path(path_type=Path)
-"""Type of arguments and options that name a file."""
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
 )

@@ -13,6 +13,7 @@ from ..config.document.reading import config_from_resolved, load_config
 from ..config.schema import Config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
+from ..results import RESULT_ENDINGS
 from .slider_scales import SCALES
 from .solving.diagrams import (
     Dataset,
@@ -32,8 +33,6 @@ from .state import (
 )
 from .stored_answers import StoredAnswers
 
-RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
-"""Suffixes of result files; a file with any other suffix is read as a config."""
 HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
 
@@ -44,7 +43,7 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredAnswers | None]:
 
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
-    if path.suffix not in RESULT_SUFFIXES:
+    if path.suffix not in RESULT_ENDINGS:
         return state_from_config(load_config(path)[0], path), None
     data = open_result(path)
     try:

@@ -85,13 +85,6 @@ def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Ro
     return Rod(F=0.0, **own, build=build or arm.build_with_drag(drag))
 
 
-def first_flutter_force(arm: SlenderArm) -> float:
-    """Smallest flutter force of an arm over its planes of motion, in k3/L^2 of the arm; inf if the arm does
-    not flutter. Raises FlutterSearchFailed if the search fails.
-    """
-    return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
-
-
 @cache
 def first_hopf_force(rod: Rod) -> float:
     """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_DIGITS digits.

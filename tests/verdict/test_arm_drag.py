@@ -24,7 +24,7 @@ from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.points import rod_numbers
 from rodsweep.verdict.flutter import ChangeKind
-from rodsweep.verdict.relative import first_flutter_force, first_hopf_force
+from rodsweep.verdict.relative import first_hopf_force, plane_rods
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
 QUICK = {"accuracy": 1e-3, "harmonics": 2}
@@ -102,6 +102,10 @@ def test_a_relative_force_is_told_as_a_force():
     data = rs.sweep("spectrum", arm=arm, modes=2)
     assert data.force.item() == pytest.approx(rs.Arm(**arm).loaded.si.force, rel=1e-9)
     assert "pressure" not in data.variables
+
+
+def first_flutter_force(arm):
+    return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
 
 
 def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():

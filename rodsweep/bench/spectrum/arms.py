@@ -17,7 +17,7 @@ from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
-from .exact import relative_error
+from .exact import error_field
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -87,15 +87,9 @@ def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measure
     peers: contenders of the peers. rounds: number of timed rounds."""
     measurements = []
     for name, rod in ARM_RODS.items():
-        judge = partial(_error_field, exact_arm_spectrum(rod))
+        judge = partial(error_field, exact_arm_spectrum(rod))
         measurements += measure_case(name, UncachedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
-
-
-def _error_field(exact: list[complex], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: reference
-    eigenvalues."""
-    return {"error": relative_error(w, exact)}
 
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:

@@ -32,7 +32,7 @@ from ..study import (
     time_runs,
 )
 from .arms import ARM_RACE, arm_table, measure_arm_spectra
-from .exact import exact_spectrum, relative_error
+from .exact import error_field, exact_spectrum, relative_error
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -154,15 +154,9 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
     """Measurements of the contenders `every` on all HARD_RODS. rounds: number of timed rounds."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(spectrum_error, exact_spectrum(rod, MODE_COUNT))
+        judge = partial(error_field, exact_spectrum(rod, MODE_COUNT))
         measurements += measure_case(case, rod, every, rounds, judge)
     return measurements
-
-
-def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: exact
-    eigenvalues."""
-    return {"error": relative_error(w, exact)}
 
 
 def hard_rod_table(measurements: Sequence[Measurement]) -> str:

@@ -13,11 +13,11 @@ from ruamel.yaml import YAML
 
 from ...errors import InputError
 from ...model.parameters import OPTIONAL_PARAMETERS
+from ...wording import enumeration
 from ..arm.quantities import drag_names
 from ..arm.section import ArmSection
 from ..axis import Axis, axis_from_resolved
 from ..material import with_profile_read
-from ..parameters_section import joined_names
 from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
 from ..values import printable_name, short_repr
@@ -180,7 +180,7 @@ def _apply_override(tree: dict, override: str) -> None:
 
 def _task_name(tree: dict) -> str:
     """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
-    known = joined_names(tuple(CONFIGS), "or")
+    known = enumeration(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
         close = similar_keys("task", others)

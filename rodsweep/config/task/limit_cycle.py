@@ -5,8 +5,9 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from ...wording import enumeration
 from ..arm.axes import SINGLE_PARAMETER_OF
-from ..parameters_section import NonlinearParameters, joined_names
+from ..parameters_section import NonlinearParameters
 from ..schema import Config, NodeCount
 from ..values import Number, StrictSection
 
@@ -102,7 +103,7 @@ class LimitCycleConfig(Config):
         if along in SINGLE_PARAMETER_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or set "
-                f"along to {joined_names(NONLINEAR_PARAMETERS, 'or')}"
+                f"along to {enumeration(NONLINEAR_PARAMETERS, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
@@ -116,6 +117,6 @@ class LimitCycleConfig(Config):
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
                 f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "
-                f"{joined_names((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
+                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
         return self

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array
 from ...model.dispersion import sampled_arm
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
@@ -19,7 +19,7 @@ from ..value import DeterminantValue
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
-from .local_waves import ArmSamples, arm_samples, mean_wave_number_and_w_scale, mean_wave_numbers_and_w_scales
+from .local_waves import ArmSamples, arm_samples, mean_wave_number_and_w_scale
 from .value import determinant_along_chain
 
 PropagatorsUpToW = tuple[float, Array]
@@ -56,20 +56,12 @@ class ArmDeterminant:
 
     def wave_number(self, w: complex) -> float:
         """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
-        return self.wave_number_and_w_scale(w)[0]
+        return mean_wave_number_and_w_scale(w, self.samples)[0]
 
     def w_scale(self, w: complex) -> float:
         """Change of w over which an exponent of D, integrated along the arm, changes by about one, in
         1/tau2."""
-        return self.wave_number_and_w_scale(w)[1]
-
-    def wave_number_and_w_scale(self, w: complex) -> tuple[float, float]:
-        """(`wave_number`, `w_scale`) at w."""
-        return mean_wave_number_and_w_scale(w, self.samples)
-
-    def wave_numbers_and_w_scales(self, w: Complex) -> Array:
-        """Array (2, n) of `wave_number` and `w_scale` at every w, (n,)."""
-        return mean_wave_numbers_and_w_scales(w, self.samples)
+        return mean_wave_number_and_w_scale(w, self.samples)[1]
 
     @cached_property
     def gauss_samples(self) -> ArmSamples:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ...wording import joined
+from ...wording import enumeration
 from ..cost_and_provenance import origin_lines
 from ..output_files import atomic_write, require_output_path
 from ..report import rendered_template
@@ -53,7 +53,7 @@ def portrait_caption(results: RodResults) -> str:
         "modes at the thresholds": bool(results.modes),
         CYCLE_COUNT_WORDS[len(results.cycles)]: bool(results.cycles),
     }
-    return joined([part for part, is_shown in parts.items() if is_shown])
+    return enumeration([part for part, is_shown in parts.items() if is_shown])
 
 
 def portrait_page(results: RodResults) -> str:

@@ -67,7 +67,7 @@ class _MarchedMotion:
         self.mesh = motion_mesh(rod, request.accuracy)
         tolerance = MARCHING_SETTINGS.local_tolerance_ratio * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
-        self.beam = self._new_beam()
+        self.beam = Beam(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
 
@@ -101,9 +101,6 @@ class _MarchedMotion:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, path, errors)
 
-    def _new_beam(self) -> Beam:
-        return Beam(self.rod, self.mesh)
-
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
@@ -111,7 +108,7 @@ class _MarchedMotion:
         self.scheme = replace(
             self.scheme, tolerance=MARCHING_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
-        self.beam = self._new_beam()
+        self.beam = Beam(self.rod, self.mesh)
         z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
 
@@ -225,7 +222,7 @@ class _MarchedMotion:
             name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
         }
         self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
-        self.beam = self._new_beam()
+        self.beam = Beam(self.rod, self.mesh)
         z = relax_fast_components(self.beam, settled.state, self.leading_mode.period)
         more = errors_of_two_integrations(path, self._measured_path(self._integrate_until_settled(z)), 0.0)
         return CycleErrors(

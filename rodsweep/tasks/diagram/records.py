@@ -216,7 +216,7 @@ def with_hopf_ends(
 ) -> "Boundaries[SpecialPointCurve]":
     """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
-    not stored, added to `untraced`.
+    not stored, added to `untraced_count`.
     """
     from ...solve.branch.special.special_curves import with_located_ends
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.parameters import TRANSVERSE_PARAMETERS
 from ...model.rod import Rod
-from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_point_variables
+from ...results.layouts.limit_cycle import hopf_point_variables
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
@@ -78,7 +79,7 @@ class HopfLine:
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
     """Lines of points of a file, without repetition. Rods that differ only in gamma1 share a line."""
-    names = [name for name in HOPF_ALONG if name in points.rod_values]
+    names = [name for name in TRANSVERSE_PARAMETERS if name in points.rod_values]
     return [line for name in names for line in _hopf_lines_along(points, name, names)]
 
 
@@ -137,8 +138,8 @@ def hopf_variables(
 def _hopf_point_values(line: HopfLine, crossing: "Threshold") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
     rod = line.fixed_parameters | {line.varied_parameter: crossing.value}
-    return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
-        "hopf_along": HOPF_ALONG.index(line.varied_parameter),
+    return {f"hopf_{name}": rod[name] for name in TRANSVERSE_PARAMETERS if name in rod} | {
+        "hopf_along": TRANSVERSE_PARAMETERS.index(line.varied_parameter),
         "hopf_kind": int(crossing.kind),
         "hopf_error": crossing.error / abs(crossing.value),
         "hopf_frequency": crossing.frequency,

@@ -29,6 +29,7 @@ from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
 from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
+from .square_root import square_root_laws
 
 BRANCH_LOOKS = tuple(
     zip(
@@ -71,7 +72,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     handles += mark_hopf_points(panels, marks)
     handles += draw_square_root_laws(
         panels[1],
-        [law for branch in branches for law in branch.square_root_fits],
+        [law for each in branches for law in square_root_laws(each.x, each.amplitude_y, each.hopf)],
         units[0].names[0] * units[0].in_si,
     )
     _label_axes(panels, name, units[0].panel_labels)
