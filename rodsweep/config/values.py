@@ -56,14 +56,14 @@ def short_repr(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def printable_name(name: object, most: int = 200) -> str:
+def printable_name(name: object, max_length: int = 200) -> str:
     """The name as text for a message, or `repr` of the text if the text is not printable; shortened in the
-    middle to at most `most` characters.
+    middle to at most `max_length` characters.
     """
     text = str(name)
     if not text.isprintable():
         text = repr(text)
-    return text if len(text) <= most else f"{text[: most // 2]}...{text[3 - most // 2 :]}"
+    return text if len(text) <= max_length else f"{text[: max_length // 2]}...{text[3 - max_length // 2 :]}"
 
 
 def printable(text: str) -> str:

@@ -58,12 +58,13 @@ class CriticalityTask(NonlinearTask):
         )
 
 
-def criticality_values(result: "Criticality", most: int) -> dict[str, Any]:
-    """Variables of the file for the Hopf points of a rod; most: length of the list of Hopf points."""
-    search = crossing_values(result, most, "F", "crossing_F")
+def criticality_values(result: "Criticality", max_crossings: int) -> dict[str, Any]:
+    """Variables of the file for the Hopf points of a rod; max_crossings: length of the list of Hopf
+    points."""
+    search = crossing_values(result, max_crossings, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.hopf_points, strict=False)
     rows = [outcome_values(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
     ends = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
-    return search | ends | value_lists(NORMAL_FORM, rows, most)
+    return search | ends | value_lists(NORMAL_FORM, rows, max_crossings)

@@ -90,25 +90,26 @@ class Solver:
     instead of `solve`; None if no points are solved together."""
 
     def with_wrapper(
-        self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any
+        self, solve_wrapper: SolveWrapper, solve_stretch: SolveStretch | None = None, **changed: Any
     ) -> "Solver":
-        """A copy of the solver with the solve of every point wrapped by `around`, and with the fields in
-        `changed`.
+        """A copy of the solver with the solve of every point wrapped by `solve_wrapper`, and with the fields
+        in `changed`.
 
-        together: new function that solves a stretch, if the solver has stretches.
+        solve_stretch: new function that solves a stretch, if the solver has stretches.
         """
         chained = self.chained
         stretched = self.stretched
         if chained is not None:
             step = chained.solve_from
             chained = replace(
-                chained, solve_from=lambda index, state: around(index, state, lambda: step(index, state))
+                chained,
+                solve_from=lambda index, state: solve_wrapper(index, state, lambda: step(index, state)),
             )
-        if stretched is not None and together is not None:
-            stretched = stretched[0], together
+        if stretched is not None and solve_stretch is not None:
+            stretched = stretched[0], solve_stretch
 
         def solve(index: int) -> Any:
-            return around(index, None, lambda: (self.solve(index), None))[0]
+            return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
 
         return replace(self, solve=solve, chained=chained, stretched=stretched, **changed)
 

@@ -180,7 +180,7 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
 def _cycle_of_amplitude(
     hopf: HopfBranchStart,
     amplitude: float,
-    aim: float,
+    mesh_accuracy: float,
     finer: bool,
     accuracy: float,
     workspace: NewtonWorkspace,
@@ -188,13 +188,14 @@ def _cycle_of_amplitude(
     """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
     L, solved to the relative `accuracy`; raises Unsolvable.
 
-    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
-    whether the starting mesh is chosen for `aim` too; otherwise the starting mesh is the coarser mesh of the
-    normal form.
-    """
+    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `mesh_accuracy`.
+    finer: whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh is the
+    coarser mesh of the normal form."""
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = mesh_from_tails(start, aim, cheapest_stage_count(aim)).interpolated_orbit(start)
+        start = mesh_from_tails(start, mesh_accuracy, cheapest_stage_count(mesh_accuracy)).interpolated_orbit(
+            start
+        )
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
     scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
@@ -207,7 +208,7 @@ def _cycle_of_amplitude(
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
+    mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, arc_from_start, accuracy)

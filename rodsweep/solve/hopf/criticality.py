@@ -84,8 +84,8 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, most: int) -> ThresholdList:
-    return find_axis_crossings(path, 0.0, end, certify, most)
+def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdList:
+    return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
 def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> HopfCoefficients:

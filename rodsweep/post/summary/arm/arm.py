@@ -68,15 +68,14 @@ def range_in_unit(
     values: np.ndarray,
     si: str,
     errors: np.ndarray | float = 0.0,
-    most: int = RANGE_DIGITS,
+    max_digits: int = RANGE_DIGITS,
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
-    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. most: largest
-    number of digits.
-    """
+    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. max_digits:
+    largest number of digits."""
     factor, unit = printing_unit(view, si, _largest_absolute(values))
-    return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
+    return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), max_digits)} {unit}"
 
 
 def _largest_absolute(values: np.ndarray) -> float:
