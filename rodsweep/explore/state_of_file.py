@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..api.dataset import open_result
+from ..config.base_config import Config
 from ..config.document.reading import config_from_resolved, load_config
-from ..config.schema import Config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
 from ..results import RESULT_ENDINGS

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ..config.schema import Config
+from ..config.base_config import Config
 from ..discretization.elements.elements import Elements
 from ..model.material.profile import Profile
 from ..model.parameters import PARAMETERS, Parameter

@@ -11,8 +11,8 @@ from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate, diagram_cost
 from .base_classes import CertifiedTask
+from .diagram.curve_variables import cycles_record
 from .diagram.curves import DiagramCurves
-from .diagram.records import cycles_record
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 

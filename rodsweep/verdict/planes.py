@@ -10,7 +10,7 @@ from ..model.arm.quantities import UNITS
 from ..model.units import with_si_prefix
 from ..solve.changes.kinds import ChangeKind
 from .flutter import ThresholdsOverDrags, thresholds_over_drags
-from .relative import with_exchanged_sides
+from .relative_load import with_exchanged_sides
 
 A = TypeVar("A", bound=SlenderArm)
 

@@ -22,8 +22,8 @@ from rodsweep.api import options
 from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
+from rodsweep.config.base_config import Config
 from rodsweep.config.document.reading import tree_yaml
-from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.post.figures import draw

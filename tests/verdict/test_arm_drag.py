@@ -22,9 +22,9 @@ from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
-from rodsweep.tasks.arm.points import rod_numbers
+from rodsweep.tasks.arm.point_solver import rod_numbers
 from rodsweep.verdict.flutter import ChangeKind
-from rodsweep.verdict.relative import first_hopf_force, plane_rods
+from rodsweep.verdict.relative_load import first_hopf_force, plane_rods
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
 QUICK = {"accuracy": 1e-3, "harmonics": 2}

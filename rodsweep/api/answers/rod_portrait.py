@@ -20,7 +20,7 @@ from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
 from ..dataset import named_file_path, view_of_dataset
 from ..keyword_arguments import plain_keyword
-from ..solving import solve_in_process
+from ..solving_in_process import solve_in_process
 from .answer import Answer
 
 SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'

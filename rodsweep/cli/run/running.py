@@ -22,9 +22,9 @@ from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_config_variables
-from .contribution import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
 from .options import RunOptions
 from .point_work import PointWork
+from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
 from .sweep_wide_work import PendingSweepWideWork, SweepWideWork
 
 

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 
 from ...model.parameters import PARAMETERS
 from ...wording import enumeration
-from ..schema import Config
+from ..base_config import Config
 from ..values import printable_name, short_repr
 
 MAX_KEY_LENGTH = 100

@@ -12,8 +12,8 @@ from ...model.parameters import (
     TRANSVERSE_PARAMETERS,
     parameter_names_except,
 )
+from ..base_config import Config
 from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
-from ..schema import Config
 from ..values import Number, StrictSection
 
 

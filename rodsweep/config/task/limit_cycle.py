@@ -7,8 +7,8 @@ from pydantic import Field, model_validator
 from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from ...wording import enumeration
 from ..arm.axes import SINGLE_PARAMETER_OF
+from ..base_config import Config, NodeCount
 from ..parameters_section import NonlinearParameters
-from ..schema import Config, NodeCount
 from ..values import Number, StrictSection
 
 LONGEST_AXIS = "longest"

@@ -12,8 +12,8 @@ from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAME
 from ...wording import enumeration
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axis import Axis
+from ..base_config import CrossingCount, LinearConfig
 from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes
-from ..schema import CrossingCount, LinearConfig
 from ..values import Number, StrictSection
 
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import model_validator
 
 from ...model.parameters import LINEAR_PARAMETERS
-from ..schema import LinearConfig, ModeCount, NodeCount
+from ..base_config import LinearConfig, ModeCount, NodeCount
 from ..values import StrictSection
 
 

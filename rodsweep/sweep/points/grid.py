@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...config.arm.axes import MAX_ARM_GRID_POINTS
 from ...config.arm.status import CRUSHED, SLENDER
-from ...config.schema import Config
+from ...config.base_config import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.build import DEFAULT_BUILD, Build

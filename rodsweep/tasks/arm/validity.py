@@ -20,7 +20,7 @@ from ...arrays import Array
 from ...config.arm.axes import NON_LOAD_KEYS
 from ...config.arm.section import ArmSection
 from ...config.arm.status import SLENDER
-from ...config.schema import Config
+from ...config.base_config import Config
 from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
 from ...model.material.laws import LINEAR

@@ -12,7 +12,7 @@ from ...model.rod import Rod
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ...results.layouts.variables import FilledVariable
-from .records import (
+from .curve_variables import (
     bautin_curve_record,
     criticality_record,
     curve_record,

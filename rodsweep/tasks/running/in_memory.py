@@ -1,4 +1,5 @@
-"""Solves the points of a job in sequence in this process, and keeps the results in memory."""
+"""Results of a job in memory, without a file: as a `View`, and as variables with attributes. `solved_view`
+also solves jobs without chains and without variables that depend on all points."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -15,8 +15,8 @@ import numpy as np
 
 from ....arrays import Array
 from ....config.axis import Axis
+from ....config.base_config import Config
 from ....config.document.reading import config_from_resolved, config_yaml, resolved_config
-from ....config.schema import Config
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ...layouts.variables import MISSING_STATUS, SECONDS
