@@ -33,7 +33,7 @@ parameters:
 """
 SEARCH = """
 import os, pathlib, time
-import rodsweep.verdict.relative_load as relative
+from rodsweep.verdict import relative_load
 
 search, rank = relative_load.first_hopf_force, os.environ.get("OMPI_COMM_WORLD_RANK", "0")
 
