@@ -59,7 +59,7 @@ class SpectrumTask(CertifiedTask):
     @property
     def stretches(self) -> Stretches | None:
         """Stretches of points along which eigenvalues are followed; None if eigenvalues are not followed."""
-        if not self.config.follows:
+        if not self.config.follows_eigenvalues:
             return None
         return stretches_along_longest_axis(self.points.shape, self.points.varying_parameters)
 

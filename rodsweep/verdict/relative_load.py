@@ -64,7 +64,7 @@ def plane_rods(
     replace the values of the arm.
     """
     planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
-    if not arm.is_equally_stiff:
+    if not arm.is_equally_stiff_in_all_planes:
         other = with_exchanged_sides(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
         planes.append((_rod_in_its_plane(other, build, taper), scale))

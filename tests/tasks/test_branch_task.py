@@ -17,7 +17,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import (
     RodBranches,
     intersection_of_ranges,
-    stability_of_pieces,
+    stability_between_vertices,
     union_of_ranges,
 )
 from rodsweep.post.figures import draw
@@ -142,7 +142,7 @@ def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_point
         (-1, 0, 0): [1, 1],
         (None,): [],
     }
-    assert {counts: stability_of_pieces(list(counts)).tolist() for counts in pieces} == pieces
+    assert {counts: stability_between_vertices(list(counts)).tolist() for counts in pieces} == pieces
 
 
 @pytest.mark.parametrize(

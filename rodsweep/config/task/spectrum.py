@@ -59,7 +59,7 @@ class SpectrumConfig(LinearConfig):
         return self.spectrum.certify and self.spectrum.method == "determinant"
 
     @property
-    def follows(self) -> bool:
+    def follows_eigenvalues(self) -> bool:
         """Whether eigenvalues are followed along an axis: only on grids, with certified spectra and without
         eigenvectors.
         """

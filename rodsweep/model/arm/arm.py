@@ -106,7 +106,7 @@ class SlenderArm:
         return self.shape.base.section
 
     @property
-    def is_equally_stiff(self) -> bool:
+    def is_equally_stiff_in_all_planes(self) -> bool:
         """Whether the arm is equally stiff in all planes through its axis."""
         return not isinstance(self.cross_section, Rectangle) or self.si.width == self.si.height
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from ...wording import enumeration
-from ..cost_and_provenance import origin_lines
+from ..cost_and_provenance import provenance_lines
 from ..output_files import atomic_write, require_output_path
 from ..report import rendered_template
 from ..report.page_tables import page_tables
@@ -74,5 +74,5 @@ def portrait_page(results: RodResults) -> str:
         tables=[
             (name, [t for t in page_tables(view) if t.name not in HIDDEN_TABLES]) for name, view in views
         ],
-        origin=origin_lines(results.views["thresholds"].attributes),
+        origin=provenance_lines(results.views["thresholds"].attributes),
     )

@@ -20,7 +20,7 @@ from ...results.file.view import View
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
 from ...wording import counted, is_or_are, plural
-from ..cost_and_provenance import origin_lines, rank_lines, time_lines
+from ..cost_and_provenance import provenance_lines, rank_lines, time_lines
 from ..tables.alignment import column_cells, point_aligned, rewrap_line, table_blocks
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
@@ -75,7 +75,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
         details=lines.details,
         axes=_axes_table(view),
         numbers=lines.numbers,
-        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
+        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *provenance_lines(a)],
     )
 
 
