@@ -17,10 +17,10 @@ from .solving.diagrams import has_uniform_rods
 from .solving.question_inputs import AnswerInputs, answer_inputs, state_to_solve
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
-from .solving.solving_status import progress_text, solving_text
 from .solving.tip_release import Tip
 from .state import PageState, from_address, rod_of
 from .stored_answers import StoredAnswers
+from .texts import progress_text, solving_text
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""
