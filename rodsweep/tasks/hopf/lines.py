@@ -43,7 +43,7 @@ class HopfLine:
         """
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import find_axis_crossings
-        from ...solve.changes.search_range import SEARCH_RANGE_SETTINGS
+        from ...solve.changes.search_range import CRUSHING_END_SETTINGS
         from ...solve.point_outcome import FAILURES
 
         start = self.start
@@ -53,13 +53,13 @@ class HopfLine:
                 stop,
                 self._crushing_force_ratio
                 * self.fixed_parameters["k1"]
-                * (1 - SEARCH_RANGE_SETTINGS.crushing_margin),
+                * (1 - CRUSHING_END_SETTINGS.crushing_margin),
             )
         if self.varied_parameter == "k1":
             start = max(
                 start,
                 self.fixed_parameters["F"]
-                / (self._crushing_force_ratio * (1 - SEARCH_RANGE_SETTINGS.crushing_margin)),
+                / (self._crushing_force_ratio * (1 - CRUSHING_END_SETTINGS.crushing_margin)),
             )
         if not start < stop:
             return None
