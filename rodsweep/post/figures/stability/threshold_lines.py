@@ -21,7 +21,7 @@ CRITICAL_FORCES = (
 )
 """(variable, legend entry, colour, marker, line style) of each kind of threshold. The colours are used if a
 panel has no other colours for its lines."""
-FILE_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "0.3")
+FILE_COLOURS = (*style.LINE_COLOURS[:5], "0.3")
 """Colours of the files in a figure of several files."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""

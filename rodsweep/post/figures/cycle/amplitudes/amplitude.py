@@ -14,11 +14,9 @@ from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
 from ...style import (
-    BLUE,
-    GREEN,
     LABELS,
+    LINE_COLOURS,
     SYMBOLS,
-    VERMILION,
     escape_dollar_signs,
     heading_text,
     legend_below,
@@ -31,12 +29,8 @@ from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
 from .square_root import square_root_laws
 
-BRANCH_LOOKS = tuple(
-    zip(
-        (BLUE, VERMILION, GREEN, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True
-    )
-)
-"""(colour, marker) of each line. The colours are Okabe and Ito's palette."""
+BRANCH_LOOKS = tuple(zip(LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
+"""(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
