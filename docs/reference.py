@@ -38,7 +38,7 @@ from rodsweep.results.layouts.phase_diagram import (
 from rodsweep.results.layouts.spectrum import FORCE_CHANGES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
-from rodsweep.tasks.arm.points import NoRodStatus
+from rodsweep.tasks.arm.point_solver import NoRodStatus
 from rodsweep.tasks.running.job import Job, job_of_file
 
 DOCS = Path(__file__).parent

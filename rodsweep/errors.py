@@ -1,4 +1,5 @@
-"""The two kinds of error that end a command early: bad input, and an incomplete environment.
+"""The two kinds of error that end a command early, bad input and an incomplete environment, and exit
+statuses.
 
 A parameter point that cannot be solved raises no error: the point gets a status (`rodsweep.solve.status`) and
 the sweep continues. Any other exception is a bug.
@@ -8,6 +9,9 @@ from typing import Self
 
 BUG_STATUS = 70
 """Exit status of a bug: EX_SOFTWARE of sysexits.h, "internal software error"."""
+STOPPED_STATUS = 75
+"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
+run."""
 
 
 class Refusal(Exception):

@@ -35,13 +35,13 @@ def has_or_have(count: int) -> str:
 
 
 def count_of_total(count: int, whole: int, noun: str) -> str:
-    """`count` out of the total `whole`, with the noun: `some_of(2, 4, "row")` is "2 of 4 rows"."""
+    """`count` out of the total `whole`, with the noun: `count_of_total(2, 4, "row")` is "2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"
 
 
-def joined(parts: Sequence[str]) -> str:
-    """The parts as an enumeration: `joined(["a", "b", "c"])` is "a, b and c"."""
-    return " and ".join(filter(None, [", ".join(parts[:-1]), *parts[-1:]]))
+def enumeration(parts: Sequence[str], conjunction: str = "and") -> str:
+    """The parts as an enumeration: `enumeration(["a", "b", "c"])` is "a, b and c"; empty without parts."""
+    return f" {conjunction} ".join(filter(None, [", ".join(parts[:-1]), *parts[-1:]]))
 
 
 def duration(seconds: float) -> str:

@@ -37,7 +37,7 @@ LONGEST = (
     "test_paper",
     "test_arm_grids",
     "test_figures",
-    "test_joint",
+    "test_sweep_wide_work",
     "test_stop",
     "test_cycle_figures",
     "test_run",

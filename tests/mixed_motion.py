@@ -1,6 +1,7 @@
 """Motion of the rod in its mixed form: rate, Jacobian, energy and reaction, built from the form's parts."""
 
 import numpy as np
+from pointwise_balance import dissipated_power_per_length, energy_per_length
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.mixed_form import MixedForm
@@ -41,13 +42,14 @@ def energy(form, X):
     """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
     S, _ = form.stresses_and_velocities(X)
     return (
-        form.rod.material.energy_per_length(S + along(form.rod.material.tip_stress, S)) @ form.mesh.quadrature
+        energy_per_length(form.rod.material, S + along(form.rod.material.tip_stress, S))
+        @ form.mesh.quadrature
     )
 
 
 def dissipation(form, X):
     """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
     return (
-        form.rod.material.dissipated_power_per_length(form.stresses_and_velocities(X)[1])
+        dissipated_power_per_length(form.rod.material, form.stresses_and_velocities(X)[1])
         @ form.mesh.quadrature
     )

@@ -17,10 +17,10 @@ import click
 import rodsweep as rs
 from rodsweep import errors
 from rodsweep.cli import commands
-from rodsweep.cli.run.running import STOPPED_STATUS
 from rodsweep.config.tasks import CONFIGS
+from rodsweep.errors import STOPPED_STATUS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.post.tables.contents import DEFAULT_TABLE, TABLE_NAMES
+from rodsweep.post.tables.table_names import DEFAULT_TABLE, TABLE_NAMES
 
 STORED = Path(__file__).parent / "reference" / "promises.json"
 DOCS = Path(__file__).parents[1] / "docs"

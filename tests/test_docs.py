@@ -190,7 +190,7 @@ def test_developers_read_the_order_of_the_packages_that_is_enforced():
 
 IDENTIFIER = re.compile(r"(?:rs\.)?([A-Za-z]\w*)")
 PLACED_NAMES = re.compile(r"((?:`\w+`(?:, | and |, and )?)+) in `(rodsweep/[\w/]+\.py)`")
-"""Names said to be in a module, such as "`LAWS` and `LAW_NAMES` in `rodsweep/explore/state.py`"."""
+"""Names said to be in a module, such as "`LAWS` and `law_of` in `rodsweep/model/material/laws.py`"."""
 NAMES_OF_OTHERS = {"Makefile", "NamedTuple", "TypeError", "kernel", "long", "survey_only"}
 """Names on the developers' page of a file, of Python, of marks of pytest, and of the tests' own mark."""
 

@@ -21,7 +21,7 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving import solve_in_process
+from .solving_in_process import solve_in_process
 
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport

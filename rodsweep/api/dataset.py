@@ -13,7 +13,7 @@ from ..config.document.call_arguments import refusing_wrong_arguments
 from ..config.values import short_repr
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES
-from ..results.file.content import SEAL_ATTRIBUTE, attribute_digests, variable_digest
+from ..results.file.content_digests import SEAL_ATTRIBUTE, attribute_digests, variable_digest
 from ..results.file.current_state import (
     insert_records,
     journalled_points,
@@ -28,10 +28,10 @@ from ..results.file.validation import (
     open_checked,
 )
 from ..results.file.view import View
-from ..results.layouts import joint_variables_of_config, layout_of
+from ..results.layouts import layout_of, sweep_wide_variables
 from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
 from ..results.run.journal import journal_directory
-from ..solve.exclusive import one_at_a_time
+from ..solve.solve_lock import one_at_a_time
 
 ENGINE = "h5netcdf"
 """Backend with which xarray reads result files."""
@@ -95,7 +95,7 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
     config: the config as a tree of keys.
     """
-    declared = (*layout.variables, *joint_variables_of_config(config, "point" not in data.dims))
+    declared = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
     places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
     variables = {name: data.variables[name] for name in names}

@@ -8,18 +8,18 @@ from typing import Any, TypedDict, TypeVar
 import numpy as np
 
 from ..config.arm.section import ArmSection
+from ..config.base_config import Config
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.reading import validated_config, with_file_contents
 from ..config.document.refusals import similar_keys
 from ..config.material import MaterialSection
-from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAG_NAMES
 from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
 from ..model.material.build import DEFAULT_BUILD
-from ..solve.exclusive import defer_signals
+from ..solve.solve_lock import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from pydantic import ValidationError
 
-from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS, joined_names
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
 from ..config.material import MaterialSection, with_profile_read
+from ..config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
 from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
 from ..errors import InputError
@@ -21,6 +21,7 @@ from ..model.arm.as_rod import material_section_of, parameters_of
 from ..model.material.build import DEFAULT_BUILD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
+from ..wording import enumeration
 from .answers.answer import Answer
 from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
 from .options import (
@@ -31,7 +32,7 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving import solve_in_process
+from .solving_in_process import solve_in_process
 
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait
@@ -82,7 +83,7 @@ class SoftRod:
         for name in REQUIRED_PARAMETERS:
             if name not in given:
                 raise InputError(
-                    f"{name} is missing; give {joined_names(REQUIRED_PARAMETERS, 'and')}, or an arm"
+                    f"{name} is missing; give {enumeration(REQUIRED_PARAMETERS, 'and')}, or an arm"
                 )
         values = {name: given.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
         self._values = {

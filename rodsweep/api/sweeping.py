@@ -20,7 +20,7 @@ from ..tasks.running.unforeseen_exceptions import describe_exception, log_file
 from ..wording import counted
 from .dataset import open_result
 from .keyword_arguments import ConfigTree, config_tree, job_of_tree, plain_keyword, point_count_of_valid_tree
-from .solving import Display, progress_display, solve_in_process
+from .solving_in_process import Display, progress_display, solve_in_process
 
 COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""

@@ -59,8 +59,8 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
-    """Result of one benchmark.
+class BenchmarkReport:
+    """Report and measurements of one benchmark.
 
     text: report in Markdown. measurements: measurements in the figure. unit: noun for a run, as in "ms a
     point". target: error at which methods are compared. undrawn: further measurements, which are only in the

@@ -35,7 +35,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         from ..bench.limit_cycle.study import limit_cycle_study
         from ..bench.peers import Peers, peer_package, peers_left_out, peers_of_study
         from ..bench.spectrum.study import spectrum_study
-        from ..bench.study import Study
+        from ..bench.study import BenchmarkReport
         from ..bench.sweep.study import sweep_study
         from ..bench.thresholds.study import thresholds_study
     except ModuleNotFoundError as error:
@@ -44,7 +44,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         ) from None
     from ..results.file.measurements import write_measurements
 
-    studies: dict[str, Callable[[bool, Peers], Study]] = {
+    studies: dict[str, Callable[[bool, Peers], BenchmarkReport]] = {
         "spectrum": spectrum_study,
         "thresholds": thresholds_study,
         "limit_cycle": limit_cycle_study,

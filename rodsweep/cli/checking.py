@@ -6,9 +6,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from ..config.arm.axes import SLENDER
 from ..config.arm.quantities import quantities_as_typed
 from ..config.arm.section import ArmSection
+from ..config.arm.status import SLENDER
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
@@ -16,7 +16,7 @@ from ..post.summary.arm.validity import plane_lines, validity_sentence
 from ..post.summary.ranges import span_text
 from ..sweep.cost_estimate import MAX_SAMPLED_POINTS
 from ..sweep.points.points import Points
-from ..tasks.arm.points import NoRodStatus, rod_numbers
+from ..tasks.arm.point_solver import NoRodStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import wall_check

@@ -9,11 +9,9 @@ from .. import __version__
 from ..errors import InputError
 from ..wording import counted
 from .arm_options import arm_options
-from .file_names import link_target, result_file_path, with_suffix_replaced
+from .file_names import FILE_TYPE, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
 
-FILE_TYPE = click.Path(path_type=Path)
-"""Type of arguments and options that name a file."""
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
 )
@@ -75,9 +73,9 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 @click.argument("shards", type=FILE_TYPE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that form a larger grid."""
+    from ..errors import STOPPED_STATUS
     from ..results.file.combination.merge import merge as merge_files
     from ..tasks.running.job import plan_without_solver
-    from .run.running import STOPPED_STATUS
 
     output = result_file_path(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)

@@ -4,10 +4,13 @@ import errno
 import os
 from pathlib import Path
 
-from ..errors import InputError
+import click
 
-RESULT_ENDINGS = (".h5", ".hdf5", ".nc")
-"""Allowed endings of the names of result files."""
+from ..errors import InputError
+from ..results import RESULT_ENDINGS
+
+FILE_TYPE = click.Path(path_type=Path)
+"""Type of arguments and options that name a file."""
 
 
 def result_file_path(path: Path) -> Path:

@@ -10,13 +10,11 @@ from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
-from .file_names import link_target, with_suffix_replaced
+from .file_names import FILE_TYPE, link_target, with_suffix_replaced
 from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
 
 PORT_TYPE = click.IntRange(0, 65535)
 """Type of an option that names a TCP port."""
-FILE_TYPE = click.Path(path_type=Path)
-"""Type of arguments and options that name a file."""
 
 
 @click.command()
@@ -73,8 +71,8 @@ def plot(
 ) -> None:
     """Draw the result FILE, or several: spectra in panels, thresholds or limit cycles in one figure."""
     from ..post.figures import draw
+    from ..post.figures.grid_sections import section_at_values
     from ..post.figures.request import FigureLook
-    from ..post.figures.sections import section_at_values
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 

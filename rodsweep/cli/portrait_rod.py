@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.arm.quantities import LOADS
 from ..model.parameters import PARAMETERS
+from ..solve_progress import SolvePosition, reporting_to
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from ..watch import SolvePosition, reporting_to
 
 if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod
@@ -33,7 +33,7 @@ def rod_of_options(
     section and profile. Values of omitted options are None. A parameter given in addition to an arm replaces
     the arm's parameter.
     """
-    from ..config.axes import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
+    from ..config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
     from ..model.arm.arm import SlenderArm
     from ..post.rod_portrait.results import DescribedRod
     from .arm_report import with_option_names

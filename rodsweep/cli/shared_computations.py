@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ..config.schema import Config
+from ..config.base_config import Config
 from ..results.file.creation import Plan
 from ..solve.backend.availability import require_solvers, start_solvers
 from ..sweep.points.flutter_forces import FlutterForces, flutter_force_of_rod

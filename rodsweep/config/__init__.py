@@ -1,6 +1,6 @@
 """Reads a YAML config and validates it into a frozen `Config`. Knows the names of parameters, no physics."""
 
+from .base_config import Config
 from .document.reading import load_config
-from .schema import Config
 
 __all__ = ["Config", "load_config"]

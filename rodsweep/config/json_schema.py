@@ -20,9 +20,10 @@ from pydantic import BaseModel
 from ..model.arm.quantities import LOAD_OF_RATIO, LOADS, QUANTITIES, SECTION_SIZE_NAMES
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .arm.axes import LOAD_KEYS, NON_LOAD_KEYS
+from .axis import Axis
 from .document.refusals import value_type_of_key
 from .tasks import CONFIGS
-from .values import Axis, StrictSection
+from .values import StrictSection
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"

@@ -3,7 +3,7 @@ options."""
 
 from typing import Any
 
-from .schema import Config
+from .base_config import Config
 from .task.branch import BranchConfig
 from .task.criticality import CriticalityConfig
 from .task.limit_cycle import LimitCycleConfig

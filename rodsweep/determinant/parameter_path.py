@@ -20,19 +20,19 @@ class CoefficientDerivatives(NamedTuple):
     coefficients of D(w). T is linear in p.
     """
 
-    T1: float
+    T_p: float
     """dT/dp."""
-    N1: float
+    N_p: float
     """dN/dp."""
-    N2: float
+    N_pp: float
     """d^2N/dp^2."""
-    G1: float
+    G_p: float
     """dG/dp."""
-    G2: float
+    G_pp: float
     """d^2G/dp^2."""
-    X1: float
+    X_p: float
     """dX/dp."""
-    X2: float
+    X_pp: float
     """d^2X/dp^2."""
 
 
@@ -130,8 +130,8 @@ def exponent_slopes(
     """(dz+/dp, dz-/dp) at w. at: result of `exponent_derivatives` at w. change: derivatives by p."""
     P_p = 0j
     if at.P != 0:
-        P_p = w * (change.G1 + change.X1 * w) / (2 * at.P)
-    return change.T1 * w - change.N1 + 2 * P_p, change.T1 * w - change.N1 - 2 * P_p
+        P_p = w * (change.G_p + change.X_p * w) / (2 * at.P)
+    return change.T_p * w - change.N_p + 2 * P_p, change.T_p * w - change.N_p - 2 * P_p
 
 
 @compiled
@@ -145,11 +145,11 @@ def determinant_along_path(
     parts = even_parts(w, coefficients)
     D, D_w, S, noise = determinant_from_parts(w, coefficients, parts)
     even = parts[0]
-    T1, N1, _, G1, _, X1, _ = coefficient_derivatives(coefficients, direction)
+    T_p, N_p, _, G_p, _, X_p, _ = coefficient_derivatives(coefficients, direction)
     T = c2 + gamma3
     N = (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
-    M1 = T1 * w - N1
-    square1 = w * (G1 + X1 * w)
-    along = T1 * even.s + 4 * (G1 + 2 * X1 * w) * even.d
-    along += M1 * (T * even.s_M + 4 * N * even.d_M) + 4 * square1 * (T * even.d_M + 4 * N * even.d_P)
+    M_p = T_p * w - N_p
+    square_p = w * (G_p + X_p * w)
+    along = T_p * even.s + 4 * (G_p + 2 * X_p * w) * even.d
+    along += M_p * (T * even.s_M + 4 * N * even.d_M) + 4 * square_p * (T * even.d_M + 4 * N * even.d_P)
     return PathDeterminantValue(D, D_w, w / 2 * along, S, noise)

@@ -121,7 +121,7 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
         for side in (e - 1, e):
             rows = element == side
             columns = slice(side * p, (side + 1) * p + 1)
-            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
+            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, to_first_node=side == e)
             weights = out[rows, node].copy()
             out[rows, node] = 0.0
             out[rows, columns] += weights[:, None] * row
@@ -129,22 +129,22 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
         # States contain the mean of both sides at the node of a jump.
         out[node] = 0.0
         for side, share in ((e - 1, before), (e, behind)):
-            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, first=side == e)
+            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, to_first_node=side == e)
             out[node, side * p : (side + 1) * p + 1] += share * row
     return out
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _extrapolation_weights(order: int, starts: bool, stops: bool, first: bool) -> Array:
+def _extrapolation_weights(order: int, starts: bool, stops: bool, to_first_node: bool) -> Array:
     """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
     at jumps.
 
-    starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. first: whether
-    to extrapolate to the first node; otherwise to the last node.
+    starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. to_first_node:
+    whether to extrapolate to the first node; otherwise to the last node.
     """
     x = gauss_lobatto_rule(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.
     used = slice(int(starts), order + 1 - int(stops))
     row = np.zeros(order + 1)
-    row[used] = lagrange_interpolation_matrix(x[used], np.array([-1.0 if first else 1.0]))[0]
+    row[used] = lagrange_interpolation_matrix(x[used], np.array([-1.0 if to_first_node else 1.0]))[0]
     return row

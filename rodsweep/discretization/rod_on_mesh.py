@@ -83,7 +83,7 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         c = self.nodal_rod
-        return _broadcast_to_field(c.rest_strain, S) + _broadcast_to_field(c.compliance, S) * S
+        return broadcast_to_field(c.rest_strain, S) + broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
         """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., elements (order + 1)); at
@@ -103,7 +103,7 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         dS = self.stresses(change)
-        moved = _broadcast_to_field(self.nodal_rod.compliance, dS) * dS
+        moved = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strain_changes(
             _flatten_middle_axes(S),
@@ -131,8 +131,8 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         c = self.nodal_rod
-        nu = _broadcast_to_field(c.rest_strain, S)[0]
-        (c1, c2, c3) = _broadcast_to_field(c.compliance, S)
+        nu = broadcast_to_field(c.rest_strain, S)[0]
+        (c1, c2, c3) = broadcast_to_field(c.compliance, S)
         density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
@@ -188,6 +188,6 @@ def _flatten_middle_axes(field: Array) -> Array:
     return field.reshape(len(field), -1, field.shape[-1])
 
 
-def _broadcast_to_field(constant: Array, field: Values) -> Array:
+def broadcast_to_field(constant: Array, field: Values) -> Array:
     """`constant`, (3, nodes + 1) or (3, 1), reshaped to broadcast against `field`, (3, ..., nodes + 1)."""
     return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)

@@ -47,11 +47,6 @@ class StateLayout:
         """Index in a state of the stress `name` at a node; node 0 is the clamp."""
         return STRESS_NAMES[self.components].index(name) * self.node_count + node
 
-    def stress_at(self, x: Values, name: str, node: int = 0) -> Values:
-        """The stress `name` of states x at one node, (...)."""
-        at: Values = x[..., self.stress_index(name, node)]
-        return at
-
     def transverse_unknowns(self, x: Values) -> Values:
         """All unknowns of planar states x except the axial stress n1, a view; all these unknowns are 0 for a
         straight rod.

@@ -10,8 +10,8 @@ from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tab
 from bokeh.models.css import StyleSheet
 
 from ..post.summary.arm.arm import quantity_words
-from .scales import SCALES, ControlScale, PictureAxis
-from .state import LAW_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
+from .slider_scales import SCALES, ControlScale, PictureAxis
+from .state import MATERIAL_CHOICE_NAMES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 LARGEST_FORCE = "Largest force F (k3/L^2)"
 SLIDER_STEP_COUNT = 400
@@ -94,7 +94,9 @@ class Controls:
         self.tabs = Tabs(tabs=panels, sizing_mode="stretch_width", name="tabs", stylesheets=sheets)
         self.tabs.on_change("active", self._tab_changed)
         choice = partial(Select, sizing_mode="stretch_width", stylesheets=sheets)
-        self.law = choice(title="Law of the material", name="law", options=list(LAW_NAMES.items()))
+        self.law = choice(
+            title="Law of the material", name="law", options=list(MATERIAL_CHOICE_NAMES.items())
+        )
         self.across = choice(title="Second parameter of the diagram", name="across")
         self.F_max = TextInput(
             title=LARGEST_FORCE, name="F_max", sizing_mode="stretch_width", stylesheets=sheets

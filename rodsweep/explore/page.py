@@ -8,19 +8,19 @@ from bokeh.document import Document
 from bokeh.events import Pan, Tap
 
 from ..errors import InputError
-from .contents import PageContents
+from .page_contents import PageContents
 from .pause_timer import PauseTimer
-from .scales import SCALES
 from .sharing import state_from_config_text
-from .solving import needs as kinds
+from .slider_scales import SCALES
+from .solving import question_inputs as kinds
 from .solving.diagrams import has_uniform_rods
-from .solving.needs import AnswerInputs, answer_inputs, state_to_solve
+from .solving.question_inputs import AnswerInputs, answer_inputs, state_to_solve
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
-from .solving.solving_status import progress_text, solving_text
 from .solving.tip_release import Tip
 from .state import PageState, from_address, rod_of
 from .stored_answers import StoredAnswers
+from .texts import progress_text, solving_text
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 """Sentence shown in place of a picture after the user has stopped its solve."""

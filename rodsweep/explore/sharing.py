@@ -15,7 +15,7 @@ from ..errors import InputError
 from .page_style import style_sheet, template_text
 from .pictures.card import Card
 from .state import DEFAULT_F_MAX, PageState
-from .stored import state_from_config
+from .state_of_file import state_from_config
 
 ADDRESS_SCRIPT = 'history.replaceState(null, "", location.pathname + "?" + address.tags[0])'
 """Browser script that writes the state of the page into the address bar."""

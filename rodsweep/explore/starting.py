@@ -23,7 +23,7 @@ def serve_page(source: Path | None, port: int, is_opened: bool) -> None:
     start_fork_server()
     from .server import serve
     from .state import PageState
-    from .stored import page_state_of_file
+    from .state_of_file import page_state_of_file
 
     state, stored = (PageState(), None) if source is None else page_state_of_file(source)
     asyncio.run(serve(state, stored, port, is_opened))

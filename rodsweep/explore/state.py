@@ -17,13 +17,13 @@ from ..config.values import overflows_float, short_repr
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 
-LAWS: dict[str, dict[str, str]] = {
+MATERIAL_CHOICES: dict[str, dict[str, str]] = {
     "linear": {},
     "fixed": {"law": "neo_hookean", "section": "fixed"},
     "swelling": {"law": "neo_hookean", "section": "swelling"},
 }
 """Keys of the config section `material`, by choice of the constitutive law on the page."""
-LAW_NAMES = {
+MATERIAL_CHOICE_NAMES = {
     "linear": "linear",
     "fixed": "neo-Hookean, fixed section",
     "swelling": "neo-Hookean, swelling section",
@@ -63,7 +63,7 @@ class PageState:
     arm: Mapping[str, str] = field(default_factory=lambda: dict(DEFAULT_ARM))
     """Texts on the tab "arm", by name of the quantity."""
     law: str = "linear"
-    """Constitutive law, a key of `LAWS`."""
+    """Constitutive law, a key of `MATERIAL_CHOICES`."""
     across: str = ""
     """Second parameter of the diagram that the user has chosen; empty for the default of the tab."""
     F_max: str = DEFAULT_F_MAX
@@ -93,7 +93,7 @@ class PageState:
         """Rod or arm of the visible tab. For invalid values, raises the same InputError as the command
         line.
         """
-        material: dict[str, Any] = dict(LAWS[self.law])
+        material: dict[str, Any] = dict(MATERIAL_CHOICES[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
         for name, text in self.rod.items():
@@ -131,7 +131,7 @@ class PageState:
         if self.tab == "arm":
             values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in taken}
         tree: dict[str, Any] = {"task": task, "parameters": values if self.tab == "rod" else {"arm": values}}
-        tree |= {"material": dict(LAWS[self.law])} if LAWS[self.law] else {}
+        tree |= {"material": dict(MATERIAL_CHOICES[self.law])} if MATERIAL_CHOICES[self.law] else {}
         if task in LARGEST_FORCE_KEYS:
             tree[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
         return tree_yaml(tree)
@@ -165,7 +165,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
     tab = _require_choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
-    law = _require_choice("law", given.pop("law", state.law), LAWS)
+    law = _require_choice("law", given.pop("law", state.law), MATERIAL_CHOICES)
     across = _require_choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
     state = replace(state, law=law, across=across, F_max=given.pop("F_max", state.F_max))
     known = TAB_DEFAULTS[tab]

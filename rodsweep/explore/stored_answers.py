@@ -4,7 +4,6 @@ import json
 from collections.abc import Collection
 from math import nan
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +14,12 @@ from ..model.parameters import PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
-from .scales import SCALES
+from .slider_scales import SCALES
 from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, flag_words
+from .solving.questions import AnswerVariables
 from .state import PageState
 
-AnswerVariables = dict[str, Any]
-"""Variables of an answer, by name."""
 CONTROL_DIGITS = (5, 6)
 """Numbers of significant digits to which controls round values. A value in a control that equals the rounded
 stored value matches the stored value."""

@@ -2,7 +2,8 @@
 change of a Bokeh `Div` causes a new layout of the whole page.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from html import escape
 
 from bokeh.core.properties import Bool, List, String
 from bokeh.document import Document
@@ -11,6 +12,9 @@ from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
 from .page_style import template_text
+
+KIND_WORDS = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
+"""Name of a kind of question in the text "solving ..."; a kind that is not listed is its own name."""
 
 
 class PageText(DataModel):
@@ -37,3 +41,19 @@ def add_texts(document: Document, texts: Sequence[PageText]) -> None:
         for name in text.properties() & {"text", "kinds", "is_stoppable"}:
             text.js_on_change(name, shown)
         document.js_on_event(DocumentReady, shown)
+
+
+def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
+    """Text "solving ..." for the given kinds of questions; empty if `kinds` is empty. progress: progress as
+    text, by kind.
+    """
+    names = [KIND_WORDS.get(kind, kind) + progress.get(kind, "") for kind in kinds]
+    return f"solving {', '.join(names)} ..." if names else ""
+
+
+def progress_text(words: str, completed_fraction: float | None) -> str:
+    """Progress of a solve as text in parentheses. words: present step of the solve. completed_fraction:
+    completed fraction of the work; None if unknown.
+    """
+    percent = "" if completed_fraction is None else f", {completed_fraction:.0%}"
+    return f" ({escape(words)}{percent})"

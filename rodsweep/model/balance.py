@@ -27,9 +27,6 @@ from .algebra import ALGEBRAS
 Values = NDArray[Any]
 """Components of a deformation, velocity or stress: real, or complex for complex-step derivatives."""
 
-PLANE_COMPONENTS = [0, 1, 5]
-"""Indices of the three components of se(2) among the six components of se(3)."""
-
 
 def ad(E: Values, V: Values) -> Values:
     """ad_E V of two elements E and V of se(2) or se(3), (3, ...) or (6, ...) each; the shapes broadcast."""
@@ -49,15 +46,6 @@ def coad(E: Values, Sigma: Values) -> Values:
     return out
 
 
-def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
-    """Elastic force and moment per length, D*_E Sigma = dSigma + ad*_E Sigma, in k3/L^3 and k3/L^2.
-
-    E: deformation. Sigma: stress. dSigma: derivative of Sigma with respect to u. Each has the shape (3, ...)
-    or (6, ...).
-    """
-    return dSigma + coad(E, Sigma)
-
-
 class Material(NamedTuple):
     """Coefficients of the nonlinear balance of one rod under its tip force F.
 
@@ -71,49 +59,9 @@ class Material(NamedTuple):
     rest_strain: Values
 
     @property
-    def unloaded_strain(self) -> Values:
-        """Ebar, the deformation of the rod without load: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
-        return axial_vector(1.0, len(self.drag))
-
-    @property
     def tip_stress(self) -> Values:
         """Sigma(1), the stress at the tip: (-F, 0, ...), (3,) or (6,)."""
         return axial_vector(-self.F, len(self.drag))
-
-    def strain(self, Sigma: Values) -> Values:
-        """Deformation E = Ebar + C Sigma under the stress Sigma, (3, ...) or (6, ...)."""
-        return (
-            _broadcast_diagonal(self.unloaded_strain, Sigma)
-            + _broadcast_diagonal(self.compliance, Sigma) * Sigma
-        )
-
-    def velocity(self, Sigma: Values, dSigma: Values) -> Values:
-        """Velocity V = Gamma^-1 D*_E Sigma, (3, ...) or (6, ...). All drags must be nonzero.
-
-        Sigma: stress. dSigma: derivative of Sigma with respect to u.
-        """
-        return elastic_force(self.strain(Sigma), Sigma, dSigma) / _broadcast_diagonal(self.drag, Sigma)
-
-    def energy_per_length(self, Sigma: Values) -> Values:
-        """Elastic energy per length, Sigma C Sigma/2, in k3/L^2, shape (...). Sigma: stress, (3, ...) or
-        (6, ...).
-        """
-        return (_broadcast_diagonal(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
-
-    def dissipated_power_per_length(self, V: Values) -> Values:
-        """Dissipated power per length, V Gamma V, in k3/(L^2 tau2), shape (...). V: velocity, (3, ...) or
-        (6, ...).
-        """
-        return (_broadcast_diagonal(self.drag, V) * V * V).sum(axis=0)
-
-
-def embed_in_se3(plane: Values) -> Values:
-    """Embedding in se(3) or its dual space, (6, ...), of an element `plane` of se(2) or its dual space,
-    (3, ...).
-    """
-    space = np.zeros((6, *plane.shape[1:]), plane.dtype)
-    space[PLANE_COMPONENTS] = plane
-    return space
 
 
 def axial_vector(number: float, size: int) -> Values:
@@ -121,10 +69,3 @@ def axial_vector(number: float, size: int) -> Values:
     element = np.zeros(size)
     element[0] = number
     return element
-
-
-def _broadcast_diagonal(diagonal: Values, field: Values) -> Values:
-    """The diagonal of C or Gamma, (d,) or (d, nodes), reshaped to broadcast against `field`,
-    (d, ..., nodes).
-    """
-    return diagonal.reshape(len(diagonal), *(1,) * (field.ndim - diagonal.ndim), *diagonal.shape[1:])

@@ -223,14 +223,6 @@ class Rod:
         slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
         return self.build.section_derivatives(self.sections(u), self.F, self.taper, slopes, u)
 
-    def material_in_space(self, twist_stiffness: float, twist_drag: float) -> Material:
-        """Material of the uniform rod in space. twist_stiffness: in k3. twist_drag: in gamma2 L^2."""
-        c1, c2, bending = self.material.compliance
-        axial, normal, rotational = self.material.drag
-        compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
-        drag = np.array([axial, normal, normal, twist_drag, rotational, rotational])
-        return Material(compliance, drag, self.F, axial_vector(self.nu, 6))
-
     def material_derivative(self, name: str) -> Material:
         """Derivative of `material` with respect to the coordinate of the parameter `name`."""
         slopes = self._derivatives_by_coordinate(name)

@@ -207,7 +207,7 @@ def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch
     counts = [outside[i] if is_cycle else None for is_cycle, i in order]
     is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
     points = tuple(_special_point(v, i) for i in special)
-    return StoredBranch(at, y, period, stability_of_pieces(counts), is_cycle, points)
+    return StoredBranch(at, y, period, stability_between_vertices(counts), is_cycle, points)
 
 
 def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
@@ -217,7 +217,7 @@ def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
     return StoredSpecialPoint(**values | words)
 
 
-def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
+def stability_between_vertices(counts: list[int | None]) -> NDArray[np.integer]:
     """Stability between neighbouring vertices of a branch, (n - 1,): 1 stable, 0 unstable, -1 unknown.
 
     counts: least number of unstable multipliers at n vertices; -1 if unknown, None at special points.

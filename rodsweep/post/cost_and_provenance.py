@@ -26,7 +26,7 @@ def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     ]
 
 
-def origin_lines(a: dict[str, Any]) -> list[str]:
+def provenance_lines(a: dict[str, Any]) -> list[str]:
     """Lines about dates, versions of the software, and BLAS kernels. a: attributes of the result file."""
     return [
         f"computed {_dates_clause(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from ..config.axes import joined_names
 from ..errors import InputError
 from ..results.file.view import View
-from ..wording import counted
+from ..wording import counted, enumeration
 from .output_files import atomic_write
 from .tables.tables import Table, Tables
 
@@ -68,5 +67,5 @@ def _written_table_sentence(table: Table, view: View) -> str:
     if table.empty_points:
         text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"
     if table.other_tables:
-        text += f"; --table takes {joined_names(table.other_tables, 'or')} instead"
+        text += f"; --table takes {enumeration(table.other_tables, 'or')} instead"
     return text

@@ -12,9 +12,8 @@ from math import inf, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.parameters import OPTIONAL_PARAMETERS
+from ..model.parameters import OPTIONAL_PARAMETERS, TRANSVERSE_PARAMETERS
 from ..results.file.view import View
-from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
@@ -85,10 +84,10 @@ class StoredThresholds:
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth_rates = v[growth].reshape(points, -1)[:, 0]
         absent = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
-        self.other_parameters = [other for other in HOPF_ALONG if other not in {name, *absent}]
+        self.other_parameters = [other for other in TRANSVERSE_PARAMETERS if other not in {name, *absent}]
         self.thresholds_by_rod: dict[tuple[float, ...], list[LocatedThreshold]] = {}
         if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
-            self._add_thresholds(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
+            self._add_thresholds(v, name, "hopf", v["hopf_along"] == TRANSVERSE_PARAMETERS.index(name))
         if "change_kind" in v and name == "F":
             self._add_thresholds(v, name, "change", np.ones(len(v["change_kind"]), bool))
 

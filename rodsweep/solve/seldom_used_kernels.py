@@ -17,7 +17,7 @@ from ..model.rod import Rod
 from .changes.thresholds import ThresholdsRequest, solve_thresholds
 from .cycle.limit_cycle import solve_cycle
 from .cycle.reference_rod import REFERENCE_REQUEST
-from .orbit.matrix.linearisation import parameter_derivatives, reduced_variations
+from .orbit.matrix.linearisation import parameter_derivatives, reduced_variation_sides
 from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
@@ -77,6 +77,6 @@ def warm_up_uniform() -> None:
     memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknown_count)
     variations = np.zeros((1, len(orbit.values) + 1))
     of_rod = orbit.semidiscrete_equations
-    reduced_variations(
+    reduced_variation_sides(
         orbit.values, of_rod, parameter_derivatives(form, "F"), variations, of_rod, memory.factors
     )

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.material.build import Build
 from ..model.material.laws import LINEAR
-from .cost_estimate import Estimate, sampled_points
+from .cost_estimate import CostEstimate, sampled_points
 from .points.points import Points
 
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
@@ -32,7 +32,7 @@ MAX_MEASURED_LOAD = 0.9
 holds."""
 
 
-def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
+def branches_cost(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> CostEstimate:
     """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
 
     reach: smallest and largest value of this parameter. accuracy: relative accuracy of the cycles. For kinds
@@ -48,9 +48,11 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
     # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
     each = per_force * F / taper**2 * (1 + F / (values["k2"] * weakest)) ** BRANCH_BENDING_EXPONENT
     if not indices.size:
-        return Estimate(0.0)
+        return CostEstimate(0.0)
     builds = [points.build_of(int(index)) for index in indices]
-    return Estimate(float(np.mean(each)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper))
+    return CostEstimate(
+        float(np.mean(each)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper)
+    )
 
 
 def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:

@@ -13,7 +13,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from ..watch import SolvePosition
+from ..solve_progress import SolvePosition
 from .chunk_queue import NO_WORK_LEFT, ChunkQueue, RankReport
 from .points.ranges import IndexRange
 from .stop import StopRequest

@@ -95,7 +95,7 @@ BASE_MEMORY = 200_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class CostEstimate:
     """Estimated cost of a sweep on a single core like the core described in docs/performance.md."""
 
     seconds: float
@@ -112,20 +112,20 @@ class Estimate:
     expected to hold within a factor of about two."""
 
 
-def estimate_searches(lines: int, certify: bool, of_arms: bool) -> Estimate:
+def searches_cost(lines: int, certify: bool, of_arms: bool) -> CostEstimate:
     """Estimated cost of `lines` searches for crossings, each of one rod along one parameter.
 
     certify: whether each search is certified. of_arms: whether any arm is not uniform.
     """
     uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
-    return Estimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
+    return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
 
 
-def estimate_thresholds(points: Points, F_max: float, certify: bool, of_arms: bool) -> Estimate:
+def thresholds_cost(points: Points, F_max: float, certify: bool, of_arms: bool) -> CostEstimate:
     """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
     whether each list is certified. of_arms: whether any arm is not uniform.
     """
-    lines = estimate_searches(points.count, certify, of_arms)
+    lines = searches_cost(points.count, certify, of_arms)
     indices = sampled_points(points)
     if of_arms or not indices.size:
         return lines
@@ -135,27 +135,27 @@ def estimate_thresholds(points: Points, F_max: float, certify: bool, of_arms: bo
     return replace(lines, seconds=lines.seconds + more)
 
 
-def estimate_diagram(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> Estimate:
+def diagram_cost(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> CostEstimate:
     """Estimated cost of a phase diagram of `rows` rows, without limit cycles.
 
     certify: whether each row is certified. of_arms: whether any arm is not uniform. curves, criticality:
     whether boundary curves and their criticality are computed; the cost for uniform rods is neglected.
     """
-    lines = estimate_searches(rows, certify, of_arms)
+    lines = searches_cost(rows, certify, of_arms)
     more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
     return replace(lines, seconds=lines.seconds + more * of_arms)
 
 
-def estimate_criticality(rods: int, certify: bool, of_arms: bool) -> Estimate:
+def criticality_cost(rods: int, certify: bool, of_arms: bool) -> CostEstimate:
     """Estimated cost of the Hopf points and normal forms of `rods` rods. certify: whether each search is
     certified. of_arms: whether any rod is not uniform.
     """
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
-    return Estimate(rods * 1e-3 * each)
+    return CostEstimate(rods * 1e-3 * each)
 
 
-def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
+def modes_cost(spectra: CostEstimate, count: int, modes: int, growth: bool) -> CostEstimate:
     """Cost of `modes` eigenvectors at each of `count` points, from the cost `spectra` of the eigenvalues.
 
     growth: whether the transient growth is computed too.
@@ -164,7 +164,9 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
-def estimate_followed(alone: Estimate, stretches: Stretches, points: Points, modes: int) -> Estimate:
+def followed_spectra_cost(
+    alone: CostEstimate, stretches: Stretches, points: Points, modes: int
+) -> CostEstimate:
     """Estimated cost of the spectra of `points` followed along stretches. alone: cost of solving every point
     alone. modes: number of eigenvalues.
     """
@@ -179,16 +181,16 @@ def estimate_followed(alone: Estimate, stretches: Stretches, points: Points, mod
     return replace(alone, seconds=alone.seconds * min(1.0, share) + points.count * 1e-3 * each)
 
 
-def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
+def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate:
     """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. modes: number of eigenvalues.
     accuracy: relative accuracy.
     """
-    alone = estimate_spectra(points, modes, accuracy, certify=False)
+    alone = spectra_cost(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH_RATIO * alone.unknowns[1]))
     return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
-def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
+def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> CostEstimate:
     """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
     none of these points has a rod. modes: number of eigenvalues. accuracy: relative accuracy. certify:
     whether spectra are certified.
@@ -196,7 +198,7 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
-        return Estimate(0.0)
+        return CostEstimate(0.0)
     varied = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
     dense = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
@@ -207,7 +209,7 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     each += varied * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
-    return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
+    return CostEstimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
 
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:

@@ -11,7 +11,7 @@ from ..discretization.elements.resolution import expected_wave_number, resolutio
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
-from ..solve.changes.unstable_modes import end_below_crushing
+from ..solve.changes.search_range import end_below_crushing
 from .cost_estimate import sampled_points
 from .points.points import Points
 

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..watch import SolveStopped, reporting_to
+from ..solve_progress import SolveStopped, reporting_to
 from .chunk_queue import MAX_CHUNK_TIME_RATIO, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from .chunk_requests import FirstRankRequests, OtherRankRequests
 from .points.ranges import IndexRange

@@ -12,7 +12,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Protocol
 
-from ..watch import PositionMaker, SolvePosition, SolveStopped
+from ..solve_progress import PositionMaker, SolvePosition, SolveStopped
 
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""

@@ -73,7 +73,7 @@ class CertifiedTask(Task):
         if not getattr(self.config, task).certify:
             return False, f"{task}.certify: false; {self.uncertified_risk}"
         proof = "winding number of D"
-        if self.count_location == "line" and not self.config.standard:
+        if self.count_location == "line" and not self.config.is_uniform_and_linear:
             proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
         if self.count_location == "point" and self._has_varying_arm:
             proof += ", estimated in part"

@@ -9,8 +9,8 @@ import numpy as np
 from ..config.task.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.branch_cost import estimate_branches
-from ..sweep.cost_estimate import Estimate
+from ..sweep.branch_cost import branches_cost
+from ..sweep.cost_estimate import CostEstimate
 from .base_classes import NonlinearTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -18,7 +18,7 @@ from .protocol import CheckRow, Solver
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
-    from ..solve.branch.special.point import SpecialPoint
+    from ..solve.branch.special.special_point import SpecialPoint
     from ..solve.changes.kinds import Threshold
 
 
@@ -52,10 +52,10 @@ class BranchTask(NonlinearTask):
         options = self.config.branch
         return {options.along: np.array([options.start, options.stop])}
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         options = self.config.branch
         reach = (options.start, options.stop)
-        return estimate_branches(self.points, options.along, reach, self.config.accuracy)
+        return branches_cost(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
         from ..solve.branch.branch_request import BranchRequest

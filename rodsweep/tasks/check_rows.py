@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ..config.schema import Config
+from ..config.base_config import Config
 from ..discretization.elements.elements import Elements
 from ..model.material.profile import Profile
 from ..model.parameters import PARAMETERS, Parameter
@@ -17,7 +17,7 @@ def crushing_clause(config: Config) -> str:
     """Clause stating that a search along F ends below the force that crushes the arm; empty if no force
     crushes the arm.
     """
-    if config.standard:
+    if config.is_uniform_and_linear:
         return ", or to just below k1"
     crushed = np.isfinite(config.build.constitutive_law.crushing_load)
     return ", or to just below the force that crushes the weakest section" * bool(crushed)
@@ -56,7 +56,7 @@ def material_check_rows(config: Config, columns: Mapping[str, np.ndarray]) -> li
     Empty for uniform arms of linear material. columns: values of the rods' parameters by name, arrays of any
     shape.
     """
-    if config.standard:
+    if config.is_uniform_and_linear:
         return []
     shapes = _shape_texts(config, columns)
     return [
@@ -74,7 +74,7 @@ def arms_line(
     Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
     first_mesh: function that returns the initial mesh.
     """
-    if config.standard:
+    if config.is_uniform_and_linear:
         return ""
     shapes = _shape_texts(config, columns) or ["a uniform arm"]
     if len(shapes) == 1 and shapes[0].startswith(("a profile", "a smooth profile")):

@@ -8,7 +8,7 @@ import numpy as np
 from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_criticality
+from ..sweep.cost_estimate import CostEstimate, criticality_cost
 from .base_classes import NonlinearTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -40,9 +40,9 @@ class CriticalityTask(NonlinearTask):
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.criticality.F_max])}
 
-    def cost(self) -> Estimate:
-        of_arms = not self.config.standard
-        return estimate_criticality(self.points.count, self.config.criticality.certify, of_arms)
+    def cost(self) -> CostEstimate:
+        of_arms = not self.config.is_uniform_and_linear
+        return criticality_cost(self.points.count, self.config.criticality.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up
@@ -58,12 +58,13 @@ class CriticalityTask(NonlinearTask):
         )
 
 
-def criticality_values(result: "Criticality", most: int) -> dict[str, Any]:
-    """Variables of the file for the Hopf points of a rod; most: length of the list of Hopf points."""
-    search = crossing_values(result, most, "F", "crossing_F")
+def criticality_values(result: "Criticality", max_crossings: int) -> dict[str, Any]:
+    """Variables of the file for the Hopf points of a rod; max_crossings: length of the list of Hopf
+    points."""
+    search = crossing_values(result, max_crossings, "F", "crossing_F")
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.hopf_points, strict=False)
     rows = [outcome_values(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
     ends = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
-    return search | ends | value_lists(NORMAL_FORM, rows, most)
+    return search | ends | value_lists(NORMAL_FORM, rows, max_crossings)

@@ -23,7 +23,7 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
-from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
+from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, CostEstimate
 from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import require_in_range
@@ -162,12 +162,12 @@ class LimitCycleTask(Task):
         total = self.points.count * each
         return what, True, f"{each} per point{nodes}, {total} in total: {8e-6 * values:.3g} MB"
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         if self.config.limit_cycle.method == "integration":
-            return Estimate(self.points.count * MARCHED_CYCLE_SECONDS)
+            return CostEstimate(self.points.count * MARCHED_CYCLE_SECONDS)
         first = self.chains.count if self.chains else self.points.count
         rest = self.points.count - first
-        return Estimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
+        return CostEstimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
 
     def solver(self) -> Solver:
         from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle

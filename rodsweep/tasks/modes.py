@@ -14,7 +14,7 @@ from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH_VARIABLES, MODE_NUMBERS
 from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
 from ..results.layouts.variables import FilledVariable, outcome_values
-from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
+from ..sweep.cost_estimate import CostEstimate, modes_cost, spectra_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .base_classes import CertifiedTask
 from .check_rows import points_text
@@ -42,7 +42,7 @@ class ModesTask(CertifiedTask):
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
         as in `Task.variables_from_points`.
         """
-        return force_change_variables(self.points, values) if self.config.standard else ()
+        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
         options = self.config.modes
@@ -63,12 +63,12 @@ class ModesTask(CertifiedTask):
             self.points, lambda rod: spectrum_mesh(rod, self.config.modes.modes, accuracy)
         )
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         options = self.config.modes
-        spectra = estimate_spectra(
+        spectra = spectra_cost(
             self.points, options.modes, mesh_accuracy(self.config.accuracy, False), options.certify
         )
-        return estimate_modes(spectra, self.points.count, options.modes, options.growth)
+        return modes_cost(spectra, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:
         from ..solve.modes.leading_modes import ModesRequest, solve_modes

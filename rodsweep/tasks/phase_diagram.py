@@ -8,11 +8,11 @@ import numpy as np
 from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
-from ..sweep.branch_cost import estimate_branches
-from ..sweep.cost_estimate import Estimate, estimate_diagram
+from ..sweep.branch_cost import branches_cost
+from ..sweep.cost_estimate import CostEstimate, diagram_cost
 from .base_classes import CertifiedTask
+from .diagram.curve_variables import cycles_record
 from .diagram.curves import DiagramCurves
-from .diagram.records import cycles_record
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
@@ -87,17 +87,15 @@ class PhaseDiagramTask(CertifiedTask):
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")
         return [*linear[:-1], nonlinear, ("gravity, inertia", False, "not part of the model")]
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         options = self.config.phase_diagram
-        of_arms = not self.config.standard
+        of_arms = not self.config.is_uniform_and_linear
         asked = options.certify, of_arms, options.curves, options.criticality
-        lines = estimate_diagram(self.points.count, *asked)
+        lines = diagram_cost(self.points.count, *asked)
         if not options.cycles:
             return lines
         reach = (float(self.line_values[0]), float(self.line_values[-1]))
-        branches = estimate_branches(
-            self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy
-        )
+        branches = branches_cost(self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy)
         return replace(branches, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
@@ -115,7 +113,7 @@ class PhaseDiagramTask(CertifiedTask):
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod_of_row(index), request),
             record=lambda index, result: row_values(result, request.parameter_name, request.max_thresholds),
-            joint_variables=curves if options.curves else None,
+            sweep_wide_solver=curves if options.curves else None,
         )
         if not options.cycles:
             return of_rows
@@ -158,12 +156,12 @@ class PhaseDiagramTask(CertifiedTask):
         )
 
 
-def row_values(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
+def row_values(result: "DiagramRow", line: str, max_crossings: int) -> dict[str, Any]:
     """Variables of the file for one row.
 
-    line: parameter that varies along the row. most: length of the list of crossings.
+    line: parameter that varies along the row. max_crossings: length of the list of crossings.
     """
     classes = {"class": result.rod_class, "unstable_count": result.unstable_count}
-    changes = crossing_values(result.thresholds, most, line, "crossing_at")
+    changes = crossing_values(result.thresholds, max_crossings, line, "crossing_at")
     certified = result.thresholds.search_result.proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

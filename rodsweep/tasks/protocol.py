@@ -11,7 +11,7 @@ from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..sweep.chunk_queue import ItemChooser
-from ..sweep.cost_estimate import Estimate
+from ..sweep.cost_estimate import CostEstimate
 from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveStretch, Stretches
@@ -35,7 +35,7 @@ class WorkItems(ItemChooser, Protocol):
         """Text describing an item, for the progress display and the log."""
 
 
-class JointVariables(Protocol):
+class SweepWideSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
     def work_items(self, view: View) -> WorkItems | None:
@@ -80,7 +80,7 @@ class Solver:
     """Solves the point at a flat index; returns an outcome with the attributes `status` and `message`."""
     record: Callable[[int, Any], dict[str, Any]]
     """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
-    joint_variables: JointVariables | None = None
+    sweep_wide_solver: SweepWideSolver | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
     chained: ChainedWork | None = None
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
@@ -90,25 +90,26 @@ class Solver:
     instead of `solve`; None if no points are solved together."""
 
     def with_wrapper(
-        self, around: SolveWrapper, together: SolveStretch | None = None, **changed: Any
+        self, solve_wrapper: SolveWrapper, solve_stretch: SolveStretch | None = None, **changed: Any
     ) -> "Solver":
-        """A copy of the solver with the solve of every point wrapped by `around`, and with the fields in
-        `changed`.
+        """A copy of the solver with the solve of every point wrapped by `solve_wrapper`, and with the fields
+        in `changed`.
 
-        together: new function that solves a stretch, if the solver has stretches.
+        solve_stretch: new function that solves a stretch, if the solver has stretches.
         """
         chained = self.chained
         stretched = self.stretched
         if chained is not None:
             step = chained.solve_from
             chained = replace(
-                chained, solve_from=lambda index, state: around(index, state, lambda: step(index, state))
+                chained,
+                solve_from=lambda index, state: solve_wrapper(index, state, lambda: step(index, state)),
             )
-        if stretched is not None and together is not None:
-            stretched = stretched[0], together
+        if stretched is not None and solve_stretch is not None:
+            stretched = stretched[0], solve_stretch
 
         def solve(index: int) -> Any:
-            return around(index, None, lambda: (self.solve(index), None))[0]
+            return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
 
         return replace(self, solve=solve, chained=chained, stretched=stretched, **changed)
 
@@ -175,7 +176,7 @@ class Task(ABC):
         """Rows of the table, printed by `check`, of modelled and neglected effects."""
 
     @abstractmethod
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         """Estimated cost of the run."""
 
     @abstractmethod

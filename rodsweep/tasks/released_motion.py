@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..discretization.elements.quadrature import lobatto_points
-from ..solve.exclusive import exclusive_solve
+from ..solve.solve_lock import exclusive_solve
 from .limit_cycle import LimitCycleTask
 from .running.in_memory import blas_pool
 from .running.job import Job

@@ -24,7 +24,7 @@ from ..results.layouts.spectrum import (
     longitudinal_variables,
 )
 from ..results.layouts.variables import FilledVariable, outcome_values
-from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
+from ..sweep.cost_estimate import CostEstimate, followed_spectra_cost, spectra_cost, two_meshes_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .base_classes import CertifiedTask
@@ -59,7 +59,7 @@ class SpectrumTask(CertifiedTask):
     @property
     def stretches(self) -> Stretches | None:
         """Stretches of points along which eigenvalues are followed; None if eigenvalues are not followed."""
-        if not self.config.follows:
+        if not self.config.follows_eigenvalues:
             return None
         return stretches_along_longest_axis(self.points.shape, self.points.varying_parameters)
 
@@ -79,9 +79,9 @@ class SpectrumTask(CertifiedTask):
             return ()
         along, shape, columns = self._longitudinal_points()
         modes = self.config.spectrum.modes
-        standard = self.config.standard
-        variables = longitudinal_variables(gamma1, *along, in_closed_form=standard)
-        if standard:
+        in_closed_form = self.config.is_uniform_and_linear
+        variables = longitudinal_variables(gamma1, *along, in_closed_form=in_closed_form)
+        if in_closed_form:
             rates = [longitudinal_eigenvalues(float(k1), gamma1, modes) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*shape, modes))),)
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
@@ -97,7 +97,7 @@ class SpectrumTask(CertifiedTask):
         """
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
-        depends_on = longitudinal_parameters(self.config.standard, linear)
+        depends_on = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
         names = [name for name in depends_on if name in points.columns_by_name]
         columns = {name: points.columns_by_name[name] for name in names}
         if points.arm_axes or not points.is_grid:
@@ -110,7 +110,7 @@ class SpectrumTask(CertifiedTask):
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
         as in `Task.variables_from_points`.
         """
-        return force_change_variables(self.points, values) if self.config.standard else ()
+        return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
         return f"{points_text(self.points)}, {self.config.spectrum.modes} leading modes each"
@@ -122,7 +122,9 @@ class SpectrumTask(CertifiedTask):
         if options.vectors:
             vectors = f"on {options.nodes} nodes"
         if options.longitudinal:
-            longitudinal = "closed form, no mesh" if self.config.standard else "on elements of their own"
+            longitudinal = (
+                "closed form, no mesh" if self.config.is_uniform_and_linear else "on elements of their own"
+            )
         return [
             ("transverse modes", True, "task: spectrum"),
             ("longitudinal modes", options.longitudinal, longitudinal),
@@ -141,15 +143,15 @@ class SpectrumTask(CertifiedTask):
             return CertifiedTask.certificate(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.uncertified_risk}"
 
-    def cost(self) -> Estimate:
+    def cost(self) -> CostEstimate:
         options = self.config.spectrum
         if options.method == "krylov_schur":
-            return estimate_two_meshes(self.points, options.modes, self.config.accuracy)
+            return two_meshes_cost(self.points, options.modes, self.config.accuracy)
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
-        alone = estimate_spectra(self.points, options.modes, accuracy, self.config.certifies)
+        alone = spectra_cost(self.points, options.modes, accuracy, self.config.certifies)
         if self.stretches is None:
             return alone
-        return estimate_followed(alone, self.stretches, self.points, options.modes)
+        return followed_spectra_cost(alone, self.stretches, self.points, options.modes)
 
     def solver(self) -> Solver:
         from ..solve.spectrum.path.neighbouring_rods import warm_up as warm_up_following

@@ -10,7 +10,7 @@ import numpy as np
 from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import Estimate, estimate_thresholds
+from ..sweep.cost_estimate import CostEstimate, thresholds_cost
 from .base_classes import CertifiedTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -49,10 +49,10 @@ class ThresholdsTask(CertifiedTask):
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.thresholds.F_max])}
 
-    def cost(self) -> Estimate:
-        of_arms = not self.config.standard
+    def cost(self) -> CostEstimate:
+        of_arms = not self.config.is_uniform_and_linear
         options = self.config.thresholds
-        return estimate_thresholds(self.points, options.F_max, options.certify, of_arms)
+        return thresholds_cost(self.points, options.F_max, options.certify, of_arms)
 
     def solver(self) -> Solver:
         from ..solve.changes.status import ThresholdStatus
@@ -68,28 +68,30 @@ class ThresholdsTask(CertifiedTask):
         )
 
 
-def threshold_values(result: "Thresholds", most: int) -> dict[str, Any]:
-    """Variables of the file for the thresholds of a rod; most: length of the list of crossings."""
+def threshold_values(result: "Thresholds", max_crossings: int) -> dict[str, Any]:
+    """Variables of the file for the thresholds of a rod; max_crossings: length of the list of crossings."""
     values = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
     for kind, number in FIRST_CROSSINGS.items():
         kind_index = CROSSING_KINDS.index(kind)
         first = next((crossing for crossing in result.thresholds if crossing.kind == kind_index), None)
         for name, field in ((f"F_{kind}", "value"), (f"{kind}_{number}", number)):
             values[name] = getattr(first, field, np.nan)
-    return values | crossing_values(result, most, "F", "crossing_F")
+    return values | crossing_values(result, max_crossings, "F", "crossing_F")
 
 
-def crossing_values(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
+def crossing_values(
+    result: "Thresholds | Criticality", max_crossings: int, line: str, at: str
+) -> dict[str, Any]:
     """Variables of the file for a search for crossings along the parameter `line`.
 
-    most: length of the list of crossings. at: name of the variable with the parameter value at a crossing.
-    """
+    max_crossings: length of the list of crossings. at: name of the variable with the parameter value at a
+    crossing."""
     found = result.search_result
     variables = crossing_variables(line, at)
     rows = [
         outcome_values(variables, each, prefix="crossing_", names={at: "value"}) for each in found.thresholds
     ]
-    return value_lists(variables, rows, most) | {
+    return value_lists(variables, rows, max_crossings) | {
         "crossing_count": -1 if result.status == type(result.status).failed else len(found.thresholds),
         "open_from": found.open_range[0],
         "open_to": found.open_range[1],

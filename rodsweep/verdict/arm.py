@@ -1,5 +1,6 @@
 """Report on an arm: warnings, verdict, table of numbers with formulas, and checks of neglected effects."""
 
+import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
@@ -8,16 +9,17 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
 from .checks import Check, checks_of
 from .load import Load
+from .number_rows import NumberRow, number_rows
 from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
-from .table import NumberRow, number_rows
-from .text_wrapping import wrapped_text
 from .validity import Assessment
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
 """Sentence below the table of numbers, which explains the values in brackets."""
 VALUE_COLUMN = 18
 """Width of the table's first column (names of the numbers), in characters."""
+LINE_WIDTH = 80
+"""Width of a wrapped line, in characters."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,18 +47,18 @@ class ArmReport:
         "headline" or "".
         """
         for check in self.warnings:
-            yield wrapped_text(check.text), "warning"
+            yield _wrapped(check.text), "warning"
         for number, sentence in enumerate(self.verdict):
-            yield wrapped_text(sentence), "" if number else "headline"
+            yield _wrapped(sentence), "" if number else "headline"
         yield "", ""
         for name, value, formula, source in self.rows:
             place = " " * VALUE_COLUMN
             yield f"{name:{VALUE_COLUMN}}{value}", ""
-            yield wrapped_text(f"{formula}; {source}", place, place + "  "), ""
+            yield _wrapped(f"{formula}; {source}", place, place + "  "), ""
         yield BRACKETS_NOTE, ""
         yield "", ""
         for check in self.checks:
-            yield wrapped_text(check.text), "" if check.is_negligible else "warning"
+            yield _wrapped(check.text), "" if check.is_negligible else "warning"
 
     def _repr_html_(self) -> str:
         warnings = "".join(f"<p>{escape(check.text)}</p>" for check in self.warnings)
@@ -90,3 +92,8 @@ def arm_report(arm: SlenderArm) -> ArmReport:
         rows=tuple(number_rows(first)),
         checks=tuple(check for check in checks if check not in above),
     )
+
+
+def _wrapped(text: str, first: str = "", further: str = "  ") -> str:
+    """`text` wrapped to LINE_WIDTH. first, further: indents of the first line and of the following lines."""
+    return textwrap.fill(text, LINE_WIDTH, initial_indent=first, subsequent_indent=further)

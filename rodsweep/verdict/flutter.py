@@ -10,8 +10,8 @@ from ..model.arm.drag import Drag
 from ..solve.changes.kinds import ChangeKind, Threshold
 from ..solve.changes.status import ThresholdStatus
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
-from ..solve.exclusive import exclusive_solve
-from .relative import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
+from ..solve.solve_lock import exclusive_solve
+from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""

@@ -10,7 +10,7 @@ from ..model.arm.quantities import UNITS
 from ..model.units import with_si_prefix
 from ..solve.changes.kinds import ChangeKind
 from .flutter import ThresholdsOverDrags, thresholds_over_drags
-from .relative import with_exchanged_sides
+from .relative_load import with_exchanged_sides
 
 A = TypeVar("A", bound=SlenderArm)
 
@@ -60,7 +60,7 @@ def planes_of(arm: SlenderArm) -> Planes:
     """Planes of motion of an arm, each with its solved thresholds: two for a rectangular section with unequal
     sides, in order of the flutter load for the likeliest drag; otherwise one.
     """
-    if arm.is_equally_stiff:
+    if arm.is_equally_stiff_in_all_planes:
         return Planes(PlaneOfMotion(arm, thresholds_over_drags(arm)))
     other = with_exchanged_sides(arm)
     own = PlaneOfMotion(arm, thresholds_over_drags(arm), "the plane of its height")

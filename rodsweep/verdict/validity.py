@@ -11,15 +11,15 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import (
     Effect,
     Validity,
+    angular_frequency_at_smallest_drag,
     compression_effect,
     equivalent_base_force,
-    largest_angular_frequency,
     neglected_effects,
     worst_validity,
 )
 from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
 from ..solve.changes.kinds import ChangeKind, Threshold
-from ..solve.exclusive import exclusive_solve
+from ..solve.solve_lock import exclusive_solve
 from .flutter import ThresholdsOverDrags, thresholds_with_drag
 
 REMEDY_DIGITS = 2
@@ -109,7 +109,9 @@ def effects_at_flutter(arm: SlenderArm, found: ThresholdsOverDrags) -> tuple[Eff
     if first is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
-        arm, largest_angular_frequency(arm, abs(first.frequency)), equivalent_base_force(arm, first.value)
+        arm,
+        angular_frequency_at_smallest_drag(arm, abs(first.frequency)),
+        equivalent_base_force(arm, first.value),
     )
 
 

@@ -10,7 +10,7 @@ import rodsweep as rs
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.api.solved import StoredResult
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.post.tables.contents import TABLE_NAMES
+from rodsweep.post.tables.table_names import TABLE_NAMES
 
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 FOLDED = {"k1": 150, "k2": 1e4, "gamma3": 1e-4}

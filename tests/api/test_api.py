@@ -22,8 +22,8 @@ from rodsweep.api import options
 from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
+from rodsweep.config.base_config import Config
 from rodsweep.config.document.reading import tree_yaml
-from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.post.figures import draw
@@ -558,9 +558,12 @@ def test_other_attributes_of_a_rod_are_refused():
 def test_what_is_no_result_is_not_opened(tmp_path):
     xr.Dataset({"x": 1}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
     (tmp_path / "x.h5").write_text("text")
-    with pytest.raises(rs.InputError, match="is not a result of rodsweep"):
+    with pytest.raises(
+        rs.InputError,
+        match="x.nc cannot be read as a result of rodsweep: the file was not written by rodsweep",
+    ):
         rs.open(tmp_path / "x.nc")
-    with pytest.raises(rs.InputError, match="is not a complete rodsweep result file"):
+    with pytest.raises(rs.InputError, match="cannot be read as a result of rodsweep"):
         rs.open(tmp_path / "x.h5")
 
 

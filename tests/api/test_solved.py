@@ -11,7 +11,7 @@ import pytest
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.api.solving import solve_in_process
+from rodsweep.api.solving_in_process import solve_in_process
 
 ROD = {"F": 30, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}

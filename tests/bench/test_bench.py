@@ -21,7 +21,7 @@ from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import (
     ARM_RODS,
-    UnsolvedArms,
+    UncachedArms,
     arm_table,
     exact_arm_spectrum,
     measure_arm_spectra,
@@ -43,7 +43,14 @@ from rodsweep.bench.spectrum.study import (
     measure_hard_rods,
     spectrum_study,
 )
-from rodsweep.bench.study import Contender, Measurement, Study, every_nth_setting, measure_case, time_runs
+from rodsweep.bench.study import (
+    BenchmarkReport,
+    Contender,
+    Measurement,
+    every_nth_setting,
+    measure_case,
+    time_runs,
+)
 from rodsweep.cli.benching import machine_attributes
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
@@ -100,7 +107,7 @@ def test_exact_eigenvalues_of_arms_are_those_of_another_code(rod):
 
 def test_no_arm_is_solved_twice():
     """A solved arm is kept, and its second spectrum would cost nothing."""
-    arm = UnsolvedArms(ARM_RODS["cone"])
+    arm = UncachedArms(ARM_RODS["cone"])
     forces = [arm.next_arm().F for _ in range(60)]
     assert len(set(forces)) == 60
     assert forces[-1] < ARM_RODS["cone"].F * (1 + 1e-13)
@@ -186,7 +193,9 @@ def test_numbers_of_a_study_are_in_the_file(tmp_path):
         Measurement("c", "m", "s", 0.5, 1e-3, "g", extra={"steps": 3.0}),
         Measurement("c", "n", "", 1.0, np.inf),
     )
-    write_measurements(tmp_path / "a.h5", {"x": Study("x", "", rows).table()}, {"processor": "none"})
+    write_measurements(
+        tmp_path / "a.h5", {"x": BenchmarkReport("x", "", rows).table()}, {"processor": "none"}
+    )
     with h5py.File(tmp_path / "a.h5") as file:
         assert file.attrs["processor"] == "none"
         assert file["x/seconds"][:].tolist() == [0.5, 1.0]
@@ -196,7 +205,7 @@ def test_numbers_of_a_study_are_in_the_file(tmp_path):
 
 
 def test_study_without_errors_has_no_figure():
-    assert not Study("x", "", (Measurement("c", "m", "s", 0.5, np.nan),)).is_drawable
+    assert not BenchmarkReport("x", "", (Measurement("c", "m", "s", 0.5, np.nan),)).is_drawable
 
 
 @pytest.mark.parametrize("name", ["nowhere/a.md", "a.png", "a.h5", "."])

@@ -134,9 +134,9 @@ def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
             into.extend(row(k, 10, ranks[-1], 2, [1]) for k in kinds) or into
         )
 
-    monkeypatch.setattr(sweep, "solved_sweeps", sweeps(solved, ["spectra"]))
-    monkeypatch.setattr(sweep, "followed_sweeps", lambda *words: [])
-    monkeypatch.setattr(sweep, "instant_sweeps", sweeps(instant, ["no solver", KILLED, "resumed"]))
+    monkeypatch.setattr(sweep, "measure_solved_sweeps", sweeps(solved, ["spectra"]))
+    monkeypatch.setattr(sweep, "measure_followed_sweeps", lambda *words: [])
+    monkeypatch.setattr(sweep, "measure_instant_sweeps", sweeps(instant, ["no solver", KILLED, "resumed"]))
     assert "Two ranks are skipped" in sweep_study(quick=True, command=()).text
     assert {m.method for m in solved + instant} == {"1 rank"}
 

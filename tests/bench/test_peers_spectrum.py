@@ -10,7 +10,7 @@ from benchmarks.spectrum.eigensolvers import (
     dense_inverse,
     displacement_elements,
 )
-from rodsweep.bench.spectrum.arms import ARM_RACE, ARM_RODS, UnsolvedArms, exact_arm_spectrum
+from rodsweep.bench.spectrum.arms import ARM_RACE, ARM_RODS, UncachedArms, exact_arm_spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT
 from rodsweep.bench.spectrum.study import HARD_RODS, SPECTRUM_RACE
@@ -35,7 +35,7 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
 def test_peers_of_arms_converge_to_the_exact_eigenvalues(rod):
     roots = exact_arm_spectrum(rod)
     for (name,), own in grouped_by_fields(arm_contenders(), "method").items():
-        errors = [relative_error(contender.run(UnsolvedArms(rod)), roots) for contender in own]
+        errors = [relative_error(contender.run(UncachedArms(rod)), roots) for contender in own]
         assert min(errors) < 1e-10, name
         assert errors[0] > 100 * min(errors), name
 

@@ -12,7 +12,7 @@ import rodsweep as rs
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import (
     Validity,
-    largest_angular_frequency,
+    angular_frequency_at_smallest_drag,
     neglected_effects,
     worst_validity,
 )
@@ -170,7 +170,9 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     )
     first, found = plane[0], plane[1].flutter
     hopf = found.by_drag[0].first_threshold(ChangeKind.hopf)
-    effects = neglected_effects(first, largest_angular_frequency(first, abs(hopf.frequency)), hopf.value)
+    effects = neglected_effects(
+        first, angular_frequency_at_smallest_drag(first, abs(hopf.frequency)), hopf.value
+    )
     worst = int(worst_validity(effects, of_cycles=False))
     if arm.share_of_flutter is not None:
         share = arm.share_of_flutter * hopf.value / first.k1

@@ -9,8 +9,8 @@ import rodsweep as rs
 from rodsweep.cli.portrait_rod import rod_of_options, solve_with_progress
 from rodsweep.errors import InputError
 from rodsweep.post.rod_portrait.results import DescribedRod
+from rodsweep.solve_progress import SolvePosition, report
 from rodsweep.tasks.rod_portrait import PortraitRequest
-from rodsweep.watch import SolvePosition, report
 
 NO_MATERIAL = dict.fromkeys(("law", "section", "profile"))
 ROD = {"k1": 1e4, "k2": 100.0, "gamma3": 0.01}

@@ -421,7 +421,7 @@ def test_a_list_may_have_a_column_of_tapers_in_every_task(tmp_path, task):
     assert [made.points.rod(i).taper for i in range(2)] == [0.5, 0.8]
     assert made.points.rod(1).k2 == 50
     assert made.layout.parameters == (*names, "taper")
-    assert not made.config.standard
+    assert not made.config.is_uniform_and_linear
     assert config_from_resolved(made.resolved) == made.config
     assert job(tmp_path, config_yaml(made.config)).points.identifying_arrays[-1].tolist() == [0.5, 0.8]
 

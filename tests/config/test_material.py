@@ -34,12 +34,12 @@ def test_profile_of_a_file_is_part_of_the_config(tmp_path):
     assert read.build == config(tmp_path, table).build
     assert read.settings_of_results == config(tmp_path, table).settings_of_results
     assert read.build.profile.rows[2] == (1.0, 1.0, 0.2, 1.0, 1.0, 0.5)
-    assert not read.standard
+    assert not read.is_uniform_and_linear
 
 
 def test_default_material_means_the_same_as_none(tmp_path):
     plain, written = config(tmp_path), config(tmp_path, "material: {law: linear}")
-    assert written.standard
+    assert written.is_uniform_and_linear
     assert plain.settings_of_results == written.settings_of_results
 
 

@@ -35,7 +35,7 @@ def test_an_arm_that_varies_is_read_again_from_its_file_and_its_text(tmp_path, a
         assert other.build == read.build
         assert other.settings_of_results == read.settings_of_results
         assert other.parameter_names == read.parameter_names
-    assert not read.standard
+    assert not read.is_uniform_and_linear
 
 
 def test_segments_make_the_length_in_their_unit(tmp_path):
@@ -46,10 +46,10 @@ def test_segments_make_the_length_in_their_unit(tmp_path):
 
 
 def test_an_arm_alike_all_along_is_standard(tmp_path):
-    assert config(tmp_path, f"{ROUND}, tip_radius: 6 mm, law: linear").standard
+    assert config(tmp_path, f"{ROUND}, tip_radius: 6 mm, law: linear").is_uniform_and_linear
     alike = CAST.replace("4 mm", "6 mm")
-    assert config(tmp_path, alike).standard
-    assert config(tmp_path, f"{alike}, pressure: 1 kPa", task="limit_cycle").standard
+    assert config(tmp_path, alike).is_uniform_and_linear
+    assert config(tmp_path, f"{alike}, pressure: 1 kPa", task="limit_cycle").is_uniform_and_linear
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from rodsweep.determinant.arm.completeness import (
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import EigenvalueHull
-from rodsweep.determinant.arm.newton import refine_eigenvalue
+from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
 from rodsweep.model.rod import Rod
 
 
@@ -23,7 +23,9 @@ def known_roots(rod, determinant, wanted):
     """(w, error) of so many leading eigenvalues, pairs whole: roots of D from another discretisation."""
     dense = eigenvalues(rod)[: wanted + 1].astype(complex)
     number = wanted + (dense[wanted - 1].imag > 0)
-    upper = np.array([refine_eigenvalue(complex(w), determinant) for w in dense[:number] if w.imag >= 0])
+    upper = np.array(
+        [refine_eigenvalue_and_error(complex(w), determinant)[0] for w in dense[:number] if w.imag >= 0]
+    )
     w = np.append(upper, upper[upper.imag > 0].conj())
     return w, 1e-12 * np.abs(w)
 

@@ -11,7 +11,7 @@ from rodsweep.determinant.arm.count.modes_near_axis import modes_near_axis
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import EigenvalueHull, distance_and_normal
-from rodsweep.determinant.arm.newton import refine_eigenvalue, root_error
+from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error, root_error
 from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
 from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
@@ -157,7 +157,9 @@ def test_roots_are_those_of_the_mesh_and_within_their_errors_on_a_finer_grid(see
     assert len(found.w) == 5
     assert found.displacement.max() < 1e-5
     for value, error in zip(found.w.tolist(), found.error.tolist(), strict=True):
-        assert abs(refine_eigenvalue(value, determinant) - value) <= 4 * error + 1e-15 * abs(value)
+        assert abs(refine_eigenvalue_and_error(value, determinant)[0] - value) <= 4 * error + 1e-15 * abs(
+            value
+        )
         assert root_error(value, determinant) == error
 
 

@@ -5,8 +5,8 @@ import pytest
 from reference.random_arms import random_arm
 
 from rodsweep.determinant.arm.along_path import ArmAlongPath
+from rodsweep.determinant.arm.arm_family import interpolated_family
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.family import interpolated_family
 from rodsweep.determinant.arm.family_values import (
     determinant_of_family_arm,
     eigenvalue_of_family_arm,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from surveyed import RODS
 
+from rodsweep.determinant.arm.arm_family import interpolated_family
 from rodsweep.determinant.arm.determinant import ArmDeterminant
-from rodsweep.determinant.arm.family import interpolated_family
 from rodsweep.determinant.arm.family_values import eigenvalue_of_family_arm
 from rodsweep.determinant.arm.rounding import rounding_error_by_chain
 from rodsweep.determinant.arm.value import determinant_along_chain

@@ -5,7 +5,7 @@ import pytest
 from rods import rod_of
 
 from rodsweep.determinant.certificate.box import eigenvalue_box
-from rodsweep.determinant.certificate.dominance import dominant_factors, is_dominated
+from rodsweep.determinant.certificate.dominance import dominant_prefactor_and_exponent, is_dominated
 from rodsweep.determinant.certificate.winding_number import (
     count_right_of,
     phase_change,
@@ -116,10 +116,10 @@ def test_where_one_exponential_is_said_to_outweigh_the_rest_it_does():
             if not is_dominated(w, rho, rod.coefficients):
                 continue
             proved += 1
-            factor_here, root_here = dominant_factors(w, rod.coefficients)
+            factor_here, root_here = dominant_prefactor_and_exponent(w, rod.coefficients)
             for angle in rng.uniform(0, 2 * np.pi, 4):
                 there = w + rho * np.exp(1j * angle)
-                factor, root = dominant_factors(there, rod.coefficients)
+                factor, root = dominant_prefactor_and_exponent(there, rod.coefficients)
                 D, _, S, _ = scaled_determinant(there, rod.coefficients)
                 A = factor / 4 * np.exp(1j * root.imag + root.real - S)
                 assert abs(D / A - 1) < 1, (rod, w, rho)

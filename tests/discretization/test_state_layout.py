@@ -42,8 +42,7 @@ def test_a_field_is_known_by_its_name():
     x = states(layout, 2)
     for number, name in enumerate(("n1", "n2", "m3")):
         assert np.array_equal(layout.stress_field(x, name), layout.stresses(x)[number, :, :-1])
-        assert np.array_equal(layout.stress_at(x, name, 3), layout.stress_field(x, name)[:, 3])
-        assert np.array_equal(x[:, layout.stress_index(name, 2)], layout.stress_at(x, name, 2))
+        assert np.array_equal(x[:, layout.stress_index(name, 2)], layout.stress_field(x, name)[:, 2])
     row = layout.state_with_stresses({"m3": np.arange(4.0)})
     assert x @ row == pytest.approx(layout.stress_field(x, "m3") @ np.arange(4.0))
     layout.stress_field(x, "n2")[:] = 0

@@ -22,8 +22,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from explore.browser import Browser
 
 from rodsweep.errors import Refusal
-from rodsweep.explore.scales import SCALES
-from rodsweep.explore.state import LAWS, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
+from rodsweep.explore.slider_scales import SCALES
+from rodsweep.explore.state import MATERIAL_CHOICES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
 SECONDS = 600.0
 SEED = 35
@@ -167,7 +167,9 @@ class RandomUser:
 
     def choose(self) -> str:
         """A menu."""
-        name, choices = (("law", LAWS), ("across", SECOND_PARAMETERS[self.tab()]))[self.random.integers(2)]
+        name, choices = (("law", MATERIAL_CHOICES), ("across", SECOND_PARAMETERS[self.tab()]))[
+            self.random.integers(2)
+        ]
         return self.set(name, self.one_of(choices))
 
     def change_tab(self) -> str:

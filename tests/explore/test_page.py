@@ -10,8 +10,8 @@ from bokeh.models import HoverTool
 
 import rodsweep as rs
 from rodsweep.errors import Refusal
-from rodsweep.explore.contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page import STOPPED_SENTENCE, Page
+from rodsweep.explore.page_contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page_style import template_text
 from rodsweep.explore.pictures.card import AXIS_ALPHAS, STABLE_COLOUR
 from rodsweep.explore.pictures.diagram import (
@@ -22,10 +22,10 @@ from rodsweep.explore.pictures.diagram import (
 )
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
 from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
-from rodsweep.explore.solving.needs import INSTANT_KINDS
+from rodsweep.explore.solving.question_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.questions import Question, Reply, answer_to, answer_variables
 from rodsweep.explore.state import PageState
-from rodsweep.explore.stored import page_state_of_file
+from rodsweep.explore.state_of_file import page_state_of_file
 
 PLANE = """task: phase_diagram
 parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, gamma3: 1.0e-4}

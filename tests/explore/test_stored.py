@@ -13,7 +13,7 @@ from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import TORUS_COLOUR
 from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.questions import answer_to
-from rodsweep.explore.stored import page_state_of_file, stored_diagram
+from rodsweep.explore.state_of_file import page_state_of_file, stored_diagram
 from rodsweep.explore.stored_answers import StoredAnswers
 from rodsweep.results.layouts.branch import SPECIAL_KINDS
 

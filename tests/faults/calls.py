@@ -5,7 +5,7 @@ from random import Random
 from typing import Any
 
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.post.tables.contents import BRANCHES, GRID, POINTS, TABLE_NAMES
+from rodsweep.post.tables.table_names import BRANCHES, GRID, POINTS, TABLE_NAMES
 
 TASKS = ("spectrum", "thresholds", "modes", "limit_cycle", "criticality", "branch")
 """The tasks of one rod."""

@@ -18,7 +18,7 @@ from rodsweep.model.arm.neglected import (
     DOUBTFUL_RATIO,
     LARGE_AMPLITUDE,
     Validity,
-    largest_angular_frequency,
+    angular_frequency_at_smallest_drag,
     neglected_effects,
     worst_validity,
 )
@@ -474,7 +474,9 @@ def _validity_line(view, page, fine):
             rate = np.asarray(rate) / scales_of(q)["tau2"]
             effects = neglected_effects(arm, rate, F, drag=arm.chosen_drag, amplitude=amplitude)
         else:
-            effects = neglected_effects(arm, largest_angular_frequency(arm, rate), F, amplitude=amplitude)
+            effects = neglected_effects(
+                arm, angular_frequency_at_smallest_drag(arm, rate), F, amplitude=amplitude
+            )
         of = [e for e in effects if cycles or not e.of_cycles_only]
         applies.append(int(np.max(worst_validity(effects, of_cycles=cycles))))
         excess.append(max(float(np.nanmax(np.append(e.value_over_limit, -1.0))) for e in of))

@@ -17,7 +17,8 @@ from surveyed import few
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import BranchCycle, next_cycle
+from rodsweep.solve.branch.arc_length_step import BranchCycle, next_cycle
+from rodsweep.solve.branch.bordered.scale import deflection_of
 from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.mesh_choice import is_measurement_due, with_errors_within_accuracy
 from rodsweep.solve.branch.start.first_cycle import first_cycle
@@ -94,7 +95,10 @@ def cycles_of(case: Case) -> Iterator[BranchCycle]:
             here = next_cycle(here, case.accuracy)
         except Unsolvable:
             return
-        outside = not 0 < here.parameter_coordinate < case.stop or here.deflection * last.deflection < 0
+        outside = (
+            not 0 < here.parameter_coordinate < case.stop
+            or deflection_of(here.orbit) * deflection_of(last.orbit) < 0
+        )
         if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
             return
         waiting.append(here)

@@ -45,7 +45,7 @@ from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
-from rodsweep.solve.branch.special.point import SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
@@ -62,7 +62,7 @@ from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
 from rodsweep.solve.motion.integrator import RunEnding, destroy_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.point import FAILURES
+from rodsweep.solve.point_outcome import FAILURES
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
@@ -529,7 +529,7 @@ CASES = {
     "BOUNDARY_POINT_SETTINGS": BAUTIN_CURVE,
     "PLANE_DIFFERENCE_SETTINGS": BAUTIN_CURVE,
     "BAUTIN_SETTINGS": BAUTIN_CURVE,
-    "BAUTIN_STEPS": BAUTIN_CURVE,
+    "BAUTIN_STEP_CONTROL": BAUTIN_CURVE,
     "SUBCRITICAL_HOPF_SETTINGS": BESIDE,
     "MODE_MESH_SETTINGS": MODES,
     "MODE_ITERATION_SETTINGS": MODES,
@@ -583,6 +583,7 @@ CASES = {
     "ANCHOR_SETTINGS": CONE,
     "ARM_CROSSING_SETTINGS": CONE,
     "SEARCH_RANGE_SETTINGS": CONE,
+    "CRUSHING_END_SETTINGS": THRESHOLDS,
     "FIXED_TIP_SETTINGS": HELD,
     "ARM_PATH_SETTINGS": CONE,
     "AXIS_MODE_SETTINGS": SLENDER_CONE,
@@ -595,7 +596,7 @@ CASES = {
     "LONGITUDINAL_MODE_SETTINGS": LONGITUDINAL,
     "BOUNDARY_ASSIGNMENT_SETTINGS": CHANGES,
     "BOUNDARY_CURVE_SETTINGS": CHANGES,
-    "BOUNDARY_STEPS": CHANGES,
+    "BOUNDARY_STEP_CONTROL": CHANGES,
     "TIP_LAYER_SETTINGS": CONE_MODES,
     "EXPONENT_SETTINGS": SPECTRA,
     "EVEN_FUNCTION_SETTINGS": SPECTRA,

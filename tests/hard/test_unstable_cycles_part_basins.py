@@ -10,7 +10,7 @@ import pytest
 from rods import rod_of
 
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.solve.branch.arc import next_cycle
+from rodsweep.solve.branch.arc_length_step import next_cycle
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.changes.along_path import find_axis_crossings

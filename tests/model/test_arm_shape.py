@@ -44,7 +44,7 @@ def segmented(*segments, **changes):
 )
 def test_an_arm_alike_all_along_is_the_uniform_arm(changes):
     other = uniform(**changes)
-    assert other.standard
+    assert other.is_uniform_and_linear
     for name in PARAMETERS:
         value = getattr(uniform(), name)
         assert getattr(other, name) == (pytest.approx(value, rel=1e-14) if name != "build" else value)

@@ -14,7 +14,7 @@ from rodsweep.model.arm.neglected import (
     WEIGHT_LIMIT,
     Effect,
     Validity,
-    largest_angular_frequency,
+    angular_frequency_at_smallest_drag,
     neglected_effects,
     smallest_drag,
     worst_validity,
@@ -96,10 +96,10 @@ def test_phase_of_the_fluid_is_smooth_where_its_series_ends():
 def test_a_fluid_as_viscous_as_stated_brings_an_effect_to_its_limit(name):
     """The rate is that of the same frequency in 1/tau2, so it falls with viscosity."""
     arm = SlenderArm(**WATER)
-    before = named(neglected_effects(arm, largest_angular_frequency(arm, 170.0), 35.0))[name]
+    before = named(neglected_effects(arm, angular_frequency_at_smallest_drag(arm, 170.0), 35.0))[name]
     factor = float(before.viscosity_factor)
     thicker = SlenderArm(**WATER | {"viscosity": factor * 1e-3})
-    after = named(neglected_effects(thicker, largest_angular_frequency(thicker, 170.0), 35.0))[name]
+    after = named(neglected_effects(thicker, angular_frequency_at_smallest_drag(thicker, 170.0), 35.0))[name]
     assert before.value_over_limit > 1
     assert factor > 1
     assert after.value == pytest.approx(after.limit, rel=1e-9)
@@ -117,7 +117,7 @@ def test_no_fluid_undoes_compression_and_weight():
 def test_least_drag_moves_fastest():
     arm = SlenderArm(**WATER)
     rates = [170.0 / arm.tau2_with(drag) for drag in arm.drags]
-    assert largest_angular_frequency(arm, 170.0) == pytest.approx(max(rates))
+    assert angular_frequency_at_smallest_drag(arm, 170.0) == pytest.approx(max(rates))
     assert smallest_drag(arm).gamma2 == min(drag.gamma2 for drag in arm.drags)
 
 

@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from pointwise_balance import PLANE_COMPONENTS, material_in_space, unloaded_strain
 from scipy.linalg import expm
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
@@ -11,12 +12,12 @@ from rodsweep.discretization.nodal_rod import nodal_rod
 from rodsweep.discretization.stress.balance import write_balance, write_strain_rates, write_velocity_residuals
 from rodsweep.discretization.stress.jacobian import write_jacobian
 from rodsweep.model.algebra import ALGEBRAS, SE3
-from rodsweep.model.balance import PLANE_COMPONENTS, ad
+from rodsweep.model.balance import ad
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), 0.7
 PLANE = ROD.with_values(gamma1=GAMMA1).material
-SPACE = ROD.with_values(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
+SPACE = material_in_space(ROD.with_values(gamma1=GAMMA1), twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {"plane": PLANE, "space": SPACE}
 ALL = pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
 MESHES = pytest.mark.parametrize(
@@ -29,7 +30,7 @@ def tapered(material, grid):
     u, phase = grid.node_positions, np.arange(len(material.drag))[:, None]
     profile = 1 + 0.4 * np.sin(2 * u + phase)
     compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
-    rest = material.unloaded_strain[:, None] + compliance * material.tip_stress[:, None]
+    rest = unloaded_strain(material)[:, None] + compliance * material.tip_stress[:, None]
     return material._replace(compliance=compliance, drag=drag, rest_strain=rest)
 
 

@@ -10,7 +10,7 @@ from known_cycles import make_view
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.post.figures.cycle.animation import first_frame
+from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.selection import chosen_cycles
@@ -85,7 +85,7 @@ def test_energy_of_an_arm_is_in_joule_and_its_rate_in_watt():
 
 def test_a_film_of_an_arm_counts_seconds():
     view, (arm,) = arms()
-    _, (moving,) = first_frame(chosen_cycles(view, (), ()))
+    _, (moving,) = prepared_animation(chosen_cycles(view, (), ()))
     moving.show_frame(4)
     seconds = float(view.variables["period"][0]) * arm.tau2 * 4 / moving.frames
     shown = re.match(r"\$t\$ = ([\d.]+) s = ", moving.text.get_text())

@@ -20,7 +20,7 @@ from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.branches import amplitude_branches
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
-from rodsweep.post.figures.cycle.animation import first_frame
+from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, drawn_shape_indices
 from rodsweep.post.figures.cycle.selection import chosen_cycles
@@ -329,7 +329,7 @@ def test_other_tasks_refuse_the_options_of_limit_cycle(command):
 
 def test_no_arrow_of_a_film_is_over_the_running_time():
     selection = chosen_cycles(make_view(([50.0], [np.inf], [np.inf], [0.0], [0.5, 1.0]), [0, 0]), (), ())
-    figure, arms = first_frame(selection)
+    figure, arms = prepared_animation(selection)
     for k in range(arms[0].frames):
         for moving in arms:
             moving.show_frame(k)

@@ -9,7 +9,7 @@ import pytest
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.post.tables.contents import TABLE_NAMES
+from rodsweep.post.tables.table_names import TABLE_NAMES
 
 SPECTRA = """
 task: spectrum

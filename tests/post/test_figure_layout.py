@@ -16,7 +16,7 @@ from surveyed import RODS, few
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cycle.animation import first_frame
+from rodsweep.post.figures.cycle.animation import prepared_animation
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.layout import remembered_ticks
 from rodsweep.post.figures.layout.fitting import WORD_PATTERN, break_lines, fit_layout
@@ -239,7 +239,7 @@ def test_no_blank_is_left_above_flat_shapes(forces, tmp_path, monkeypatch):
 def test_the_frames_of_a_film_are_whole(name):
     selection = chosen_cycles(of_cycles(*CYCLES[name][0], seed=1), (), ())
     with matplotlib.rc_context(FIGURE_STYLE):
-        figure, arms = first_frame(selection)
+        figure, arms = prepared_animation(selection)
         for arm in arms:
             arm.show_frame(7)
         figure.draw_without_rendering()

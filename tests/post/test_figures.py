@@ -20,11 +20,11 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
+from rodsweep.post.figures.grid_sections import section_at_values
 from rodsweep.post.figures.lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
-from rodsweep.post.figures.sections import section_at_values
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
-from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
+from rodsweep.post.figures.stability.class_colours import CLASS_COLOURS
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.stability.regions import (
     PIXEL_COUNT,
@@ -32,7 +32,7 @@ from rodsweep.post.figures.stability.regions import (
     DrawnPlane,
     pixel_classes,
 )
-from rodsweep.post.figures.stability.row_classes import class_along_row
+from rodsweep.post.figures.stability.row_classes import pixel_classes_of_row
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
 from rodsweep.post.summary import SUMMARIES
@@ -157,7 +157,7 @@ def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
     attributes = {"task": "phase_diagram", "config_resolved": json.dumps(resolved)}
     view = View(Path("f.h5"), attributes, variables, ("k1",), {0: "ok"}, 0)
     edges = np.array([0.0, 50.0, 199.0, 200.0, 220.0])
-    assert class_along_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
+    assert pixel_classes_of_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
 
 
 def test_rows_that_make_no_plane_are_bars(command, drawn):

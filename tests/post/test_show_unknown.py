@@ -78,8 +78,8 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     plane = {"F": rs.linspace(0.0, 90.0, 10), "k1": [100.0, 300.0], "k2": 1e4, "gamma3": 1e-4}
     (tmp_path / "whole").mkdir()
     assert "is incomplete" not in told(view_of_sweep(tmp_path / "whole", "phase_diagram", **plane))
-    few = replace(boundary_curves.BOUNDARY_STEPS, max_solutions=5)
-    monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
+    few = replace(boundary_curves.BOUNDARY_STEP_CONTROL, max_solutions=5)
+    monkeypatch.setattr(boundary_curves, "BOUNDARY_STEP_CONTROL", few)
     view = view_of_sweep(tmp_path, "phase_diagram", **plane)
     reasons = [view.variables[name] for name in ("curve_start", "curve_end")]
     full = np.flatnonzero(np.any(np.array(reasons) == list(CURVE_ENDS).index("list_full"), axis=0))

@@ -136,7 +136,7 @@ def test_what_does_not_belong_together_is_not_merged(command):
     for names, sentence in (
         (("m.h5", shard.name, "d.h5"), "together the files do not form a full grid"),
         (("m.h5", shard.name, "e.h5"), "spectrum.modes is 4 in c-1-of-2.h5 and 3 in e.h5"),
-        (("m.h5", "text.h5"), "not a complete rodsweep result"),
+        (("m.h5", "text.h5"), "cannot be read as a result of rodsweep"),
         (("m.h5", "nowhere.h5"), "does not exist"),
         (("e.h5", shard.name), "made from another config"),
         ((".", shard.name), "is a directory"),

@@ -247,7 +247,7 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
     path = tmp_path / "a.h5"
     for content in (b"", b"not HDF5", b"\x89HDF\r\n\x1a\n" + b"\0" * 100):
         path.write_bytes(content)
-        with pytest.raises(InputError, match="not a complete rodsweep result"):
+        with pytest.raises(InputError, match="cannot be read as a result of rodsweep"):
             Store(path, plan())
         assert path.read_bytes() == content
         # --fresh, which replaces no file of another program, is advice for damaged results only.
@@ -255,7 +255,7 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
             InputError, match="--fresh" if content.startswith(b"\x89") else "or move this file away"
         ):
             Store(path, plan())
-        with pytest.raises(InputError, match="not a complete rodsweep result"):
+        with pytest.raises(InputError, match="cannot be read as a result of rodsweep"):
             read_view(path)
 
 

@@ -157,7 +157,9 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
 
 @pytest.mark.parametrize(
     "config",
-    [DIAGRAM, LONG_BRANCHES] if KILLS > 1 else [],  # else `test_joint.py` stops curves in the middle
+    [DIAGRAM, LONG_BRANCHES]
+    if KILLS > 1
+    else [],  # else `test_sweep_wide_work.py` stops curves in the middle
     ids=["diagram with cycles", "long branches"] if KILLS > 1 else [],
 )
 def test_run_struck_within_points_and_curves_ends_in_the_file_of_an_undisturbed_one(command, config):

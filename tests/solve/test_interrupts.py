@@ -14,8 +14,8 @@ import threading
 import pytest
 from conftest import NOT_FITTED
 
-from rodsweep import watch
-from rodsweep.solve.exclusive import DeferredSignals, one_at_a_time
+from rodsweep import solve_progress
+from rodsweep.solve.solve_lock import DeferredSignals, one_at_a_time
 
 INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "1"))
 TASKS = """
@@ -133,11 +133,11 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
         with (
             pytest.raises(TimeoutError),
             DeferredSignals() as held,
-            watch.reporting_to(held.call_due_handlers),
+            solve_progress.reporting_to(held.call_due_handlers),
         ):
             signal.raise_signal(signal.SIGUSR2)
             assert place == []
-            watch.report()
+            solve_progress.report()
             pytest.fail("the handler's exception was lost")
         with pytest.raises(TimeoutError), DeferredSignals():
             signal.raise_signal(signal.SIGUSR2)
@@ -150,24 +150,27 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 def test_reports_are_heard_by_all_who_listen():
     heard = []
     with (
-        watch.reporting_to(lambda place: heard.append("outer")),
-        watch.reporting_to(lambda place: heard.append(place())),
+        solve_progress.reporting_to(lambda place: heard.append("outer")),
+        solve_progress.reporting_to(lambda place: heard.append(place())),
     ):
-        watch.report(lambda: watch.SolvePosition("inner", 0.25))
-    watch.report()
-    assert heard == ["outer", watch.SolvePosition("inner", 0.25)]
+        solve_progress.report(lambda: solve_progress.SolvePosition("inner", 0.25))
+    solve_progress.report()
+    assert heard == ["outer", solve_progress.SolvePosition("inner", 0.25)]
 
 
 def test_a_place_in_a_part_is_told_as_one_in_the_whole():
     heard = []
-    with watch.reporting_to(lambda place: heard.append(place())), watch.solve_part("branch 2", (0.5, 0.9)):
-        watch.report(lambda: watch.SolvePosition("F = 50", 0.25))
-        with watch.solve_part("corner"):
-            watch.report(lambda: watch.SolvePosition("F = 51", 0.5))
-        watch.report()
+    with (
+        solve_progress.reporting_to(lambda place: heard.append(place())),
+        solve_progress.solve_part("branch 2", (0.5, 0.9)),
+    ):
+        solve_progress.report(lambda: solve_progress.SolvePosition("F = 50", 0.25))
+        with solve_progress.solve_part("corner"):
+            solve_progress.report(lambda: solve_progress.SolvePosition("F = 51", 0.5))
+        solve_progress.report()
     assert heard[0] == ("branch 2: F = 50", pytest.approx(0.6))
     assert heard[1] == ("branch 2: corner: F = 51", 0.5), "a part whose shares are unknown"
-    assert heard[2] == watch.SolvePosition(), "a safe place without words"
+    assert heard[2] == solve_progress.SolvePosition(), "a safe place without words"
 
 
 def test_threads_wait_for_one_another():

@@ -5,7 +5,7 @@ import pytest
 
 from rodsweep.cli.checking import print_job_check
 from rodsweep.model.material.build import DEFAULT_BUILD, Build
-from rodsweep.sweep.branch_cost import estimate_branches
+from rodsweep.sweep.branch_cost import branches_cost
 from rodsweep.sweep.points.points import Points
 from rodsweep.tasks.running.job import job_of_file
 
@@ -31,7 +31,7 @@ def points_of(build=None, **columns):
     ],
 )
 def test_rods_without_measured_times_are_in_doubt(columns, build, doubt):
-    assert estimate_branches(points_of(build, **columns), "F", (0.0, 60.0), 1e-7).doubt == doubt
+    assert branches_cost(points_of(build, **columns), "F", (0.0, 60.0), 1e-7).doubt == doubt
 
 
 @pytest.mark.parametrize(("material", "known"), [("", True), ("material: {law: neo_hookean}\n", False)])

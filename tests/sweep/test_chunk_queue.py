@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rodsweep.solve_progress import SolvePosition
 from rodsweep.sweep.chunk_queue import CHUNK_SECONDS, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from rodsweep.sweep.chunk_requests import (
     ANSWER_TAG,
@@ -19,7 +20,6 @@ from rodsweep.sweep.chunk_requests import (
     OtherRankRequests,
 )
 from rodsweep.sweep.stop import StopRequest
-from rodsweep.watch import SolvePosition
 
 
 @given(st.lists(st.integers(1, 40), min_size=1, max_size=4), st.integers(1, 4), st.integers(0, 2**32 - 1))

@@ -10,12 +10,12 @@ from ranks import PATIENCE, pause_until
 from surveyed import few
 
 from rodsweep.config import load_config
-from rodsweep.config.arm.axes import FLUTTER_UNKNOWN
+from rodsweep.config.arm.status import FLUTTER_UNKNOWN
 from rodsweep.errors import BUG_STATUS, InputError
 from rodsweep.model.rod import Rod
 from rodsweep.sweep.points.flutter_forces import FlutterForce, rods_needing_flutter_force
 from rodsweep.tasks.running.job import job_of_config
-from rodsweep.verdict import relative
+from rodsweep.verdict import relative_load
 
 RODS = 8
 """Four lengths, each with a rod in either plane of the rectangle."""
@@ -33,9 +33,9 @@ parameters:
 """
 SEARCH = """
 import os, pathlib, time
-import rodsweep.verdict.relative as relative
+from rodsweep.verdict import relative_load
 
-search, rank = relative.first_hopf_force, os.environ.get("OMPI_COMM_WORLD_RANK", "0")
+search, rank = relative_load.first_hopf_force, os.environ.get("OMPI_COMM_WORLD_RANK", "0")
 
 def first_hopf_force(rod):
     with open(f"searches-{{rank}}", "a") as file:
@@ -43,7 +43,7 @@ def first_hopf_force(rod):
     {first}
     return search(rod)
 
-relative.first_hopf_force = first_hopf_force
+relative_load.first_hopf_force = first_hopf_force
 """
 """What every rank executes first: a search is noted, and begins with one more statement."""
 
@@ -85,7 +85,7 @@ def test_ranks_divide_the_search_and_give_the_same_file(command, rods):
 def test_flutter_that_is_not_found_is_a_status_with_a_reason(command, rods, task, ranks):
     """Of the second length in its second plane; all other points are as they are without the failure."""
     command.write("a.yaml", ARMS.format(task=task))
-    failure = f"if rod.k1 == {rods[3].k1!r}: raise relative.FlutterSearchFailed('no box is left')"
+    failure = f"if rod.k1 == {rods[3].k1!r}: raise relative_load.FlutterSearchFailed('no box is left')"
     assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
     run = command("run", "a.yaml", "-o", "part.h5", ranks=ranks, patch=searching(failure))
     assert run.returncode == 1
@@ -134,11 +134,11 @@ def test_a_search_that_overflows_fails_in_words(monkeypatch, error):
     def overflowing(*_):
         raise error
 
-    monkeypatch.setattr(relative, "cover_with_boxes", overflowing)
+    monkeypatch.setattr(relative_load, "cover_with_boxes", overflowing)
     with pytest.raises(
-        relative.FlutterSearchFailed, match="relative load refers fails: (too large|ZeroDivisionError)"
+        relative_load.FlutterSearchFailed, match="relative load refers fails: (too large|ZeroDivisionError)"
     ):
-        relative.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))
+        relative_load.first_hopf_force(Rod(F=0.0, k1=1234.5, k2=1e3, gamma3=1e-4))
 
 
 def test_a_rank_without_an_arm_to_search_waits_for_no_other(command):

@@ -12,10 +12,10 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
+from rodsweep.config.arm.status import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
-from rodsweep.post.figures.sections import section_at_values
+from rodsweep.post.figures.grid_sections import section_at_values
 from rodsweep.results.file.view import read_view
 
 ROOT = Path(__file__).parents[2]

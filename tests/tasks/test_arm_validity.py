@@ -12,7 +12,7 @@ from rodsweep.api.keyword_arguments import job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import (
     Validity,
-    largest_angular_frequency,
+    angular_frequency_at_smallest_drag,
     neglected_effects,
     worst_validity,
 )
@@ -22,7 +22,8 @@ from rodsweep.post.summary.arm.validity import validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import VALIDITY, VALIDITY_NOT_KNOWN
 from rodsweep.results.layouts.phase_diagram import CLASSES
-from rodsweep.tasks.arm.validity import HOPF_KINDS, MOTION_OF_TASK, ArmValidity
+from rodsweep.results.layouts.thresholds import HOPF_CROSSING_CODES
+from rodsweep.tasks.arm.validity import MOTION_OF_TASK, ArmValidity
 
 SILICONE = {"radius": "5 mm", "young": "100 kPa", "viscosity": "4 Pa s"}
 LENGTHS = ["4 cm", "6 cm", "10 cm", "14 cm"]
@@ -46,7 +47,9 @@ def test_each_point_has_the_worst_of_what_is_left_out():
     assert data.model_applies[0] == Validity.does_not_apply  # shorter than ten radii
     for point in (data.isel(length=i) for i in (1, 2, 3)):
         arm = arm_at(point)
-        effects = neglected_effects(arm, largest_angular_frequency(arm, point.hopf_frequency), point.F_hopf)
+        effects = neglected_effects(
+            arm, angular_frequency_at_smallest_drag(arm, point.hopf_frequency), point.F_hopf
+        )
         counted = [effect for effect in effects if not effect.of_cycles_only]
         assert point.model_applies == worst_validity(effects, of_cycles=False)
         largest = max(counted, key=lambda effect: effect.value_over_limit)
@@ -119,7 +122,7 @@ def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
     assert row(record | {"class": np.array([[flutter] * 2])}).may_be_missed.tolist() == [True]
     assert row(record | {"class": np.array([[oscillatory] * 2])}).may_be_missed.tolist() == [False]
     back = record | {
-        "crossing_kind": np.array([[1, HOPF_KINDS[2], 0]]),
+        "crossing_kind": np.array([[1, HOPF_CROSSING_CODES[2], 0]]),
         "crossing_frequency": np.array([[1.0, -5.0, 0]]),
     }
     assert row(back | {"class": np.array([[flutter, oscillatory]])}).frequency.tolist() == [5.0]
@@ -139,7 +142,10 @@ def test_the_motion_is_that_of_the_task(task, more):
         arm_here = arm_at(point, density_difference=1.0)
         amplitude = np.nan_to_num(point.tip_y_max.item()) if task == "limit_cycle" else 0.5
         effects = neglected_effects(
-            arm_here, largest_angular_frequency(arm_here, rate), data.F[i].item(), amplitude=amplitude
+            arm_here,
+            angular_frequency_at_smallest_drag(arm_here, rate),
+            data.F[i].item(),
+            amplitude=amplitude,
         )
         assert point.model_applies == worst_validity(effects, of_cycles=task == "limit_cycle")
         counted = [e for e in effects if task == "limit_cycle" or not e.of_cycles_only]
@@ -178,7 +184,7 @@ def test_branches_and_diagrams_are_judged_too():
     branch = rs.sweep("branch", arm=arm, stop=45, cycles=60, accuracy=1e-4)
     fastest = np.nanmax(2 * np.pi / branch.period.values)
     here = arm_at(branch)
-    effect = neglected_effects(here, largest_angular_frequency(here, fastest), 0.0)[0]
+    effect = neglected_effects(here, angular_frequency_at_smallest_drag(here, fastest), 0.0)[0]
     assert branch.neglected_excess.item() >= float(effect.value_over_limit) * (1 - 1e-12)
     diagram = rs.sweep(
         "phase_diagram", arm=arm | {"pressure": rs.linspace("1 kPa", "3 kPa", 5)}, gamma3=[0.002, 0.004],

@@ -17,7 +17,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import (
     RodBranches,
     intersection_of_ranges,
-    stability_of_pieces,
+    stability_between_vertices,
     union_of_ranges,
 )
 from rodsweep.post.figures import draw
@@ -28,7 +28,7 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
 from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import job_of_file
 
@@ -142,7 +142,7 @@ def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_point
         (-1, 0, 0): [1, 1],
         (None,): [],
     }
-    assert {counts: stability_of_pieces(list(counts)).tolist() for counts in pieces} == pieces
+    assert {counts: stability_between_vertices(list(counts)).tolist() for counts in pieces} == pieces
 
 
 @pytest.mark.parametrize(

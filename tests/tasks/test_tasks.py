@@ -22,14 +22,14 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
-from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
+from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
-from rodsweep.tasks.diagram.records import cycle_curve_record
+from rodsweep.tasks.diagram.curve_variables import cycle_curve_record
 from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 

@@ -13,7 +13,7 @@ from ...config.document.call_arguments import refusing_wrong_arguments
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES
 from ...post.tables.columns import Column, column_of
-from ...post.tables.contents import POINTS
+from ...post.tables.table_names import POINTS
 from ...post.tables.tables import Tables
 from ...results.layouts import layout_of
 from ..solved import Result

@@ -29,14 +29,9 @@ def series_of(column: Column) -> Any:
     if column.is_boolean:
         return column.values.astype(bool)
     if column.words:
-        return np.array(column_texts(column), dtype=object)
+        return np.array([text or None for text in column.texts()], dtype=object)
     if column.values.dtype.kind in "iu" and column.absent.any():
         return pd.Series(column.values, dtype="Int64").mask(column.absent)
     if column.values.dtype.kind == "f":
         return np.where(column.absent, np.nan, column.values) + column.values.dtype.type(0)  # no -0.0
     return np.array(column.values)
-
-
-def column_texts(column: Column) -> list[str | None]:
-    """Values of a column as texts; None stands for a missing value."""
-    return [text or None for text in column.texts()]

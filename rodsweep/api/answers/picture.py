@@ -15,10 +15,10 @@ from ...config.document.call_arguments import refusing_wrong_arguments, unknown_
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.figures import draw
+from ...post.figures.grid_sections import checked_section_values, section_at_values
 from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, ShapeFunction
-from ...post.figures.sections import checked_section_values, section_at_values
 from ...results.file.view import View
-from ...solve.exclusive import one_at_a_time
+from ...solve.solve_lock import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
 from ..dataset import named_file_path
 from .answer import Answer

@@ -112,7 +112,7 @@ def whole_text(printed: PrintedAnswer) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
     in full, and the numbers of rows of all other lists."""
     rows = [
-        (c.name, printed.rod.point_texts.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers
+        (c.name, printed.rod.point_texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers
     ]
     parts = [
         "\n".join(_folded_heading(printed)),
@@ -123,7 +123,7 @@ def whole_text(printed: PrintedAnswer) -> str:
         if len(columns[0].values):
             digits = printed.rod.list_texts[name]
             kept = [column for column in columns if not column.absent.all()]
-            cells = [column_cells((c.name, _unit_text(c)), digits.texts(c.name)) for c in kept]
+            cells = [column_cells((c.name, c.printed_unit), digits.texts(c.name)) for c in kept]
             for number, block in enumerate(table_blocks(cells)):
                 lines += ["", *block] if number else block
         parts.append("\n".join(lines))
@@ -133,13 +133,13 @@ def whole_text(printed: PrintedAnswer) -> str:
 def whole_html(printed: PrintedAnswer) -> str:
     """Long HTML of an answer, with the content of `whole_text`."""
     rows = [
-        (c.name, printed.rod.point_texts.texts(c.name)[0], _unit_text(c), c.meaning) for c in printed.numbers
+        (c.name, printed.rod.point_texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers
     ]
     parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
         parts.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
         digits = printed.rod.list_texts[name]
-        heads = [tuple(column.name for column in columns), tuple(map(_unit_text, columns))]
+        heads = [tuple(column.name for column in columns), tuple(column.printed_unit for column in columns)]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
         parts.append(_html_table(heads, rows_of) if rows_of else "")
     return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
@@ -167,7 +167,7 @@ def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]
         column = printed.rod.column(name)
         if column is not None:
             ((value, error),) = printed.rod.point_texts.value_and_error_texts(column.name)
-            pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", _unit_text(column)))
+            pairs.append((column.name, value, f"{ERROR_SIGN} {error}" if error else "", column.printed_unit))
     return pairs
 
 
@@ -202,7 +202,7 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     width = -len(COLUMN_GAP)
     for column in columns if count else ():
         values, errors = zip(*digits.value_and_error_texts(column.name)[:room], strict=True)
-        added = [column_cells((column.name, _unit_text(column)), values)]
+        added = [column_cells((column.name, column.printed_unit), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
         if width > LINE_WIDTH:
@@ -230,10 +230,6 @@ def _remaining_numbers_line(printed: PrintedAnswer) -> str:
     rows.update(printed.row_counts)
     lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
     return wrap_cell_text(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
-
-
-def _unit_text(column: Column) -> str:
-    return "" if column.unit == "1" else column.unit
 
 
 def _html_heading(printed: PrintedAnswer) -> str:

@@ -15,12 +15,12 @@ from ...post.rod_portrait.results import RodResults
 from ...post.rod_portrait.writing import require_portrait, write_portrait
 from ...post.tables.alignment import wrap_cell_text
 from ...results.file.view import View
-from ...solve.exclusive import one_at_a_time
+from ...solve.solve_lock import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
 from ..dataset import named_file_path, view_of_dataset
 from ..keyword_arguments import plain_keyword
-from ..solving import solve_in_process
+from ..solving_in_process import solve_in_process
 from .answer import Answer
 
 SAVE_EXAMPLE = 'rod.portrait().save("portrait.png")'

@@ -13,7 +13,7 @@ from ...config.values import short_repr
 from ...errors import InputError
 from ...post.tables.tables import Tables
 from ...results.file.view import View, read_view
-from ...solve.exclusive import one_at_a_time
+from ...solve.solve_lock import one_at_a_time
 from ..dataset import named_file_path, view_of_dataset
 from .answer import Answer
 from .frames import frame_of

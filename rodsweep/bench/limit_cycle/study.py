@@ -10,7 +10,14 @@ from math import isfinite, log, nan
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.reference_rod import warm_up
 from ..peers import Peers
-from ..study import Measurement, Study, count_text, every_nth_setting, grouped_by_fields, markdown_table
+from ..study import (
+    BenchmarkReport,
+    Measurement,
+    count_text,
+    every_nth_setting,
+    grouped_by_fields,
+    markdown_table,
+)
 from .integrators import DEFAULT_INTEGRATOR
 from .settling import compare_settling
 from .sweeping import QUICK_RODS, RODS, measure_sweep_points, sweep_introduction, sweep_table
@@ -39,7 +46,7 @@ ERROR_NAMES_BY_PANEL = {
 """Names of the errors in the figure, by the title of the panel."""
 
 
-def limit_cycle_study(quick: bool, peers: Peers) -> Study:
+def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
     """Runs the benchmark and returns the results: errors and times of integrators, methods that reach a
     cycle, cost of a point of a sweep, and sections of the peers. quick: whether to use fewer rounds,
     tolerances and rods."""
@@ -65,7 +72,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
         for case, error in ERROR_NAMES_BY_PANEL.items()
         for m in found
     ]
-    return Study(
+    return BenchmarkReport(
         "limit_cycle", "\n\n".join([*blocks, *peers.skipped]), drawn, "period", TARGET_ERROR, undrawn
     )
 

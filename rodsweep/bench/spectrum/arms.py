@@ -1,6 +1,6 @@
 """Spectra of arms that vary along their length, so that D has no closed form.
 
-The contenders of the race ARM_RACE are functions of `UnsolvedArms` that return at least the MODE_COUNT
+The contenders of the race ARM_RACE are functions of `UncachedArms` that return at least the MODE_COUNT
 leading eigenvalues, (modes,).
 """
 
@@ -17,7 +17,7 @@ from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
-from .exact import relative_error
+from .exact import error_field
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -57,16 +57,16 @@ NEWTON_STEP_COUNT = 3
 """Number of Newton steps with the reference D."""
 
 
-class UnsolvedArms:
-    """Source of arms that were not solved before: F grows by one rounding unit with each arm, because
-    rodsweep caches solved arms. rod: the arm before the first."""
+class UncachedArms:
+    """Source of arms that are in no cache: rodsweep caches solved arms, so F grows by one rounding unit with
+    each arm. rod: the arm before the first."""
 
     def __init__(self, rod: Rod):
         self._values = dict(rod.values)
         self._build = rod.build
 
     def next_arm(self) -> Rod:
-        """The arm with the next larger F."""
+        """The next arm; its F is one rounding unit larger."""
         self._values["F"] = nextafter(self._values["F"], inf)
         return Rod(**self._values, build=self._build)
 
@@ -87,15 +87,9 @@ def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measure
     peers: contenders of the peers. rounds: number of timed rounds."""
     measurements = []
     for name, rod in ARM_RODS.items():
-        judge = partial(_error_field, exact_arm_spectrum(rod))
-        measurements += measure_case(name, UnsolvedArms(rod), [*contenders(), *peers], rounds, judge)
+        judge = partial(error_field, exact_arm_spectrum(rod))
+        measurements += measure_case(name, UncachedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
-
-
-def _error_field(exact: list[complex], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: reference
-    eigenvalues."""
-    return {"error": relative_error(w, exact)}
 
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
@@ -135,7 +129,7 @@ def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
     return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
 
 
-def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UnsolvedArms) -> Complex:
+def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UncachedArms) -> Complex:
     """Eigenvalues, (modes,), of the next arm of `arms` by the eigensolver `solve`. size: second argument of
     `solve`, an order or a number of intervals."""
     return solve(arms.next_arm(), size)
@@ -148,7 +142,7 @@ def _krylov_schur(rod: Rod, order: int) -> Complex:
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
 
-def _rodsweep_solver(certify: bool, arms: UnsolvedArms) -> Complex:
+def _rodsweep_solver(certify: bool, arms: UncachedArms) -> Complex:
     return rodsweep_spectrum(arms.next_arm(), certify)
 
 

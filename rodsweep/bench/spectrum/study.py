@@ -19,9 +19,9 @@ from ...solve.spectrum.problem import transverse_problem
 from ...solve.spectrum.search import warm_up
 from ..peers import Peers
 from ..study import (
+    BenchmarkReport,
     Contender,
     Measurement,
-    Study,
     count_text,
     every_nth_setting,
     grouped_by_fields,
@@ -32,7 +32,7 @@ from ..study import (
     time_runs,
 )
 from .arms import ARM_RACE, arm_table, measure_arm_spectra
-from .exact import exact_spectrum, relative_error
+from .exact import error_field, exact_spectrum, relative_error
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -74,7 +74,7 @@ QUICK_STRIDE = 3
 """On hard rods and arms a quick run uses every n-th size; this number is n."""
 
 
-def spectrum_study(quick: bool, peers: Peers) -> Study:
+def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
     """Runs the benchmark and returns the results: the paper's rods at equal errors, hard rods at all sizes,
     and arms. quick: whether to use fewer rounds, target errors and sizes."""
     warm_up()
@@ -91,7 +91,9 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
     arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
-    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms)
+    return BenchmarkReport(
+        "spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms
+    )
 
 
 def cheapest_contenders(
@@ -152,15 +154,9 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
     """Measurements of the contenders `every` on all HARD_RODS. rounds: number of timed rounds."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(spectrum_error, exact_spectrum(rod, MODE_COUNT))
+        judge = partial(error_field, exact_spectrum(rod, MODE_COUNT))
         measurements += measure_case(case, rod, every, rounds, judge)
     return measurements
-
-
-def spectrum_error(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: exact
-    eigenvalues."""
-    return {"error": relative_error(w, exact)}
 
 
 def hard_rod_table(measurements: Sequence[Measurement]) -> str:

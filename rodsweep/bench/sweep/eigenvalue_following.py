@@ -60,7 +60,7 @@ QUICK_GRID_PAIRS = (
 """Pairs of grids that are timed in a quick run."""
 
 
-def followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
+def measure_followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
     """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED_METHOD,
     then ALONE_METHOD.
 
@@ -100,7 +100,7 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measu
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
     """Table of the sweeps, with one line per pair of grids. measurements: as returned by
-    `followed_sweeps`."""
+    `measure_followed_sweeps`."""
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]

@@ -13,15 +13,15 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ..study import (
+    BenchmarkReport,
     Measurement,
-    Study,
     count_text,
     grouped_by_fields,
     markdown_table,
     nan_median,
     timing_order,
 )
-from .eigenvalue_following import followed_sweeps, followed_table
+from .eigenvalue_following import followed_table, measure_followed_sweeps
 from .launch import (
     INSTANT,
     KILLED,
@@ -63,7 +63,7 @@ RunCase = Callable[..., CommandRun]
 """`run_case` with its first argument, the start of the measured command, bound."""
 
 
-def sweep_study(quick: bool, command: Sequence[str]) -> Study:
+def sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
     """Runs the benchmark and returns the results: speedup by a second rank, followed eigenvalues, and
     overhead of a point.
 
@@ -73,17 +73,17 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     run = partial(run_case, command)
     ranks = (1, 2) if launcher_words(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
-        solved = solved_sweeps(Path(folder), run, quick, ranks)
-        followed = followed_sweeps(Path(folder), run, quick)
-        instant = instant_sweeps(Path(folder), run, quick, ranks)
+        solved = measure_solved_sweeps(Path(folder), run, quick, ranks)
+        followed = measure_followed_sweeps(Path(folder), run, quick)
+        instant = measure_instant_sweeps(Path(folder), run, quick, ranks)
     blocks = [INTRODUCTION.strip(), solved_table(solved), followed_table(followed)]
     blocks += [instant_table(instant), growth_table(instant)]
     if len(ranks) == 1:
         blocks.append("Two ranks are skipped: there is no mpiexec in the folder of this Python or on PATH.")
-    return Study("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
+    return BenchmarkReport("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
 
 
-def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
+def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
     """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn. folder:
     directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks.
     """
@@ -104,10 +104,11 @@ def solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int])
     return measure_in_turn(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
 
 
-def instant_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
+def measure_instant_sweeps(
+    folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
+) -> list[Measurement]:
     """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. folder,
-    quick, ranks: as in `solved_sweeps`; killed and resumed sweeps have one rank.
-    """
+    quick, ranks: as in `measure_solved_sweeps`; killed and resumed sweeps have one rank."""
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:

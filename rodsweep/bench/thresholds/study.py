@@ -17,9 +17,9 @@ from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, war
 from ..peers import Peers
 from ..spectrum.arms import FIVE_SEGMENT_PROFILE
 from ..study import (
+    BenchmarkReport,
     Contender,
     Measurement,
-    Study,
     count_text,
     grouped_by_fields,
     markdown_table,
@@ -132,7 +132,7 @@ RODSWEEP_GROUP = "rodsweep"
 """Group of rodsweep in the figure."""
 
 
-def thresholds_study(quick: bool, peers: Peers) -> Study:
+def thresholds_study(quick: bool, peers: Peers) -> BenchmarkReport:
     """Runs the benchmark and returns the results: tables of the onset and of the Hopf point, for uniform rods
     and for arms. quick: whether to use fewer rods and rounds."""
     warm_up()
@@ -145,7 +145,7 @@ def thresholds_study(quick: bool, peers: Peers) -> Study:
             measured = measure_rods(kind, group, contenders(kind) + peers.of(kind), rounds)
             blocks.append(threshold_table(kind, measured))
             found += measured
-    return Study("thresholds", "\n\n".join([*blocks, *peers.skipped]), found, "rod")
+    return BenchmarkReport("thresholds", "\n\n".join([*blocks, *peers.skipped]), found, "rod")
 
 
 def contenders(kind: str) -> list[Contender]:

@@ -25,7 +25,7 @@ from ...sweep.team import Team
 from ...tasks.protocol import Solver
 from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
-from .contribution import RunContribution
+from .run_end import RunContribution
 
 
 @dataclass(frozen=True, kw_only=True)

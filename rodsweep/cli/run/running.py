@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from ...config import load_config
+from ...errors import STOPPED_STATUS
 from ...results.file import provenance
 from ...results.file.store import Store
 from ...results.file.view import read_view
@@ -21,14 +22,10 @@ from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_config_variables
-from .contribution import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
-from .joint import JointWork, PendingJointWork
 from .options import RunOptions
 from .point_work import PointWork
-
-STOPPED_STATUS = 75
-"""Exit status of a run stopped by a signal (EX_TEMPFAIL of sysexits.h); the same command continues the
-run."""
+from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
+from .sweep_wide_work import PendingSweepWideWork, SweepWideWork
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -80,9 +77,9 @@ class _RankRun:
             quiet=options.quiet,
             point_text=self._point_text,
         )
-        together = self.solver.joint_variables
-        self.joint = together and JointWork(
-            team, together, output, self.plan.fingerprint, self.log.append_exception, stop
+        wide = self.solver.sweep_wide_solver
+        self.sweep_wide = wide and SweepWideWork(
+            team, wide, output, self.plan.fingerprint, self.log.append_exception, stop
         )
 
     def run(self) -> int:
@@ -100,31 +97,31 @@ class _RankRun:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
-            if self.joint and self._lacks_joint_variables(index_count(missing) - count):
+            if self.sweep_wide and self._lacks_sweep_wide_variables(index_count(missing) - count):
                 kept += ", then the curves"
             self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[RunContribution] = []
         if count:
             self.team.call_on_first_rank(self._record_blas_kernels)
             contributions = self.team.gather(self.point_work.solve(items, missing, count, self.prepare)) or []
-        joint = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
+        pending = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
-        if self.joint and joint.work_items is not None:
+        if self.sweep_wide and pending.work_items is not None:
             title = None if self.options.quiet else self.job.name
-            shares = self.team.gather(self.joint.solve(joint.work_items, self.prepare, title)) or []
+            shares = self.team.gather(self.sweep_wide.solve(pending.work_items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.call_on_first_rank(
-            lambda: self._finish(count, contributions, joint, shares, exceptions)
+            lambda: self._finish(count, contributions, pending, shares, exceptions)
         )
 
-    def _lacks_joint_variables(self, missing: int) -> bool:
+    def _lacks_sweep_wide_variables(self, missing: int) -> bool:
         """Whether the file lacks only the variables that depend on all points; called on the first rank.
 
         missing: number of missing points.
         """
         return not missing and "finished" not in self.store.attributes()
 
-    def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingJointWork:
+    def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideWork:
         """Writes the points of all journals into the file; returns whether variables that depend on all
         points are still missing, with their work items. count: number of points to be solved in this run.
         contributions: reports of all ranks.
@@ -134,13 +131,13 @@ class _RankRun:
             history = run_history(contributions, self.team.MPI.Get_library_version())
             started = {"started": self.date_at_start, "stopped": self.stop.name}
             self.store.add_journals(last_run_attributes(self.plan) | history | started)
-        if not self._lacks_joint_variables(index_count(self.store.missing())):
-            return PendingJointWork(False)
-        if not self.joint:
-            return PendingJointWork(True)
+        if not self._lacks_sweep_wide_variables(index_count(self.store.missing())):
+            return PendingSweepWideWork(False)
+        if not self.sweep_wide:
+            return PendingSweepWideWork(True)
         if not count:
             self._record_blas_kernels()
-        return PendingJointWork(True, self.joint.joint_variables.work_items(read_view(self.output)))
+        return PendingSweepWideWork(True, self.sweep_wide.solver.work_items(read_view(self.output)))
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
@@ -150,8 +147,8 @@ class _RankRun:
     def _open_store(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
-        if self.joint and (self.options.fresh or not self._lacks_joint_variables(0)):
-            self.joint.item_results.drop()
+        if self.sweep_wide and (self.options.fresh or not self._lacks_sweep_wide_variables(0)):
+            self.sweep_wide.item_results.drop()
         self._print_store_notes()
         return self.store.missing()
 
@@ -175,17 +172,18 @@ class _RankRun:
     def _point_text(self, index: int) -> str:
         return parameters_text(self.job.points.values(index))
 
-    def _finish_file(self, joint: PendingJointWork) -> bool:
-        """Writes the variables of all points into the file; returns whether these are still missing."""
-        if not joint.is_missing:
+    def _finish_file(self, pending: PendingSweepWideWork) -> bool:
+        """Writes the variables that depend on all points into the file; returns whether these are still
+        missing."""
+        if not pending.is_missing:
             return False
-        variables = self.joint.variables(joint.work_items) if self.joint else ()
+        variables = self.sweep_wide.variables(pending.work_items) if self.sweep_wide else ()
         if variables is None:
             self.store.add_journals({"stopped": self.stop.name})
             return True
         self.store.finish({"finished": provenance.utc_time(), "stopped": self.stop.name}, variables)
-        if self.joint:
-            self.joint.item_results.drop()
+        if self.sweep_wide:
+            self.sweep_wide.item_results.drop()
         return False
 
     def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
@@ -208,14 +206,15 @@ class _RankRun:
         self,
         count: int,
         contributions: list[RunContribution],
-        joint: PendingJointWork,
+        pending: PendingSweepWideWork,
         shares: list[RankWork],
         exceptions: int,
     ) -> int:
         """Completes the result file, prints how the run ended, and returns the exit status. count: number of
-        points to be solved. contributions, shares: work of each rank on points and on half curves. joint:
+        points to be solved. contributions, shares: work of each rank on points and on half curves. pending:
         variables that depend on all points. exceptions: number of unforeseen exceptions on all ranks."""
-        lacks_joint_variables_in = self._finish_file(joint)
+        lacks_sweep_wide_variables = self._finish_file(pending)
+        wide = self.sweep_wide
         missing = self.store.missing()
         self._print_store_notes()
         counts = self.store.status_counts()
@@ -230,8 +229,8 @@ class _RankRun:
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
-            followed_halves=sum(s.solved_points for s in shares) if joint.is_missing and self.joint else None,
-            stored_halves=len(self.joint.results) if self.joint and lacks_joint_variables_in else None,
+            followed_halves=sum(s.solved_points for s in shares) if pending.is_missing and wide else None,
+            stored_halves=len(wide.results) if wide and lacks_sweep_wide_variables else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
             self._print_message(sentence)
@@ -239,7 +238,7 @@ class _RankRun:
         amiss = not set(counts) <= expected
         self._print_message(f"{self.output}: {self._status_counts_text(counts, left)}", amiss)
         self._print_failures(contributions, exceptions)
-        if left or lacks_joint_variables_in:
+        if left or lacks_sweep_wide_variables:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"
             click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues")
             return STOPPED_STATUS

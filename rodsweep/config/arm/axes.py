@@ -9,10 +9,7 @@ estimates are the values of an axis of gamma3.
 
 from collections.abc import Mapping
 
-from ...errors import InputError
 from ...model.arm.quantities import LOAD_OF_RATIO, LOADS
-from ...model.arm.refusals import NotSlender
-from ...model.arm.section import BoreTooWide
 from ...model.parameters import PARAMETERS
 
 LOAD_KEYS = (*LOADS, *LOAD_OF_RATIO)
@@ -42,11 +39,6 @@ NON_LOAD_KEYS = (
     "drag",
 )
 """Names of all quantities of an arm except the load."""
-SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER, FLUTTER_UNKNOWN = 0, 100, 101, 102, 103, 104
-"""Status codes of the points of an arm, in this order: the rod model applies; the arm is too short for the
-drag of slender bodies; F >= k1; the bore is as wide as the arm; the load is relative to a flutter threshold
-that does not exist; the load is relative to a flutter threshold that the search did not find. The codes from
-100 on are larger than the status codes of all tasks."""
 MAX_ARM_GRID_POINTS = 1_000_000
 """Maximum number of points of a grid over an arm's quantities; larger grids are refused, because the
 parameters of all points are kept in memory."""
@@ -70,15 +62,3 @@ def parameter_of_axis(axis: str) -> str:
     parameter change.
     """
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")
-
-
-STATUS_OF_ERROR = {NotSlender: NOT_SLENDER, BoreTooWide: NO_WALL}
-"""Status code of a point by the class of the exception that its arm raises."""
-
-
-class UncoveredArm(ValueError):
-    """The rod model does not apply to an arm; `status` is the status code of the arm's points."""
-
-    def __init__(self, error: InputError):
-        super().__init__(f"parameters.arm.{error}")
-        self.status = STATUS_OF_ERROR[type(error)]

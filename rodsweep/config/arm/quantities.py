@@ -9,10 +9,8 @@ from ...errors import InputError
 from ...model.arm.drag import DRAG_NAMES, DRAG_RANGE_NAME
 from ...model.arm.quantities import LOAD_OF_RATIO, UNITS
 from ...model.units import load_over_flutter, quantity_in_si, split_quantity, value_in_unit
-from ..values import AXIS_SCHEMA, Axis, as_axis, as_float, short_repr
-
-RANGE_ENDS = ("start", "stop")
-"""Keys of the ends of a range."""
+from ..axis import AXIS_SCHEMA, RANGE_ENDS, Axis, as_axis
+from ..values import as_float, short_repr
 
 
 def quantity_axis(value: Any, info: ValidationInfo) -> Axis:
@@ -27,7 +25,7 @@ def quantity_axis(value: Any, info: ValidationInfo) -> Axis:
 
 def _axis_in_si(name: str, value: Any) -> Axis:
     if isinstance(value, dict):
-        ends = {end: _si_number(name, value[end]) for end in ("start", "stop") if end in value}
+        ends = {end: _si_number(name, value[end]) for end in RANGE_ENDS if end in value}
         try:
             return as_axis(value | ends)
         except ValueError as error:
@@ -42,7 +40,7 @@ def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
     """Remark for error messages if only start or only stop of a range has a unit, else "". name: name of the
     quantity. span: the range as a mapping.
     """
-    ends = [end for end in ("start", "stop") if end in span]
+    ends = [end for end in RANGE_ENDS if end in span]
     bare = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
     return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""

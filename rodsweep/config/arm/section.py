@@ -14,11 +14,13 @@ from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAME, UNITS
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
+from ..axis import Axis, ParameterAxis
 from ..material import LawName, SectionName
-from ..values import Axis, ParameterAxis, StrictSection
-from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF, STATUS_OF_ERROR, UncoveredArm
+from ..values import StrictSection
+from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
 from .quantities import DragAxis, QuantityAxis, drag_names, with_load_over_flutter
 from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
+from .status import STATUS_OF_ERROR, UncoveredArm
 
 QuantityField = Field(
     description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
@@ -104,7 +106,7 @@ class ArmSection(StrictSection):
         return self.tip_radius is not None or self.segments is not None
 
     @property
-    def standard(self) -> bool:
+    def is_uniform_and_linear(self) -> bool:
         """Whether all arms are uniform and of linear material."""
         if self.segments is None:
             return self.build.is_uniform_and_linear and tapers_of(self) == {1.0}
@@ -128,10 +130,7 @@ class ArmSection(StrictSection):
     @property
     def settings_of_results(self) -> dict[str, Any]:
         """Data of the arm on which the results depend, except the points: quantities in SI units and material
-        keys, by name.
-
-        A quantity that varies between points has the value None.
-        """
+        keys, by name; None for a quantity that varies between points."""
         varied = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
         numbers = {n: None if n in varied else value for n, value in self.first_values.items()}
         return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}

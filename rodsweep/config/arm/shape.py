@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.units import unit_of, value_in_unit
-from .axes import UncoveredArm
+from .status import UncoveredArm
 
 if TYPE_CHECKING:
     from .section import ArmSection

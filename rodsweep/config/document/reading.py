@@ -13,13 +13,14 @@ from ruamel.yaml import YAML
 
 from ...errors import InputError
 from ...model.parameters import OPTIONAL_PARAMETERS
+from ...wording import enumeration
 from ..arm.quantities import drag_names
 from ..arm.section import ArmSection
-from ..axes import joined_names
+from ..axis import Axis, axis_from_resolved
+from ..base_config import Config
 from ..material import with_profile_read
-from ..schema import Config
 from ..tasks import CONFIGS, makes_diagram
-from ..values import Axis, axis_from_resolved, printable_name, short_repr
+from ..values import printable_name, short_repr
 from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
@@ -179,7 +180,7 @@ def _apply_override(tree: dict, override: str) -> None:
 
 def _task_name(tree: dict) -> str:
     """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
-    known = joined_names(tuple(CONFIGS), "or")
+    known = enumeration(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
         close = similar_keys("task", others)

@@ -10,8 +10,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from ...model.parameters import PARAMETERS
-from ..axes import joined_names
-from ..schema import Config
+from ...wording import enumeration
+from ..base_config import Config
 from ..values import printable_name, short_repr
 
 MAX_KEY_LENGTH = 100
@@ -57,7 +57,7 @@ def unknown_key_hint(key: str, known: Sequence[str], there_are: str = "known key
     there_are: beginning of the list.
     """
     close = similar_keys(key, known)
-    return f"did you mean {joined_names(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
+    return f"did you mean {enumeration(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 
 
 def similar_keys(key: str, known: Sequence[str]) -> list[str]:
@@ -166,7 +166,7 @@ def allowed_values_text(field: FieldInfo) -> str:
     if field.description:
         return field.description
     if get_origin(kind) is Literal:
-        return joined_names(get_args(kind), "or")
+        return enumeration(get_args(kind), "or")
     if kind is bool:
         return "true or false"
     if kind is str:

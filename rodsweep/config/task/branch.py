@@ -7,25 +7,20 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import (
-    LINEAR_PARAMETERS,
     NONLINEAR_PARAMETERS,
-    OPTIONAL_PARAMETERS,
     PARAMETERS,
+    TRANSVERSE_PARAMETERS,
     parameter_names_except,
 )
-from ..axes import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
-from ..schema import Config
+from ..base_config import Config
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
 from ..values import Number, StrictSection
-
-CONTINUATION_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Names of the parameters along which branches of cycles can be followed. gamma1 is not included, because
-Hopf points do not depend on gamma1."""
 
 
 class BranchOptions(StrictSection):
     """Options of the task branch: parameter and range of the branches, number of stored cycles."""
 
-    along: Literal[CONTINUATION_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
+    along: Literal[TRANSVERSE_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
     """Parameter along which branches are followed. All other parameters are axes."""
     start: Annotated[Number, Field(gt=-inf, lt=inf)] = 0.0
     """Smallest value of the parameter `along`; a branch that reaches this value ends."""

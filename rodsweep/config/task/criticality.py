@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
-from ..axes import NonlinearParameters
-from ..schema import Config, CrossingCount
+from ..base_config import Config, CrossingCount
+from ..parameters_section import NonlinearParameters
 from ..values import Number, StrictSection
 
 

@@ -5,9 +5,10 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
+from ...wording import enumeration
 from ..arm.axes import SINGLE_PARAMETER_OF
-from ..axes import NonlinearParameters, joined_names
-from ..schema import Config, NodeCount
+from ..base_config import Config, NodeCount
+from ..parameters_section import NonlinearParameters
 from ..values import Number, StrictSection
 
 LONGEST_AXIS = "longest"
@@ -42,8 +43,8 @@ class LimitCycleOptions(StrictSection):
     """Number of times, from the start of the motion until the cycle is reached, at which the tip is stored; 0
     stores no transient."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
-    """Maximum number of periods of the motion; the maximum number of time steps is 200 times this number. A
-    motion that has not settled by then is `not_settled`."""
+    """Maximum number of periods of the motion, counted as returns of the tip to theta = 0; the maximum number
+    of time steps is 200 times this number. A motion that has not settled by then is `not_settled`."""
     time: Literal["tau2", "tau1"] = "tau2"
     """Unit of time. tau1 adds the period in units of tau1; all other variables stay in units of tau2."""
 
@@ -102,7 +103,7 @@ class LimitCycleConfig(Config):
         if along in SINGLE_PARAMETER_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or set "
-                f"along to {joined_names(NONLINEAR_PARAMETERS, 'or')}"
+                f"along to {enumeration(NONLINEAR_PARAMETERS, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
@@ -116,6 +117,6 @@ class LimitCycleConfig(Config):
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
                 f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "
-                f"{joined_names((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
+                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
         return self

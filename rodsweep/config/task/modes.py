@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from ..schema import LinearConfig, ModeCount, NodeCount
+from ..base_config import LinearConfig, ModeCount, NodeCount
 from ..values import StrictSection
 
 

@@ -8,13 +8,13 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ...model.arm.quantities import LOAD_OF_RATIO
-from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAMETERS
+from ...wording import enumeration
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
-from ..axes import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes, joined_names
-from ..schema import CrossingCount, LinearConfig
-from ..values import Axis, Number, StrictSection
-
-THIRD_PARAMETERS = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+from ..axis import Axis
+from ..base_config import CrossingCount, LinearConfig
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes
+from ..values import Number, StrictSection
 
 
 class BautinAlong(LinearAxes):
@@ -53,14 +53,14 @@ class PhaseDiagramOptions(StrictSection):
         """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
         given.
         """
-        given = [(name, getattr(self.bautin_along, name, None)) for name in THIRD_PARAMETERS]
+        given = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETERS]
         return next(((name, axis) for name, axis in given if axis is not None), None)
 
     @model_validator(mode="after")
     def _require_valid_bautin_along(self) -> "PhaseDiagramOptions":
         if self.bautin_along is None:
             return self
-        given = [name for name in THIRD_PARAMETERS if getattr(self.bautin_along, name) is not None]
+        given = [name for name in TRANSVERSE_PARAMETERS if getattr(self.bautin_along, name) is not None]
         if len(given) != 1:
             raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
         name = given[0]
@@ -165,7 +165,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _require_two_axes(self) -> "PhaseDiagramConfig":
-        every = joined_names(LINEAR_PARAMETERS, "and")
+        every = enumeration(LINEAR_PARAMETERS, "and")
         if self.parameters.points is not None:
             raise ValueError(
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
@@ -184,11 +184,11 @@ class PhaseDiagramConfig(LinearConfig):
             )
             raise ValueError(
                 f"parameters.arm.{LOAD_OF_RATIO.get(several, several)} {why}; the axes of a phase "
-                f"diagram are {joined_names((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given in "
+                f"diagram are {enumeration((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given in "
                 "addition to the arm"
             )
         long = self.plane_parameters
-        names = joined_names((*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), "and")
+        names = enumeration(TRANSVERSE_PARAMETERS, "and")
         if len(long) != 2:
             raise ValueError(
                 f"parameters has {len(long)} {'axis' if len(long) == 1 else 'axes'} with more than one value "
@@ -196,7 +196,7 @@ class PhaseDiagramConfig(LinearConfig):
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
-            stiff = joined_names(
+            stiff = enumeration(
                 tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective), "and"
             )
             raise ValueError(

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import model_validator
 
 from ...model.parameters import LINEAR_PARAMETERS
-from ..schema import LinearConfig, ModeCount, NodeCount
+from ..base_config import LinearConfig, ModeCount, NodeCount
 from ..values import StrictSection
 
 
@@ -59,7 +59,7 @@ class SpectrumConfig(LinearConfig):
         return self.spectrum.certify and self.spectrum.method == "determinant"
 
     @property
-    def follows(self) -> bool:
+    def follows_eigenvalues(self) -> bool:
         """Whether eigenvalues are followed along an axis: only on grids, with certified spectra and without
         eigenvectors.
         """

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...model.parameters import parameter_names_except
-from ..schema import CrossingCount, LinearConfig
+from ..base_config import CrossingCount, LinearConfig
 from ..values import Number, StrictSection
 
 

@@ -2,7 +2,7 @@
 eigenvalues.
 
 D depends on p through all coefficients along the arm. Where a family of arms
-(`rodsweep.determinant.arm.family`) contains the arm at p, D and its derivative by p come from the family.
+(`rodsweep.determinant.arm.arm_family`) contains the arm at p, D and its derivative by p come from the family.
 Elsewhere derivatives by p are differences between determinants of neighbouring arms. The differences need not
 be accurate: only Jacobians of Newton's method and predictors use them.
 """
@@ -17,8 +17,8 @@ from ..parameter_path import Path
 from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
 from ..roots.settings import ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
+from .arm_family import ArmFamily
 from .determinant import ArmDeterminant, arm_determinant
-from .family import ArmFamily
 from .family_values import determinant_of_family_arm, eigenvalue_of_family_arm, propagators_at
 from .newton import refine_eigenvalue_and_error
 from .rounding import rounding_error_by_chain

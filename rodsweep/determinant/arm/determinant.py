@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Complex
+from ...arrays import Array
 from ...model.dispersion import sampled_arm
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
@@ -19,7 +19,7 @@ from ..value import DeterminantValue
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
-from .local_waves import ArmSamples, arm_samples, wave_number_and_length_at, wave_numbers_and_lengths_at
+from .local_waves import ArmSamples, arm_samples, mean_wave_number_and_w_scale
 from .value import determinant_along_chain
 
 PropagatorsUpToW = tuple[float, Array]
@@ -56,20 +56,12 @@ class ArmDeterminant:
 
     def wave_number(self, w: complex) -> float:
         """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
-        return self.wave_number_and_length(w)[0]
+        return mean_wave_number_and_w_scale(w, self.samples)[0]
 
-    def phase_change_length(self, w: complex) -> float:
+    def w_scale(self, w: complex) -> float:
         """Change of w over which an exponent of D, integrated along the arm, changes by about one, in
         1/tau2."""
-        return self.wave_number_and_length(w)[1]
-
-    def wave_number_and_length(self, w: complex) -> tuple[float, float]:
-        """(`wave_number`, `phase_change_length`) at w."""
-        return wave_number_and_length_at(w, self.samples)
-
-    def wave_numbers_and_lengths(self, w: Complex) -> Array:
-        """Array (2, n) of `wave_number` and `phase_change_length` at every w, (n,)."""
-        return wave_numbers_and_lengths_at(w, self.samples)
+        return mean_wave_number_and_w_scale(w, self.samples)[1]
 
     @cached_property
     def gauss_samples(self) -> ArmSamples:

@@ -12,7 +12,7 @@ from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
-from .family import LINEAR_SCALE, ArmFamily
+from .arm_family import LINEAR_SCALE, ArmFamily
 from .newton import ARM_ROOT_SETTINGS
 from .rounding import error_of_interpolated_chain
 from .value import determinant_along_chain, path_value_by_chain

@@ -54,10 +54,10 @@ def modulus_of_parts(real: float, imag: float) -> float:
 
 
 @compiled_for_vectors
-def wave_number_and_length_at(w: complex, samples: ArmSamples) -> tuple[float, float]:
-    """Returns (wave number, length) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|, averaged
-    along the arm. length: 1/(average along the arm of the larger |d sqrt(z+-)/dw|).
-    """
+def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float, float]:
+    """Returns (wave number, scale of w) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|,
+    averaged along the arm. scale of w: change of w over which an exponent of D changes by about one,
+    1/(average along the arm of the larger |d sqrt(z+-)/dw|)."""
     number = 0.0
     fast = 0.0
     a = w.real
@@ -83,13 +83,14 @@ def wave_number_and_length_at(w: complex, samples: ArmSamples) -> tuple[float, f
 
 
 @compiled
-def wave_numbers_and_lengths_at(w: Complex, samples: ArmSamples) -> Array:
-    """Wave numbers and lengths of `wave_number_and_length_at` at every w, (n,), as an array, (2, n)."""
+def mean_wave_numbers_and_w_scales(w: Complex, samples: ArmSamples) -> Array:
+    """Wave numbers and scales of w of `mean_wave_number_and_w_scale` at every w, (n,), as an array, (2,
+    n)."""
     found = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.
         if n > 0 and w[n] == w[n - 1].conjugate():
             found[:, n] = found[:, n - 1]
         else:
-            found[:, n] = wave_number_and_length_at(w[n], samples)
+            found[:, n] = mean_wave_number_and_w_scale(w[n], samples)
     return found

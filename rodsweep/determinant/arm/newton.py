@@ -115,11 +115,6 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
     return _root_error_by_propagators(complex(w), _propagators_at(w, determinant))
 
 
-def refine_eigenvalue(w: complex, determinant: ArmDeterminant) -> complex:
-    """The eigenvalue of an arm near w, by Newton's method (`refine_eigenvalue_and_error`)."""
-    return refine_eigenvalue_and_error(w, determinant)[0]
-
-
 def refine_eigenvalue_and_error(
     w: complex, determinant: ArmDeterminant, farthest: float = math.inf
 ) -> tuple[complex, float]:

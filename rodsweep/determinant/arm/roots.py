@@ -19,6 +19,7 @@ from ..roots.roots import Roots
 from ..roots.settings import ROOT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import EigenvalueHull
+from .local_waves import mean_wave_numbers_and_w_scales
 from .newton import ARM_ROOT_SETTINGS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
 
 T = TypeVar("T")
@@ -38,8 +39,10 @@ def refine_mesh_eigenvalues(
         for w in raw.tolist()
     ]
     inside = [i for i, w in enumerate(first) if _is_in_eigenvalue_box(w, hull)]
-    waves, lengths = determinant.wave_numbers_and_lengths(np.array([first[i] for i in inside], complex))
-    scale = dict(zip(inside, lengths.tolist(), strict=True))
+    waves, w_scales = mean_wave_numbers_and_w_scales(
+        np.array([first[i] for i in inside], complex), determinant.samples
+    )
+    scale = dict(zip(inside, w_scales.tolist(), strict=True))
     resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= most_waves]
     start = [first[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, start), default=0.0), largest)
@@ -57,7 +60,7 @@ def refine_mesh_eigenvalues(
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))
     kept = np.array([chosen[stands[root.guess_index]] for root in found], np.int64)
     w: Complex = np.array([root.w for root in found], complex)
-    wave = determinant.wave_numbers_and_lengths(w)[0]
+    wave = mean_wave_numbers_and_w_scales(w, determinant.samples)[0]
     error = _errors_of_located_roots(found, determinant)
     length: Array = np.array([scale[i] for i in kept.tolist()], float)
     displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)

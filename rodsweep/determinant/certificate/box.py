@@ -135,8 +135,8 @@ def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> f
     bends = [coefficient_derivatives(c, path.direction) for c in ends]
     # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
     span = (stop - start) ** 2 / 8
-    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
-    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)
+    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G_pp) for b in bends)
+    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N_pp) for b in bends), 0.0)
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
         pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
     return _zero_free_radius(largest, T, X, G, pull)

@@ -183,7 +183,7 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # The bounds on the bidisc also need a small change of the radicand of P.
-    factor = abs(centre.derivatives.G1) + abs(centre.derivatives.X1) * size
+    factor = abs(centre.derivatives.G_p) + abs(centre.derivatives.X_p) * size
     return max(in_w, half[0] / size), max(
         in_p, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.least_divisor)
     )

@@ -134,21 +134,21 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
     w = centre.w
     S = centre.S
     F, nu, c2, gamma3 = centre.coefficients
-    T1, N1, N2, G1, G2, X1, X2 = centre.derivatives
+    T_p, N_p, N_pp, G_p, G_pp, X_p, X_pp = centre.derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
     T = c2 + gamma3
     far = abs(w) + rho
-    dG = (abs(G1) + abs(G2) / 2 * sigma) * sigma
-    dX = (abs(X1) + abs(X2) / 2 * sigma) * sigma
+    dG = (abs(G_p) + abs(G_pp) / 2 * sigma) * sigma
+    dX = (abs(X_p) + abs(X_pp) / 2 * sigma) * sigma
     largest = far * (abs(g * nu + X * w) + dG + X * rho + dX * far)
-    bend = abs(T1) * sigma * rho + abs(N2) / 2 * sigma * sigma + 2 * math.sqrt(largest)
-    E, E1 = bounds_of_E_on_bidisc(T * w - F * g, (complex(T), T1 * w - N1), rates, radii, bend, S)
+    bend = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma + 2 * math.sqrt(largest)
+    E, E1 = bounds_of_E_on_bidisc(T * w - F * g, (complex(T), T_p * w - N_p), rates, radii, bend, S)
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
     still = math.exp(min(drift - S, EXPONENT_SETTINGS.max_exponent))
-    return still + far * ((T + abs(T1) * sigma) * E + 2 * steep * E1)
+    return still + far * ((T + abs(T_p) * sigma) * E + 2 * steep * E1)
 
 
 @compiled
@@ -173,13 +173,13 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     S = centre.S
     P = centre.P
     F, nu, c2, gamma3 = centre.coefficients
-    T1, _, N2, G1, G2, X1, X2 = centre.derivatives
+    T_p, _, N_pp, G_p, G_pp, X_p, X_pp = centre.derivatives
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
     base = abs(g * nu + X * w)
-    dG = (abs(G1) + abs(G2) / 2 * sigma) * sigma
-    dX = (abs(X1) + abs(X2) / 2 * sigma) * sigma
+    dG = (abs(G_p) + abs(G_pp) / 2 * sigma) * sigma
+    dX = (abs(X_p) + abs(X_pp) / 2 * sigma) * sigma
     # P = sqrt(w) sqrt(g nu + X w): relative changes of the two factors.
     e1 = rho / abs(w)
     moved = dG + X * rho + dX * (abs(w) + rho)
@@ -190,10 +190,10 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
         return math.inf
     if moved == 0:
         e2 = 0.0
-    bend = abs(T1) * sigma * rho + abs(N2) / 2 * sigma * sigma
-    steepest = c2 + gamma3 + abs(T1) * sigma
+    bend = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma
+    steepest = c2 + gamma3 + abs(T_p) * sigma
     if P != 0:
-        second = abs(G2) / 2 * sigma + abs(X2) / 2 * sigma * (abs(w) + rho) + abs(X1) * rho
+        second = abs(G_pp) / 2 * sigma + abs(X_pp) / 2 * sigma * (abs(w) + rho) + abs(X_p) * rho
         # 2 - sqrt(1 - e) has the Taylor coefficients of sqrt(1 + e) in modulus, hence bounds the nonlinear
         # part of P.
         majorant = (2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2

@@ -134,7 +134,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 
 @compiled
-def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
+def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
     """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant exponential A
     of D.
     """
@@ -144,7 +144,8 @@ def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, c
 
 @compiled
 def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A), the phase of D minus the phase of A, at w. factors: `dominant_factors` at w."""
+    """arg(1 + e) = arg(D/A), the phase of D minus the phase of A, at w. factors:
+    `dominant_prefactor_and_exponent` at w."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
@@ -185,11 +186,11 @@ def phase_over_dominated_segment(
         if not found:
             break
         if t == 0.0:
-            here = dominant_factors(w, coefficients)
+            here = dominant_prefactor_and_exponent(w, coefficients)
             first = here
         t = length if t + 2 * rho >= length * (1 - DOMINANCE_SETTINGS.end_rounding) else t + 2 * rho
         w = start + direction * t
-        after = dominant_factors(w, coefficients)
+        after = dominant_prefactor_and_exponent(w, coefficients)
         # The change of arg A over the step, in closed form; it may exceed 2 pi.
         total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])
         here = after

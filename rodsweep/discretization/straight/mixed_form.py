@@ -30,6 +30,7 @@ from ...model.rod import Rod
 from ..arm_on_mesh import jumps_on_mesh, material_at_nodes
 from ..elements.mesh import Mesh, shape_integration_matrices
 from ..nodal_rod import NodalRod, nodal_rod
+from ..rod_on_mesh import broadcast_to_field
 from ..state_layout import PLANE_COMPONENT_COUNT, StateLayout, plane_layout
 from .law_at_rest import LawAtRest, law_at_rest
 
@@ -112,15 +113,13 @@ class MixedForm:
         W = self.mesh.quadrature
         change = self.law.force_derivatives
         E = axial_field(change.nu)
-        moved = self._broadcast_to_field(change.tangent, S) * S
+        moved = broadcast_to_field(change.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
-        at_rest = self._broadcast_to_field(self.nodal_rod.rest_strain, S)
+        at_rest = broadcast_to_field(self.nodal_rod.rest_strain, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
-        forces = coad(self._broadcast_to_field(E, S), self._linearised_law(S)) + coad(at_rest, moved)
-        forces = forces + coad(self._compliance_times_stress(S), self._broadcast_to_field(Sigma, S))
-        return self.state(
-            W * ad(self._broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(moved)
-        )
+        forces = coad(broadcast_to_field(E, S), self._linearised_law(S)) + coad(at_rest, moved)
+        forces = forces + coad(self._compliance_times_stress(S), broadcast_to_field(Sigma, S))
+        return self.state(W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(moved))
 
     @cached_property
     def tip_y_row(self) -> Array:
@@ -160,7 +159,7 @@ class MixedForm:
             second = self.law.second_derivative_form(S, T)
             forces = (
                 forces
-                + W * coad(self._broadcast_to_field(self.nodal_rod.rest_strain, S), second)
+                + W * coad(broadcast_to_field(self.nodal_rod.rest_strain, S), second)
                 + self._weighted_derivative(second)
             )
         return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
@@ -174,7 +173,7 @@ class MixedForm:
         law = self.law
         third = law.third_derivative_form(S, T, R)
         forces = W * coad(
-            self._broadcast_to_field(self.nodal_rod.rest_strain, S), third
+            broadcast_to_field(self.nodal_rod.rest_strain, S), third
         ) + self._weighted_derivative(third)
         for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
             forces = forces + W * coad(
@@ -184,20 +183,15 @@ class MixedForm:
 
     def _compliance_times_stress(self, S: Values) -> Values:
         """The strain C S, relative to the straight rod, at all nodes, (3, ..., nodes + 1)."""
-        return self._broadcast_to_field(self.nodal_rod.compliance, S) * S
+        return broadcast_to_field(self.nodal_rod.compliance, S) * S
 
     def _linearised_law(self, S: Values) -> Values:
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
-        return self._broadcast_to_field(self.law.tangent, S) * S
+        return broadcast_to_field(self.law.tangent, S) * S
 
     def _weighted_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
         return field @ -self.mesh.matrices.weak_derivative
-
-    @staticmethod
-    def _broadcast_to_field(constant: Values, field: Values) -> Values:
-        """A constant (3, nodes + 1), reshaped to broadcast against a field (3, ..., nodes + 1)."""
-        return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)
 
     def _coupling_matrix(self) -> Array:
         """Matrix of the terms of A without D and without drag, (unknowns, unknowns).

@@ -12,7 +12,7 @@ from bokeh.models import CustomJS, Range1d
 from ...arrays import Array
 from ...post.figures.cycle.tip_path import smooth_tip_path
 from ..page_style import template_text
-from ..scales import PictureAxis
+from ..slider_scales import PictureAxis
 from ..solving.tip_release import Tip
 from .card import (
     NEUTRAL_COLOUR,

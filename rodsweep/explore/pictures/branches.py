@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
-from ..scales import PictureAxis
+from ..slider_scales import PictureAxis
 from .card import (
     NEUTRAL_COLOUR,
     POINT_COLOUR,

@@ -11,7 +11,7 @@ from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ...arrays import Array
 from ...wording import counted
-from ..scales import ControlScale
+from ..slider_scales import ControlScale
 from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from .card import (
     FOLD_COLOUR,

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import HoverTool, Range1d, Span
 
-from ..scales import PictureAxis
+from ..slider_scales import PictureAxis
 from .card import (
     NEUTRAL_COLOUR,
     POINT_COLOUR,

@@ -13,7 +13,7 @@ from ...api.sweeping import sweep
 from ...errors import InputError
 from ...model.arm.quantities import QUANTITIES
 from ...model.units import quantity_in_si
-from ..state import LAWS, PageState, float_or_text
+from ..state import MATERIAL_CHOICES, PageState, float_or_text
 
 Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
@@ -154,7 +154,7 @@ def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
         **_fixed_parameters(state),
         state.second: second_parameter_values(state, SLOW_ROW_COUNT),
     }
-    keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
+    keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
     return diagram_from_row_result(
@@ -166,7 +166,9 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     """Diagram of arms, with the variables of `diagram_answer`, from the task `thresholds` for values around
     the second quantity of `state`.
     """
-    given = {name: text for name, text in state.arm.items() if name != "pressure"} | LAWS[state.law]
+    given = {name: text for name, text in state.arm.items() if name != "pressure"} | MATERIAL_CHOICES[
+        state.law
+    ]
     quantity = QUANTITIES[state.second]
     middle = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
     values = np.geomspace(middle / ARM_SPAN_RATIO, middle * ARM_SPAN_RATIO, ARM_ROW_COUNT)

@@ -15,10 +15,10 @@ from ...api.answers.picture import plot
 from ...api.arm import Arm
 from ...api.dataset import view_of_dataset
 from ...api.sweeping import sweep
-from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
+from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
 from ...post.branch_curves import RodBranches
-from ..state import LAWS, PageState, rod_of
+from ..state import MATERIAL_CHOICES, PageState, rod_of
 from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
 from .tip_release import Tip, dragged_equilibrium, motion_film_answer, released_motion_answer
@@ -94,7 +94,7 @@ def growth_answer(state: PageState) -> AnswerVariables:
     tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
     rod = rod_of(subject)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
-    keywords |= {"material": LAWS[state.law]} if LAWS[state.law] else {}
+    keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     F = np.linspace(
         0, min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod)), GROWTH_FORCE_COUNT
     )
@@ -106,7 +106,8 @@ def growth_answer(state: PageState) -> AnswerVariables:
 
 
 def cycle_answer(state: PageState) -> AnswerVariables:
-    """Limit cycle with shapes of the arm over a period. x, y: coordinates of the straight arm."""
+    """Limit cycle with shapes of the arm over a period, and x, y: coordinates of the straight arm, whose tip
+    the user can drag."""
     return answer_variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
         state, None
     )

@@ -12,8 +12,8 @@ from ...post.rod_portrait.results import DescribedRod
 from ...tasks.released_motion import FRAMES_PER_RETURN, ReleasedMotion, bent_shape, released_motion
 from ...tasks.rod_portrait import PortraitRequest
 from ...tasks.running.job import Job
-from ..scales import length_axis
-from ..state import LAWS, PageState, rod_of
+from ..slider_scales import length_axis
+from ..state import MATERIAL_CHOICES, PageState, rod_of
 
 Tip = tuple[float, float]
 """Coordinates (x, y) of the tip, in units of the arm's length L."""
@@ -72,5 +72,5 @@ def _film_shapes(found: ReleasedMotion) -> dict[str, Any]:
 
 def _motion_job(state: PageState, **options: int) -> Job:
     rod = dict(rod_of(state.subject()))
-    request = PortraitRequest(rod=DescribedRod(parameters=rod, material=LAWS[state.law]))
+    request = PortraitRequest(rod=DescribedRod(parameters=rod, material=MATERIAL_CHOICES[state.law]))
     return request.job_of_task("limit_cycle", options, rod["F"])

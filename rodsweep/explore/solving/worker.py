@@ -16,8 +16,8 @@ from types import FrameType
 from typing import Any
 
 from ...errors import Refusal
+from ...solve_progress import SolvePosition, reporting_to
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from ...watch import SolvePosition, reporting_to
 from .questions import Question, Reply, answer_to
 
 CANCELLATION_RETRY_SECONDS = 0.05

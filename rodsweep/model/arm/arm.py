@@ -106,7 +106,7 @@ class SlenderArm:
         return self.shape.base.section
 
     @property
-    def is_equally_stiff(self) -> bool:
+    def is_equally_stiff_in_all_planes(self) -> bool:
         """Whether the arm is equally stiff in all planes through its axis."""
         return not isinstance(self.cross_section, Rectangle) or self.si.width == self.si.height
 
@@ -125,7 +125,7 @@ class SlenderArm:
         return self.build_with_drag(self.chosen_drag)
 
     @property
-    def standard(self) -> bool:
+    def is_uniform_and_linear(self) -> bool:
         """Whether the arm is uniform and of linear material."""
         return self.build.is_uniform_and_linear and self.taper == 1
 

@@ -139,7 +139,7 @@ def smallest_drag(arm: SlenderArm) -> Drag:
     return min(arm.drags, key=lambda drag: drag.gamma2)
 
 
-def largest_angular_frequency(arm: SlenderArm, frequency: ArrayLike) -> Array:
+def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) -> Array:
     """Angular frequency in rad/s for the smallest drag of the arm. frequency: in rad/tau2, (...,)."""
     return np.asarray(frequency, float) / arm.tau2_with(smallest_drag(arm))
 

@@ -29,7 +29,7 @@ from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
-from ...watch import report
+from ...solve_progress import report
 from .digest import FunctionText, kernel_digest, kernel_of, type_text
 from .slice_assignment import use_fixed_shape_message
 

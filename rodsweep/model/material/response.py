@@ -1,4 +1,5 @@
-"""Compiled stress-strain relation of every law: n1 and m3 from unknowns that are regular at c1 = 0.
+"""Compiled stress-strain relation of every law: n1 and m3 from unknowns that are regular at c1 = 0. The same
+laws as functions of the stretch, for Python code, are in `rodsweep.model.material.laws`.
 
 The unknowns q1, q2, q3 are the stresses, minus the stresses at rest, of a linear rod with the same strain: h1
 = nu + c1 q1, h2 = c2 q2, kappa = c3 q3. The true stresses, minus the stresses at rest, are

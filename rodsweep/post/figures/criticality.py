@@ -17,9 +17,9 @@ from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
+from .grid_sections import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .sections import left_out_clause
 
 MAX_DRAWN_DISTANCE = 0.1
 """Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
@@ -27,8 +27,6 @@ cycles deviate from the leading-order law."""
 CRITICALITY_LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
 """(line style, legend entry) of the predicted cycles, by sign of Re c: -1 supercritical, 1 subcritical, 0
 undecided."""
-ROD_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "#000000")
-"""Colours of the rods, in order."""
 PREDICTION_POINT_COUNT = 60
 """Number of points of a predicted curve. The points are dense near the Hopf point, where the curve is
 steep."""
@@ -156,12 +154,12 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require_content(view, having.size, "Hopf point with a normal form")
-    drawn = having[: len(ROD_COLOURS)]
+    drawn = having[: len(style.LINE_COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
     shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
     distance = MAX_DRAWN_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
-    for rod, colour in zip(drawn, ROD_COLOURS, strict=False):
+    for rod, colour in zip(drawn, style.LINE_COLOURS, strict=False):
         for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
@@ -184,7 +182,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
         if k in seen
     ]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
-    pairs = zip(ROD_COLOURS, own, strict=False)
+    pairs = zip(style.LINE_COLOURS, own, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
     style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading_text(view, shared))

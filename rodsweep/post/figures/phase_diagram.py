@@ -7,26 +7,24 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.axes import DEFAULT_VALUES_OF_PARAMETERS
+from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import lacks_joint_variables_in
-from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
+from .grid_sections import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .sections import left_out_clause
-from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS
+from .stability.class_bars import BAR_ASPECT
+from .stability.class_colours import CLASS_PALETTE, STATE_PALETTE, Palette
 from .stability.diagram_curves import draw_boundary_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
-from .stability.row_classes import class_along_row, classes_between_crossings
+from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
 from .style import (
     LABELS,
     SYMBOLS,
@@ -38,60 +36,6 @@ from .style import (
     scale_axis,
 )
 from .style import number_in_tex as number_text
-
-STATE_COLOURS = {
-    "missing": "white",
-    "neither_known": "#F6E3A1",
-    "straight": CLASS_COLOURS["oscillatory"],
-    "cycle": CLASS_COLOURS["flutter"],
-    "both": "#8E6BB0",
-    "undecided": CLASS_COLOURS["undecided"],
-    "crushed": CLASS_COLOURS["crushed"],
-}
-"""Colours of the words of `stable_states`. The colour of "both" lies between the colours of the two
-states."""
-STATE_LEGEND = {
-    "straight": "straight rod stable",
-    "cycle": "cycle stable",
-    "both": "both stable",
-    "neither_known": "no stable state known",
-}
-"""Legend entries for the words of `stable_states` and `class`. A word that is not listed is its own legend
-entry."""
-
-
-@dataclass(frozen=True, slots=True)
-class Palette:
-    """Colours for a map of an integer variable. variable: name of the variable. words: (integer, word) of
-    each value. colours: colour of each word.
-    """
-
-    variable: str
-    words: tuple[tuple[int, str], ...]
-    colours: dict[str, str]
-
-    @property
-    def colour_keywords(self) -> dict[str, Any]:
-        """Keywords for matplotlib with which an array of the integers is drawn in the colours."""
-        numbers = [number for number, _ in self.words]
-        return {
-            "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
-            "norm": BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers)),
-        }
-
-    def legend_entries(self, table: Array) -> list[Patch]:
-        """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
-        shown = (word for number, word in self.words if (table == number).any())
-        return [
-            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=STATE_LEGEND.get(word, word))
-            for word in shown
-        ]
-
-
-CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
-"""Palette for the stability class of the straight rod."""
-STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
-"""Palette for the stable states listed in STABLE_STATES."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,9 +90,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     handles = [*palette.legend_entries(pixels), *_draw_stored_curves(axes, view, palette, line, row), *edge]
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
-    missing = (
-        "; curves are missing, the file is not finished" if lacks_joint_variables_in(view.attributes) else ""
-    )
+    lacks_curves = lacks_sweep_wide_variables(view.attributes)
+    missing = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite = left_out_clause(view.parameter_values, [row])
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
 
@@ -200,7 +143,9 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes = figure.subplots()
     share = np.linspace(0, 1, PIXEL_COUNT + 1)
     edges = x[0] * (x[-1] / x[0]) ** share if is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
-    table = np.array([class_along_row(view, palette.variable, line, row, n, edges) for n in range(len(y))])
+    table = np.array(
+        [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
+    )
     looks: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **looks)
     for between in np.arange(len(y) - 1) + 0.5:

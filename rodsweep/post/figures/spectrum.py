@@ -13,10 +13,10 @@ from matplotlib.lines import Line2D
 
 from ...errors import InputError
 from ...results.file.view import View
+from .grid_sections import left_out_clause, section_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .lists import as_grid_if_possible
 from .request import FigureRequest
-from .sections import left_out_clause, section_at_values, without_infinite_values
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (
     ROOT_CHOICE_TEXTS,

@@ -29,6 +29,11 @@ VERMILION = "#D55E00"
 """Vermilion of Okabe and Ito's palette."""
 GREEN = "#009E73"
 """Green of Okabe and Ito's palette."""
+PURPLE = "#CC79A7"
+"""Reddish purple of Okabe and Ito's palette."""
+LINE_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, "#56B4E9", "#000000")
+"""Colours of lines for rods, files or branches, in order: Okabe and Ito's palette, with its sky blue and
+black."""
 LOGARITHMIC_RATIO = 10
 """The colours of a map are logarithmic if the ratio of the largest to the smallest value exceeds this
 number."""

@@ -19,9 +19,9 @@ from .stability.threshold_lines import (
     CRITICAL_FORCES,
     FILE_COLOURS,
     MAX_LINES,
-    draw_all_lines,
     draw_lines_of_files,
-    draw_lines_of_some,
+    draw_lines_of_grid,
+    draw_selected_lines,
 )
 
 NO_THRESHOLD = "#DDDDDD"
@@ -58,8 +58,10 @@ def draw_thresholds(request: FigureRequest) -> str:
         figure, left_out = _threshold_maps(view, found, request.look.is_narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
     if len(long) == 1 or few:
-        return request.write(*draw_all_lines(view, long, searched_range_clause(view)))
-    return request.write(*draw_lines_of_some(view, long, request.look.is_narrow, searched_range_clause(view)))
+        return request.write(*draw_lines_of_grid(view, long, searched_range_clause(view)))
+    return request.write(
+        *draw_selected_lines(view, long, request.look.is_narrow, searched_range_clause(view))
+    )
 
 
 def _draw_files(request: FigureRequest) -> str:

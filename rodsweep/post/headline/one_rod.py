@@ -11,7 +11,7 @@ from ...results.layouts.arm import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
 from ..summary.ranges import error_text, number_and_error, rounded_text
 from ..tables.columns import Column
-from ..tables.contents import POINTS
+from ..tables.table_names import POINTS
 from ..tables.tables import Tables
 
 BOOLEAN_WORDS = ("no", "yes")

@@ -54,12 +54,12 @@ def write_report(views: Sequence[View], output: Path, shapes: ShapeFunction | No
     return f"wrote {output}: {counted(len(views), 'result')}, {counted(pictures, 'figure')}"
 
 
-def page_text(results: Sequence[ReportContents], together: Pictures) -> str:
-    """HTML text of the page. together: figures that show several results in the same panels."""
+def page_text(results: Sequence[ReportContents], shared_pictures: Pictures) -> str:
+    """HTML text of the page. shared_pictures: figures that show several results in the same panels."""
     pictures = [each.picture for result in results for each in result.pictures.shown]
-    pictures += [each.picture for each in together.shown]
+    pictures += [each.picture for each in shared_pictures.shown]
     title = "; ".join(result.title for result in results)
-    return rendered_template("page.html", pictures, title=title, results=results, together=together)
+    return rendered_template("page.html", pictures, title=title, results=results, together=shared_pictures)
 
 
 def rendered_template(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ..tables.columns import Column
-from ..tables.contents import DEFAULT_TABLE, POINTS
+from ..tables.table_names import DEFAULT_TABLE, POINTS
 from ..tables.tables import Table, Tables
 
 MAX_ROWS = 60
@@ -65,11 +65,11 @@ def _table_for_page(table: Table) -> PageTable:
     cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in shown]
     return PageTable(
         name=table.name,
-        heads=tuple((column.name, _unit(column), column.meaning) for column in shown),
+        heads=tuple((column.name, column.printed_unit, column.meaning) for column in shown),
         rows=tuple(zip(*cells, strict=True)),
         total=table.rows,
         constant=tuple(
-            (column.name, _cells(column.rows(slice(0, 1)))[0], _unit(column), column.meaning)
+            (column.name, _cells(column.rows(slice(0, 1)))[0], column.printed_unit, column.meaning)
             for column in alike
         ),
     )
@@ -96,8 +96,3 @@ def _cell(column: Column, text: str, value: float) -> Cell:
         return Cell(text)
     short = f"{value:.{CELL_DIGITS}g}"
     return Cell(short, text) if len(short) < len(text) else Cell(text)
-
-
-def _unit(column: Column) -> str:
-    """Unit of a column; empty for a dimensionless number."""
-    return "" if column.unit == "1" else column.unit

@@ -17,7 +17,8 @@ from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, force_arrow
-from ..figures.stability.class_bars import class_legend_entries, draw_class_bar, mark_thresholds_on_bars
+from ..figures.stability.class_bars import draw_class_bar, mark_thresholds_on_bars
+from ..figures.stability.class_colours import class_legend_entries
 from .paragraph import paragraph
 from .results import RodResults
 from .units import rescale_panel
@@ -35,9 +36,9 @@ PANEL_TEXT_WIDTH = 26
 """Largest length of a line, in characters, of a sentence in a panel for a mode or a cycle."""
 CYCLE_COUNT = 3
 """Number of cycles in the figure."""
-COEXISTENCE_LOOK = ("#009E73", "stable cycle beside a stable straight rod")
+COEXISTENCE_LOOK = (style.GREEN, "stable cycle beside a stable straight rod")
 """Colour and legend entry of ranges of F in which a stable cycle and the stable straight rod coexist."""
-TWO_CYCLES_LOOK = ("#CC79A7", "two stable cycles")
+TWO_CYCLES_LOOK = (style.PURPLE, "two stable cycles")
 """Colour and legend entry of ranges of F in which two stable cycles coexist."""
 CYCLE_WORD = "cycle drawn below"
 """Legend entry of the marks of cycles whose shapes are drawn."""

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ...wording import joined
-from ..cost_and_provenance import origin_lines
+from ...wording import enumeration
+from ..cost_and_provenance import provenance_lines
 from ..output_files import atomic_write, require_output_path
 from ..report import rendered_template
 from ..report.page_tables import page_tables
@@ -53,7 +53,7 @@ def portrait_caption(results: RodResults) -> str:
         "modes at the thresholds": bool(results.modes),
         CYCLE_COUNT_WORDS[len(results.cycles)]: bool(results.cycles),
     }
-    return joined([part for part, is_shown in parts.items() if is_shown])
+    return enumeration([part for part, is_shown in parts.items() if is_shown])
 
 
 def portrait_page(results: RodResults) -> str:
@@ -74,5 +74,5 @@ def portrait_page(results: RodResults) -> str:
         tables=[
             (name, [t for t in page_tables(view) if t.name not in HIDDEN_TABLES]) for name, view in views
         ],
-        origin=origin_lines(results.views["thresholds"].attributes),
+        origin=provenance_lines(results.views["thresholds"].attributes),
     )

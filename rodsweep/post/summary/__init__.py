@@ -10,17 +10,17 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ...config.arm.axes import NOT_SLENDER
+from ...config.arm.status import NOT_SLENDER
 from ...config.values import printable
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
 from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE
 from ...results.file.view import View
-from ...results.layouts import lacks_joint_variables_in
+from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
 from ...wording import counted, is_or_are, plural
-from ..cost_and_provenance import origin_lines, rank_lines, time_lines
+from ..cost_and_provenance import provenance_lines, rank_lines, time_lines
 from ..tables.alignment import column_cells, point_aligned, rewrap_line, table_blocks
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
@@ -75,7 +75,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
         details=lines.details,
         axes=_axes_table(view),
         numbers=lines.numbers,
-        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *origin_lines(a)],
+        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *provenance_lines(a)],
     )
 
 
@@ -158,7 +158,7 @@ def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
             f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is in progress, the same "
             "command continues"
         )
-    elif lacks_joint_variables_in(view.attributes):
+    elif lacks_sweep_wide_variables(view.attributes):
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )

@@ -10,7 +10,7 @@ from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
-from .arm.arm import loads_at
+from .arm.arm import load_range_text
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import axis_values_text, span_text
 from .summary_lines import SummaryLines
@@ -176,5 +176,5 @@ def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
         if number and of_kind.any():
             forces = v["crossing_at"][of_kind]
             rows = count_of_total(of_kind.any(axis=-1).sum(), done.sum(), "row")
-            lines.append(f"{word}: on {rows}, at {loads_at(view, forces, np.zeros(len(forces), int))}")
+            lines.append(f"{word}: on {rows}, at {load_range_text(view, forces, np.zeros(len(forces), int))}")
     return lines

@@ -26,10 +26,10 @@ NONE_TEXT = "none"
 """Text for a missing number or an empty range."""
 
 
-def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = RANGE_DIGITS) -> str:
+def span_text(values: np.ndarray, errors: np.ndarray | None = None, max_digits: int = RANGE_DIGITS) -> str:
     """Range of the finite `values`, of any shape, as text; NONE_TEXT if no value is finite.
 
-    errors: absolute errors, of the shape of the values, which limit the number of digits. most: largest
+    errors: absolute errors, of the shape of the values, which limit the number of digits. max_digits: largest
     number of digits.
     """
     values = np.asarray(values, dtype=float)
@@ -40,7 +40,7 @@ def span_text(values: np.ndarray, errors: np.ndarray | None = None, most: int = 
     flat = values[is_finite]
     known = np.nan_to_num(known[is_finite], nan=0.0)
     ends = (int(flat.argmin()), int(flat.argmax()))
-    low, high = (rounded_text(flat[i], known[i], most) for i in ends)
+    low, high = (rounded_text(flat[i], known[i], max_digits) for i in ends)
     return low if low == high else f"{low} to {high}"
 
 
@@ -116,23 +116,21 @@ def error_text(error: float) -> str:
     return f"{ceil(error / unit * (1 - ROUNDING_EXCESS)) * unit:.0e}"
 
 
-def rounded_text(value: float, error: float, most: int = RANGE_DIGITS) -> str:
-    """A number as text with at most `most` significant digits, chosen such that `error` is at most half a
-    unit of the last digit; NONE_TEXT for a number that is not finite.
-    """
-    return _rounded_to_error(float(value), 2 * float(error), most) if isfinite(value) else NONE_TEXT
+def rounded_text(value: float, error: float, max_digits: int = RANGE_DIGITS) -> str:
+    """A number as text with at most `max_digits` significant digits, chosen such that `error` is at most half
+    a unit of the last digit; NONE_TEXT for a number that is not finite."""
+    return _rounded_to_error(float(value), 2 * float(error), max_digits) if isfinite(value) else NONE_TEXT
 
 
-def _rounded_to_error(value: float, error: float, most: int) -> str:
-    """A finite number as text, rounded at the decimal place of `error`, with at least one and at most `most`
-    significant digits.
-    """
+def _rounded_to_error(value: float, error: float, max_digits: int) -> str:
+    """A finite number as text, rounded at the decimal place of `error`, with at least one and at most
+    `max_digits` significant digits."""
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))
-    last = floor(log10(error)) if error > 0 and isfinite(error) else size - most
-    digits = min(max(size - last, 1), most)
-    if most < MAX_DIGITS and digits == most:
-        return f"{value:.{most}g}"
+    last = floor(log10(error)) if error > 0 and isfinite(error) else size - max_digits
+    digits = min(max(size - last, 1), max_digits)
+    if max_digits < MAX_DIGITS and digits == max_digits:
+        return f"{value:.{max_digits}g}"
     short = f"{value:.{digits - 1}e}"
     return f"{float(short):.{max(digits - 1 - size, 0)}f}" if size in PLAIN_EXPONENTS else short

@@ -41,6 +41,11 @@ class Column:
     """Whether the values are 1 for true and 0 for false."""
 
     @property
+    def printed_unit(self) -> str:
+        """Unit of the column; empty for a dimensionless number."""
+        return "" if self.unit == "1" else self.unit
+
+    @property
     def is_estimate(self) -> bool:
         """Whether the values are estimates: errors, or computing times."""
         return "error" in self.name or self.name == SECONDS.name

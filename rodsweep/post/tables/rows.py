@@ -21,14 +21,13 @@ Rows = tuple[NDArray[np.int64], ...]
 list."""
 
 
-def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
-    """Indices of all items of a list that are not missing. variables: variables of the list. joint: whether
-    the list belongs to the whole file, not to single points.
-    """
-    points = 1 if joint else view.variables["status"].size
+def item_rows(view: View, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
+    """Indices of all items of a list that are not missing. variables: variables of the list. is_sweep_wide:
+    whether the list belongs to the whole file, not to single points."""
+    points = 1 if is_sweep_wide else view.variables["status"].size
     exists: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
-        if marks_missing_items(variable) and (_is_of_points(view, variable) or joint):
+        if marks_missing_items(variable) and (_is_of_points(view, variable) or is_sweep_wide):
             values = view.variables[variable.name]
             inner = len(variable.extra)
             values = values.reshape(points, *values.shape[values.ndim - inner :])
@@ -54,16 +53,18 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
             yield replace(column, absent=column.absent | missing)
 
 
-def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
+def list_columns(
+    view: View, variables: Sequence[Variable], rows: Rows, is_sweep_wide: bool
+) -> Iterator[Column]:
     """Yields the columns of a list: coordinates of the items, then the variables. rows: indices of the items.
-    joint: as in `item_rows`.
+    is_sweep_wide: as in `item_rows`.
     """
     names = variables[0].extra
     for name, items in zip(names, rows[1:], strict=True):
         yield coordinate_column(name, *DIMENSIONS[name], view.variables[name][items])
     for variable in variables:
         values = view.variables[variable.name]
-        if joint:
+        if is_sweep_wide:
             yield column_of(variable, values[rows[1:]])
         elif _is_of_points(view, variable):
             inner = values.shape[values.ndim - len(names) :]

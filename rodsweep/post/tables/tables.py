@@ -12,8 +12,16 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
 from .columns import Column
-from .contents import BRANCHES, GRID, POINTS, Contents, chosen_table, contents_of, refuse_unknown_columns
 from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
+from .table_names import (
+    BRANCHES,
+    GRID,
+    POINTS,
+    TableContents,
+    chosen_table,
+    refuse_unknown_columns,
+    table_contents_of,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +53,9 @@ class Tables:
         object.__setattr__(self, "view", self.view.as_list)
 
     @cached_property
-    def contents(self) -> Contents:
+    def contents(self) -> TableContents:
         """Names of the tables of the result, and the variables in each table."""
-        return contents_of(self.view)
+        return table_contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
         """The table with the given name or columns; by default the default table of the task.
@@ -86,18 +94,18 @@ class Tables:
         if name == BRANCHES:
             return self._branches()
         rows, columns = self._list(name)
-        return None if name in self.contents.joint_lists else rows[0], columns
+        return None if name in self.contents.sweep_wide_lists else rows[0], columns
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
         """Returns (rows, columns) of the list `name`. rows: indices of the items. columns: columns, including
         columns in SI units.
         """
-        joint = name in self.contents.joint_lists
+        is_sweep_wide = name in self.contents.sweep_wide_lists
         variables = self.contents.lists[name]
-        rows = item_rows(self.view, variables, joint)
-        columns = list(list_columns(self.view, variables, rows, joint))
+        rows = item_rows(self.view, variables, is_sweep_wide)
+        columns = list(list_columns(self.view, variables, rows, is_sweep_wide))
         columns += line_columns(self.view, rows) if name == GRID else ()
-        points = None if joint else rows[0]
+        points = None if is_sweep_wide else rows[0]
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:

@@ -140,7 +140,7 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
 
 def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
     """New contiguous dataset, allocated and filled when it is created, so that its offset in the file is
-    final.
+    final: `rodsweep.results.file.points` reads and writes points at this offset.
     """
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)

@@ -1,10 +1,10 @@
 """Seal of a result file in two parts: digests of the content, and a checksum of the HDF5 structures.
 
-The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content`), and shows
-a change by any program. A checksum of HDF5's structures lies behind HDF5's own end of the file, invisible to
-other programs. A flipped bit in the structures can make HDF5 loop for ever or crash; the checksum is
-therefore compared before HDF5 reads the file. A program that changes the file by HDF5 removes the checksum.
-"""
+The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content_digests`),
+and shows a change by any program. A checksum of HDF5's structures lies behind HDF5's own end of the file,
+invisible to other programs. A flipped bit in the structures can make HDF5 loop for ever or crash; the
+checksum is therefore compared before HDF5 reads the file. A program that changes the file by HDF5 removes the
+checksum."""
 
 import json
 import os
@@ -15,7 +15,7 @@ from typing import BinaryIO
 
 import h5py
 
-from .content import SEAL_ATTRIBUTE, digests_of
+from .content_digests import SEAL_ATTRIBUTE, digests_of
 
 CHECKSUM_HEAD = b"\nrodsweep seal 2 "
 """First bytes of the checksum of HDF5's structures, which follows HDF5's own end of the file."""

@@ -16,7 +16,7 @@ from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
 from .combination.identity import fingerprint_of
-from .content import refuse_changed
+from .content_digests import refuse_changed
 from .points import points_of_open_file
 from .seal import HDF5_SIGNATURE, has_valid_structure_checksum
 
@@ -47,7 +47,7 @@ def damage_refusals(path: Path) -> Iterator[None]:
         yield
     except DAMAGE_EXCEPTIONS as error:
         raise IncompleteFile(
-            f"{path} is not a complete rodsweep result file ({one_line_message(error)})"
+            f"{path} cannot be read as a result of rodsweep: {one_line_message(error)}"
         ) from None
 
 
@@ -117,7 +117,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
     """
     attributes = {name: escape_control_characters(value) for name, value in file.attrs.items()}
     if attributes.get("program") != PROGRAM:
-        raise ValueError("it is not a result of rodsweep")
+        raise ValueError("the file was not written by rodsweep")
     _refuse_other_format(path, attributes)
     if check_content:
         refuse_changed(file)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
 from ..layouts.variables import TYPED_UNIT
-from .content import is_user_added
+from .content_digests import is_user_added
 from .current_state import insert_records, journalled_points, journalled_reasons, read_file_and_journals
 from .validation import damage_refusals, escape_control_characters, open_checked, refuse_absent
 

@@ -28,11 +28,11 @@ EXTENSION_RULES: dict[str, dict[str, ExtensionRule]] = {
 }
 """Rules for the options of which a larger value requests more data of a point, by task and option. A file
 cannot be extended if any other option changes."""
-JOINT_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
-    "spectrum": spectrum.joint_variables_of_config,
+SWEEP_WIDE_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
+    "spectrum": spectrum.sweep_wide_variables,
     "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
-    "phase_diagram": phase_diagram.joint_variables_of_config,
-    "limit_cycle": limit_cycle.joint_variables_of_config,
+    "phase_diagram": phase_diagram.sweep_wide_variables,
+    "limit_cycle": limit_cycle.sweep_wide_variables,
 }
 """Function from (resolved config, whether the points are a grid) to the variables that belong to all points
 together, by task."""
@@ -49,16 +49,16 @@ def layout_of(config: dict[str, Any]) -> Layout:
     )
 
 
-def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file that belong to all points together, for a resolved config; empty for most tasks.
 
     is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
     """
-    found = JOINT_VARIABLE_MAKERS.get(config["task"])
+    found = SWEEP_WIDE_VARIABLE_MAKERS.get(config["task"])
     return found(config, is_grid) if found else ()
 
 
-def lacks_joint_variables_in(attributes: Mapping[str, Any]) -> bool:
+def lacks_sweep_wide_variables(attributes: Mapping[str, Any]) -> bool:
     """Whether a file with these attributes still lacks the variables that depend on all points, such as the
     curves of a phase diagram."""
     if "finished" in attributes or "config_resolved" not in attributes:

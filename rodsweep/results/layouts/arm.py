@@ -18,7 +18,7 @@ from ...arrays import Array
 from ...config.arm.axes import PARAMETER_STORED_ALONG, grid_axis_names
 from ...config.arm.quantities import typed_unit
 from ...config.arm.section import ArmSection
-from ...config.axes import Axes
+from ...config.parameters_section import Axes
 from ...config.tasks import makes_diagram
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.neglected import Validity

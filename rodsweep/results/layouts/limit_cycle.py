@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS, TRANSVERSE_PARAMETERS
 from .rods import has_standard_rods, optional_parameters_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
@@ -102,8 +102,6 @@ TRANSIENT_VARIABLES = (
 )
 HOPF_DIMENSION = "hopf"
 """Dimension of the Hopf points on the lines of points of a file."""
-HOPF_ALONG = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
-"""Parameters along which Hopf points are searched; gamma1 has no influence on Hopf points."""
 PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
 """Names of the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
@@ -118,10 +116,14 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
             word(
                 "hopf_along",
                 "parameter along which the Hopf point was found, between points of a line",
-                HOPF_ALONG,
+                TRANSVERSE_PARAMETERS,
             ),
             word("hopf_kind", f"change of stability {at} as the parameter hopf_along grows", kinds),
-            *(real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {at}") for p in HOPF_ALONG if p in names),
+            *(
+                real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {at}")
+                for p in TRANSVERSE_PARAMETERS
+                if p in names
+            ),
             real("hopf_error", "1", f"estimate of the relative error of the parameter hopf_along {at}"),
             real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair that crosses"),
             real("hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"),
@@ -147,7 +149,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes
 }
 
 
-def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
     found = hopf_point_variables((*LINEAR_PARAMETERS, *optional_parameters_in(config)))

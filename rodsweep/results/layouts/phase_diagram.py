@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from ...model.parameters import LINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS, parameter_names_except
+from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .rods import with_certified_meaning
@@ -70,13 +70,13 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     that varies along each row. row: name of the parameter that differs between rows.
     """
     axes = config["parameters"]
-    names = (name for name in (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name in axes)
+    names = (name for name in TRANSVERSE_PARAMETERS if name in axes)
     sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
     line, row = (name for name, size in sizes.items() if size > 1)
     return (line, row), sizes
 
 
-def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together, including variables that the config does
     not request. config: the resolved config. is_grid: not used.
     """

@@ -118,7 +118,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {
 }
 
 
-def joint_variables_of_config(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file of the task spectrum that belong to all points together. config: the resolved
     config. is_grid: whether the points are a grid.
     """

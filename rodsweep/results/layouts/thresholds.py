@@ -43,6 +43,9 @@ CROSSING_MEANINGS = {
 """Meaning of every kind of crossing, as the parameter grows, by word."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
 """Names of the kinds of crossings; the file stores the position in this list."""
+HOPF_CROSSING_CODES = tuple(map(CROSSING_KINDS.index, ("hopf", "hopf_reverse", "restabilization")))
+"""Stored numbers of the kinds of crossings that are Hopf points, at which the stability of the straight rod
+may change."""
 
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:

@@ -10,8 +10,8 @@ from ...model.floquet import min_unstable_count
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
-from .arc import BranchCycle
-from .special.point import SpecialPoint
+from .arc_length_step import BranchCycle
+from .special.special_point import SpecialPoint
 from .symmetry import SymmetryBreaking
 
 

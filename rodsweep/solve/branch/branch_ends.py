@@ -7,11 +7,12 @@ from dataclasses import replace
 
 from ..orbit.orbit_mesh import mesh_of
 from ..unsolvable import Unsolvable
-from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
+from .bordered.scale import deflection_of
 from .branch_curve import BranchEnd
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .special.point import EndReason
+from .special.special_point import EndReason
 from .start.hopf_point import BRANCH_START_SETTINGS, HopfBranchStart, hopf_as_special_point
 from .symmetry import BRANCH_END_SETTINGS, reaches_symmetric_cycle, symmetry_breaking_between
 
@@ -52,7 +53,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    share = start.deflection / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
+    share = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
     at = start.parameter_coordinate - share * tangent[-1]
     period = start.orbit.period - share * tangent[-2]
     rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)

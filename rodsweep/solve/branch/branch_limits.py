@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..orbit.matrix.workspace import NewtonWorkspace
-from .special.point import EndReason
+from .special.special_point import EndReason
 from .start.hopf_point import HopfBranchStart
 from .symmetry import SymmetryBreaking
 

@@ -7,11 +7,11 @@ from math import nan
 import numpy as np
 
 from ..unsolvable import Unsolvable, WorkLimitReached
-from .arc import BranchCycle
+from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
 from .mesh_choice import with_errors_within_accuracy
-from .special.point import EndReason, SpecialKind, SpecialPoint
+from .special.special_point import EndReason, SpecialKind, SpecialPoint
 
 
 def branch_end_point(point: BranchCycle, reason: EndReason, message: str = "") -> SpecialPoint:

@@ -10,17 +10,17 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
-from ...watch import solve_part
+from ...solve_progress import solve_part
 from ..changes.along_path import ThresholdList, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..point import FAILURES, cause_of, outcome_or_failure
+from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .branch_curve import BranchCurve
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
 from .computing_time import fractions_before_branches
 from .following import follow_asymmetric_branch, follow_branch
-from .special.point import SPECIAL_POINT_SETTINGS, EndReason
+from .special.special_point import SPECIAL_POINT_SETTINGS, EndReason
 from .start.hopf_point import hopf_branch_start
 from .status import BranchStatus
 from .symmetry import SymmetryBreaking, symmetry_breakings_in

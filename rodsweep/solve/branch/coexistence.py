@@ -20,7 +20,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from .branch_curve import BranchCurve
 from .branch_request import BranchRequest
 from .branches import BRANCH_SETTINGS, BranchesOfRod, solve_branches
-from .special.point import EndReason, SpecialPoint
+from .special.special_point import EndReason, SpecialPoint
 from .status import BranchStatus, CoexistenceStatus
 
 

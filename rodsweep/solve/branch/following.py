@@ -6,10 +6,10 @@ from functools import partial
 from math import nan
 
 from ...model.parameters import PARAMETERS
-from ...watch import SolvePosition, report
+from ...solve_progress import SolvePosition, report
 from ...wording import counted
 from ..unsolvable import Unsolvable
-from .arc import BranchCycle, arc_length_between, cycle_at_length, next_cycle
+from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_ends import end_at_mirror_image, passed_mirror_image
 from .branch_limits import BranchLimits
@@ -20,7 +20,7 @@ from .range_end import cycle_within_range, range_end_condition
 from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
-from .special.point import EndReason, SpecialKind, SpecialPoint
+from .special.special_point import EndReason, SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point

@@ -1,6 +1,6 @@
 """Choice of the mesh for the cycles of a branch, from measured errors.
 
-Errors are measured at about every third cycle (`errors`) and interpolated at the cycles between.
+Errors are measured at about every third cycle (`branch_errors`) and interpolated at the cycles between.
 """
 
 from collections.abc import Sequence
@@ -11,11 +11,11 @@ from ..cycle.accuracy.refinement import cycle_with_calibrated_errors, max_matrix
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..unsolvable import Unsolvable
-from .arc import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ArcLengthScale
-from .errors import BranchCalibration, measured_branch_calibration, sensitivity_of
+from .branch_errors import BranchCalibration, measured_branch_calibration, sensitivity_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

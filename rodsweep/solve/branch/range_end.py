@@ -7,7 +7,7 @@ from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
-from .arc import (
+from .arc_length_step import (
     BranchCycle,
     arc_length_between,
     branch_cycle_with_calibrated_errors,

@@ -17,8 +17,8 @@ from ...arrays import Array
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..unsolvable import Unsolvable
-from .arc import ARC_STEP_CONTROL, BranchCycle, arc_length_between
-from .special.point import SpecialKind, SpecialPoint
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
+from .special.special_point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -96,17 +96,16 @@ class AxisCrossings:
 
 
 def find_thresholds(
-    path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
+    path: Path, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdList:
     """All thresholds along `path` for parameter values from `start` to `stop`; `certify` requests a proof.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
-    than `most` crossings. Raises Unsolvable if not even the first interval can be searched, or if no a-priori
-    bound applies.
-    """
+    than `max_crossings` crossings. Raises Unsolvable if not even the first interval can be searched, or if no
+    a-priori bound applies."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
-    found = _crossings(problem, (low, high), certify, most)
+    found = _crossings(problem, (low, high), certify, max_crossings)
     tracer = LeaderExchangeSearch(problem, certify)
     edges = problem.interval_edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with anchors close to it.
@@ -135,17 +134,16 @@ def find_thresholds(
 
 
 def find_axis_crossings(
-    path: Path, start: float, stop: float, certify: bool = True, most: float = math.inf
+    path: Path, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdList:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
     exchanges of the leading eigenvalue; takes half the time of `find_thresholds`.
 
-    `proved` then means that the covering is complete and every count agrees. certify, most: as in
-    `find_thresholds`, which also says when the search ends early or raises Unsolvable.
-    """
+    `proved` then means that the covering is complete and every count agrees. certify, max_crossings: as in
+    `find_thresholds`, which also says when the search ends early or raises Unsolvable."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
-    found = _crossings(problem, (low, high), certify, most)
+    found = _crossings(problem, (low, high), certify, max_crossings)
     counts = ModeCounter(problem, found.gaps, certify)
     ends = found.searched_interval(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.value)
@@ -185,13 +183,15 @@ def _with_interval(counted: ThresholdList, found: AxisCrossings, asked: tuple[fl
     )
 
 
-def _crossings(problem: PathProblem, ends: tuple[float, float], certify: bool, most: float) -> AxisCrossings:
+def _crossings(
+    problem: PathProblem, ends: tuple[float, float], certify: bool, max_crossings: float
+) -> AxisCrossings:
     """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, proved
-    if `certify`. most: number of crossings after which the search of a nonuniform arm ends."""
+    if `certify`. max_crossings: number of crossings after which the search of a nonuniform arm ends."""
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
-    found, reach = search.crossings(problem.interval_edges(*ends), most)
+    found, reach = search.crossings(problem.interval_edges(*ends), max_crossings)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
     return AxisCrossings(problem.path, found, gaps, reach)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ...model.rod import Rod
 from ..unsolvable import Unsolvable
 
 
@@ -21,6 +22,26 @@ class SearchRangeSettings:
 
 
 SEARCH_RANGE_SETTINGS = SearchRangeSettings()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrushingEndSettings:
+    """Settings for the end of a search just below the force that crushes the rod."""
+
+    crushing_margin: float = 1e-6
+    """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
+    crushing_tolerance: float = 1e-12
+    """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
+    of F and k1 the two forces may differ by rounding alone."""
+
+
+CRUSHING_END_SETTINGS = CrushingEndSettings()
+
+
+def end_below_crushing(rod: Rod, F: float) -> float:
+    """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
+    force of `rod`."""
+    return min(F, rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin))
 
 
 class SearchEnd(NamedTuple):

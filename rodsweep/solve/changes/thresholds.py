@@ -6,11 +6,11 @@ from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from .along_path import ThresholdList, find_thresholds
 from .kinds import ChangeKind, Threshold
+from .search_range import end_below_crushing
 from .status import ThresholdStatus
-from .unstable_modes import end_below_crushing
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,15 +60,17 @@ def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> 
     return Thresholds(status=status, search_result=found, end=end, message=message)
 
 
-def thresholds_with_status(found: ThresholdList, accuracy: float, certify: bool, most: int) -> Thresholds:
+def thresholds_with_status(
+    found: ThresholdList, accuracy: float, certify: bool, max_thresholds: int
+) -> Thresholds:
     """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
-    requested. most: maximum number of thresholds in the list."""
+    requested. max_thresholds: maximum number of thresholds in the list."""
     status = ThresholdStatus.ok
     if found.ended_early:
         status = ThresholdStatus.ended_early
     elif not math.isnan(found.open_range[0]):
         status = ThresholdStatus.window_open
-    elif len(found.thresholds) > most:
+    elif len(found.thresholds) > max_thresholds:
         status = ThresholdStatus.list_full
     elif any(c.error > accuracy * abs(c.value) for c in found.thresholds):
         status = ThresholdStatus.accuracy_not_reached

@@ -7,7 +7,6 @@ numbers confirm this number at both ends and between the crossings.
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...model.rod import Rod
 from .kinds import ChangeKind, Threshold
 
 if TYPE_CHECKING:
@@ -16,14 +15,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnstableModeCountSettings:
-    """Settings for the end of a search below the crushing force, and for counts of unstable modes between
-    thresholds."""
+    """Settings for counts of unstable modes between thresholds."""
 
-    crushing_margin: float = 1e-6
-    """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
-    crushing_tolerance: float = 1e-12
-    """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
-    of F and k1 the two forces may differ by rounding alone."""
     count_positions: tuple[float, ...] = (0.5, 0.3, 0.7)
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
@@ -33,12 +26,6 @@ class UnstableModeCountSettings:
 
 
 UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()
-
-
-def end_below_crushing(rod: Rod, F: float) -> float:
-    """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
-    force of `rod`."""
-    return min(F, rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin))
 
 
 class ModeCounter:

@@ -19,7 +19,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from ...arrays import Array
-from ..point import FAILURES
+from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 
 Solution = TypeVar("Solution")
@@ -213,14 +213,18 @@ def first_crossed_margin(before: Array, after: Array) -> int:
 
 
 def zero_along_step(
-    value: Callable[[float], float], ends: tuple[float, float], length: float, enough: float, relative: float
+    value: Callable[[float], float],
+    ends: tuple[float, float],
+    length: float,
+    zero_tolerance: float,
+    relative_tolerance: float,
 ) -> float:
     """Length along a step at which a function is 0, by Brent's method; raises Unsolvable if the function has
     the same sign at both ends of the step.
 
-    value: function of the length. ends: values of the function at the lengths 0 and `length`. enough: values
-    with at most this modulus are treated as 0. relative: tolerance of the result, divided by `length`.
-    """
+    value: function of the length. ends: values of the function at the lengths 0 and `length`. zero_tolerance:
+    values with at most this modulus are treated as 0. relative_tolerance: tolerance of the result, divided by
+    `length`."""
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
     known = {0.0: ends[0], length: ends[1]}
@@ -230,6 +234,6 @@ def zero_along_step(
     def settled(at: float) -> float:
         here = known[at] if at in known else value(at)
         # The value 0 ends Brent's method, which would otherwise bisect within rounding errors.
-        return 0.0 if abs(here) <= enough else here
+        return 0.0 if abs(here) <= zero_tolerance else here
 
-    return float(brentq(settled, 0.0, length, xtol=relative * length))
+    return float(brentq(settled, 0.0, length, xtol=relative_tolerance * length))

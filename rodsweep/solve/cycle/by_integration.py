@@ -19,14 +19,14 @@ from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from ...watch import SolvePosition, report
+from ...solve_progress import SolvePosition, report
 from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integrator, relax_fast_components
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
@@ -67,7 +67,7 @@ class _MarchedMotion:
         self.mesh = motion_mesh(rod, request.accuracy)
         tolerance = MARCHING_SETTINGS.local_tolerance_ratio * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
-        self.beam = self._new_beam()
+        self.beam = Beam(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
 
@@ -101,9 +101,6 @@ class _MarchedMotion:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
         return self._with_measures(straight, path, errors)
 
-    def _new_beam(self) -> Beam:
-        return Beam(self.rod, self.mesh)
-
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
         before = self.beam
@@ -111,7 +108,7 @@ class _MarchedMotion:
         self.scheme = replace(
             self.scheme, tolerance=MARCHING_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
-        self.beam = self._new_beam()
+        self.beam = Beam(self.rod, self.mesh)
         z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
 
@@ -225,7 +222,7 @@ class _MarchedMotion:
             name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
         }
         self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
-        self.beam = self._new_beam()
+        self.beam = Beam(self.rod, self.mesh)
         z = relax_fast_components(self.beam, settled.state, self.leading_mode.period)
         more = errors_of_two_integrations(path, self._measured_path(self._integrate_until_settled(z)), 0.0)
         return CycleErrors(

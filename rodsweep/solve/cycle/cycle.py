@@ -45,7 +45,8 @@ class CycleRequest:
     nodes: int
     """Number of Lobatto nodes of each stored shape."""
     most_periods: int
-    """The integration of a motion ends after this number of returns of the tip to theta = 0."""
+    """The integration of a motion ends after this number of periods, counted as returns of the tip to theta =
+    0."""
     start: str = "mode"
     """Start of the search: "mode" for the leading mode; "neighbour" for the cycle of the neighbouring rod, or
     the leading mode if there is no neighbour; "hopf" for the branch from the Hopf point below the force."""

@@ -67,7 +67,7 @@ class HopfStartSettings:
     """Number of time intervals of the coarse mesh, over half a period."""
     coarse_stages: int = 3
     """Number of collocation stages per interval of the coarse mesh."""
-    branch_tolerance: float = 3e-3
+    intermediate_orbit_tolerance: float = 3e-3
     """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
 
 
@@ -216,7 +216,7 @@ def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace
     """Orbit of the rod in `form`, followed along the force from the normal form's orbit at the force F;
     raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
-    tolerance = HOPF_START_SETTINGS.branch_tolerance
+    tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
     found = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.squared_y_and_frequency(F)[0]
     least, most = HOPF_START_SETTINGS.squared_amplitude_ratios

@@ -20,7 +20,7 @@ from ...model.rod import Rod
 from ..motion.fixed_tip import bent_state_with_tip_at
 from ..motion.integrator import destroy_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from ..unsolvable import Unsolvable
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle

@@ -10,7 +10,7 @@ from math import nan
 
 from ...model.rod import Rod
 from ..hopf.subcritical_hopf import SubcriticalHopf, subcritical_hopf_near
-from ..point import FAILURES
+from ..point_outcome import FAILURES
 from ..status import PointStatus
 from .status import CycleStatus
 

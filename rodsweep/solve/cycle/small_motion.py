@@ -23,7 +23,7 @@ from .transient.transient_settings import TRANSIENT_SETTINGS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallMotionSettings:
-    """Settings for small motions near a Hopf point."""
+    """Settings for the proof that a small motion decays to the straight rod."""
 
     max_cubic_growth_ratio: float = 0.02
     """A motion decays if Re w < 0 and |Re c| a^2 < max_cubic_growth_ratio |Re w|. a: tip's y at the start, w:

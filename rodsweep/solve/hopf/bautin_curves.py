@@ -13,14 +13,14 @@ from itertools import pairwise
 import numpy as np
 
 from ...arrays import Array
-from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
+from ...determinant.stability_boundary import Boundary
 from ...model.rod import Rod
-from ...watch import SolvePosition, report
+from ...solve_progress import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
-from ..point import FAILURES
+from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
-from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEPS
+from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
 from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve
 
 
@@ -175,7 +175,7 @@ class BautinSpace:
                 break
             slope = (here.relative_real_part - last) / (s - before)
             step = -here.relative_real_part / slope
-            if not abs(s + step) < BAUTIN_STEPS.max_length:
+            if not abs(s + step) < BAUTIN_STEP_CONTROL.max_length:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN_SETTINGS.tolerance, along):
@@ -217,9 +217,9 @@ def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurv
 def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
     """(points from `start` in the direction `space.direction` of the third parameter, including points
     at its requested values; reason for the end of the curve)."""
-    if not 0 < start.v[2] + space.direction * BAUTIN_STEPS.min_length < 1:
+    if not 0 < start.v[2] + space.direction * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEnd.range_end
-    curve = follow_curve(space, start, BAUTIN_STEPS, _report_point_count)
+    curve = follow_curve(space, start, BAUTIN_STEP_CONTROL, _report_point_count)
     places = curve.solutions[:1]
     for here, there in pairwise(curve.solutions):
         try:

@@ -5,7 +5,7 @@ from math import inf
 
 from ..continuation.follower import StepControl
 
-BAUTIN_STEPS = StepControl(
+BAUTIN_STEP_CONTROL = StepControl(
     first_length=0.01,
     max_length=0.1,
     min_length=1e-4,

@@ -12,8 +12,8 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import ThresholdList, find_axis_crossings
 from ..changes.kinds import Threshold
-from ..changes.unstable_modes import end_below_crushing
-from ..point import FAILURES, cause_of, outcome_or_failure
+from ..changes.search_range import end_below_crushing
+from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 from .status import CriticalityStatus
 
@@ -84,8 +84,8 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, most: int) -> ThresholdList:
-    return find_axis_crossings(path, 0.0, end, certify, most)
+def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdList:
+    return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
 def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> HopfCoefficients:

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...determinant.boundary import Boundary, BoundarySolution
 from ...determinant.parameter_path import Path
 from ...determinant.parameter_plane import Plane
-from ...watch import SolvePosition, report
+from ...determinant.stability_boundary import Boundary, BoundarySolution
+from ...solve_progress import SolvePosition, report
 from ..changes.arm.path import path_problem
 from ..changes.diagram.boundary_curves import BoundaryCurve
 from ..changes.kinds import ChangeKind, Threshold
-from ..point import FAILURES
+from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 

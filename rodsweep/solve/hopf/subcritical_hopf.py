@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import find_axis_crossings
-from ..changes.unstable_modes import end_below_crushing
+from ..changes.search_range import end_below_crushing
 from .hopf_coefficients import hopf_coefficients
 
 

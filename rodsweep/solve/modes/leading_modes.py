@@ -21,7 +21,7 @@ from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.transverse_mesh import mesh_for
 from ...model.rod import Rod
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import converged_modes

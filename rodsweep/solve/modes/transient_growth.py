@@ -176,10 +176,10 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
 
 
-def _end_of_growth(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
+def _end_of_growth(propagator: Propagator, earliest_end: float, patience: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
-    relative amount by which a later norm may nevertheless exceed these values. first: earliest end, in tau2.
-    patience: the other modes are negligible once they are exp(-patience) times the leading modes.
+    relative amount by which a later norm may nevertheless exceed these values. earliest_end: earliest end, in
+    tau2. patience: the other modes are negligible once they are exp(-patience) times the leading modes.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every
@@ -192,11 +192,11 @@ def _end_of_growth(propagator: Propagator, first: float, patience: float) -> tup
     # Norm of the projection onto the leading modes: how large non-normal modes may become before they decay.
     share = 1 / np.linalg.svd(propagator.overlap[:m, :m], compute_uv=False)[-1]
     alone = (patience + log(share)) / gap if gap > 0 else inf
-    end = first
+    end = earliest_end
     while end < alone:
         if propagator.norm_and_log_slope(end)[0] < 1:
             return end, 0.0
         end *= 2
-    alone = max(alone, first)
+    alone = max(alone, earliest_end)
     # The norm of a decaying pair repeats with half its period, so a maximum may be half a period later.
     return alone + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.truncation_contribution(m, alone)

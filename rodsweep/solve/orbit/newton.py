@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ...model.compiled.compilation import compiled_for_vectors
-from ...watch import report
+from ...solve_progress import report
 from ..unsolvable import Unsolvable
 from .matrix.linearisation import Linearisation
 from .matrix.workspace import NewtonWorkspace

@@ -17,7 +17,7 @@ from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.compiled.settings import CompiledSettings
 from ..backend.petsc import PETSC_ERRORS
 from ..backend.solver_pools import destroy_pooled_solvers
-from ..point import cause_of
+from ..point_outcome import cause_of
 from .problem import TransverseProblem
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from .candidates import Candidates, CountComparison, candidates_on_mesh, compare_with_count
 from .problem import TransverseProblem, transverse_problem
 from .search_settings import SEARCH_SETTINGS

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ...watch import report
+from ...solve_progress import report
 from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 

@@ -17,7 +17,7 @@ from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accu
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
-from ..point import outcome_or_failure
+from ..point_outcome import outcome_or_failure
 from ..unsolvable import Unsolvable
 from .problem import TransverseProblem, transverse_problem
 from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, modes_at_lobatto_nodes

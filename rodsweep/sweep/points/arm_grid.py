@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...config.arm.section import ArmSection
+from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import inf, nan
 from typing import TypeAlias
 
-from ...config.arm.axes import UncoveredArm
 from ...config.arm.section import ArmSection
+from ...config.arm.status import UncoveredArm
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import LOAD_OF_RATIO
@@ -50,7 +50,7 @@ def rods_needing_flutter_force(
     """
     if section is None or section.load_key not in LOAD_OF_RATIO:
         return []
-    from ...verdict.relative import plane_rods
+    from ...verdict.relative_load import plane_rods
 
     shapes = ((arm, taper) for arm in _unloaded_arms(section) for taper in tapers)
     return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper)))
@@ -73,7 +73,7 @@ def flutter_force_of_rod(rod: Rod) -> FlutterForce:
     """Force of first flutter of one rod. If the search fails, F is nan and `failure` is the reason; no
     exception is raised.
     """
-    from ...verdict.relative import FlutterSearchFailed, first_hopf_force
+    from ...verdict.relative_load import FlutterSearchFailed, first_hopf_force
 
     try:
         return FlutterForce(first_hopf_force(rod))
@@ -89,7 +89,7 @@ def flutter_force_of_arm(
     If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
     known: forces of all rods of `rods_needing_flutter_force`. build: as in `rods_needing_flutter_force`.
     """
-    from ...verdict.relative import plane_rods
+    from ...verdict.relative_load import plane_rods
 
     first = inf
     for rod, scale in plane_rods(arm, build, taper):

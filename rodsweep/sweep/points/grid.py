@@ -9,21 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import CRUSHED, MAX_ARM_GRID_POINTS, SLENDER
-from ...config.schema import Config
+from ...config.arm.axes import MAX_ARM_GRID_POINTS
+from ...config.arm.status import CRUSHED, SLENDER
+from ...config.base_config import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
+from .csv_points import read_points
 from .flutter_forces import (
     FlutterForces,
     flutter_force_of_arm,
     flutter_force_of_rod,
     rods_needing_flutter_force,
 )
-from .lists import read_points
 from .points import Points
 
 

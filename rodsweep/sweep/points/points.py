@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import SLENDER, parameter_of_axis
+from ...config.arm.axes import parameter_of_axis
+from ...config.arm.status import SLENDER
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod

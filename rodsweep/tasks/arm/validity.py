@@ -17,15 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.axes import NON_LOAD_KEYS, SLENDER
+from ...config.arm.axes import NON_LOAD_KEYS
 from ...config.arm.section import ArmSection
-from ...config.schema import Config
+from ...config.arm.status import SLENDER
+from ...config.base_config import Config
 from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
 from ...model.material.laws import LINEAR
 from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import CLASSES
-from ...results.layouts.thresholds import CROSSING_KINDS
+from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import STATUS
 from ...solve.cycle.status import CycleStatus
 from ...solve.status import PointStatus
@@ -41,8 +42,6 @@ AT_REST_STATUSES: dict[str, tuple[str, ...]] = {
 }
 """Unsuccessful statuses for which an arm without a stored Hopf point is nevertheless treated as at rest, by
 task."""
-HOPF_KINDS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
-"""Values of the variable crossing_kind for crossings that are Hopf points."""
 CLASSES_WITH_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
 """Values of the variable class, in a phase diagram, of rods that flutter or may flutter."""
 
@@ -80,7 +79,7 @@ def _motion_at_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     """
 
     def found(record: Record) -> ArmMotion:
-        hopf = np.isin(record["crossing_kind"], HOPF_KINDS)
+        hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
         first = np.argmax(hopf, axis=-1, keepdims=True)
         there = hopf.any(axis=-1)
         pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))

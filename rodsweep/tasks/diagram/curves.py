@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config.values import Axis
+from ...config.axis import Axis
 from ...model.parameters import CRUSHING_PARAMETERS
 from ...model.rod import Rod
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ...results.layouts.variables import FilledVariable
-from .records import (
+from .curve_variables import (
     bautin_curve_record,
     criticality_record,
     curve_record,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.boundaries import SpecialBoundaries
-    from ...solve.branch.special.point import SpecialPoint
+    from ...solve.branch.special.special_point import SpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.generalised import CurveCriticality
@@ -113,7 +113,7 @@ class DiagramCurves:
         options = self.task.config.phase_diagram
         found = self._boundaries(plane, view, self.task.points.columns_by_name[row])
         limit = {}
-        if names == CRUSHING_PARAMETERS and self.task.config.standard:
+        if names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
             from ...solve.changes.thresholds import filament_flutter_force
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.parameters import TRANSVERSE_PARAMETERS
 from ...model.rod import Rod
-from ...results.layouts.limit_cycle import HOPF_ALONG, hopf_point_variables
+from ...results.layouts.limit_cycle import hopf_point_variables
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
@@ -42,8 +43,8 @@ class HopfLine:
         """
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import find_axis_crossings
-        from ...solve.changes.unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
-        from ...solve.point import FAILURES
+        from ...solve.changes.search_range import CRUSHING_END_SETTINGS
+        from ...solve.point_outcome import FAILURES
 
         start = self.start
         stop = self.stop
@@ -52,13 +53,13 @@ class HopfLine:
                 stop,
                 self._crushing_force_ratio
                 * self.fixed_parameters["k1"]
-                * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin),
+                * (1 - CRUSHING_END_SETTINGS.crushing_margin),
             )
         if self.varied_parameter == "k1":
             start = max(
                 start,
                 self.fixed_parameters["F"]
-                / (self._crushing_force_ratio * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)),
+                / (self._crushing_force_ratio * (1 - CRUSHING_END_SETTINGS.crushing_margin)),
             )
         if not start < stop:
             return None
@@ -78,7 +79,7 @@ class HopfLine:
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
     """Lines of points of a file, without repetition. Rods that differ only in gamma1 share a line."""
-    names = [name for name in HOPF_ALONG if name in points.rod_values]
+    names = [name for name in TRANSVERSE_PARAMETERS if name in points.rod_values]
     return [line for name in names for line in _hopf_lines_along(points, name, names)]
 
 
@@ -137,8 +138,8 @@ def hopf_variables(
 def _hopf_point_values(line: HopfLine, crossing: "Threshold") -> dict[str, Any]:
     """Variables of the file for one Hopf point on a line."""
     rod = line.fixed_parameters | {line.varied_parameter: crossing.value}
-    return {f"hopf_{name}": rod[name] for name in HOPF_ALONG if name in rod} | {
-        "hopf_along": HOPF_ALONG.index(line.varied_parameter),
+    return {f"hopf_{name}": rod[name] for name in TRANSVERSE_PARAMETERS if name in rod} | {
+        "hopf_along": TRANSVERSE_PARAMETERS.index(line.varied_parameter),
         "hopf_kind": int(crossing.kind),
         "hopf_error": crossing.error / abs(crossing.value),
         "hopf_frequency": crossing.frequency,

@@ -1,4 +1,5 @@
-"""Solves the points of a job in sequence in this process, and keeps the results in memory."""
+"""Results of a job in memory, without a file: as a `View`, and as variables with attributes. `solved_view`
+also solves jobs without chains and without variables that depend on all points."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -15,7 +16,7 @@ from ...results.file.provenance import utc_time
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING_STATUS, FilledVariable, dimension_attributes, flag_attributes
 from ...solve.backend.availability import require_solvers
-from ...solve.exclusive import exclusive_solve
+from ...solve.solve_lock import exclusive_solve
 from ...sweep.points.ranges import Shard
 from .job import Job, plan_of
 

@@ -24,7 +24,7 @@ from ...sweep.points.points import Points
 from ...sweep.points.ranges import Shard
 from ...sweep.points.stretches import StretchResult
 from .. import TASKS
-from ..arm.points import SkippingSolver, solver_with_outcome_cache
+from ..arm.point_solver import SkippingSolver, solver_with_outcome_cache
 from ..arm.validity import ArmValidity
 from ..protocol import Solver, Task
 

@@ -22,18 +22,18 @@ from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.following import follow_branch
 from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
-from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.special_curves import CurveEnd
+from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
 from rodsweep.solve.branch.start import first_cycle as start_of_branch
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.orbit.matrix.linearisation import reduced_variations
+from rodsweep.solve.orbit.matrix.linearisation import reduced_variation_sides
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable
-from rodsweep.watch import reporting_to
+from rodsweep.solve_progress import reporting_to
 
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 SHORT = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
@@ -101,10 +101,10 @@ def test_a_fold_needs_no_compilation_beyond_that_of_the_installation(monkeypatch
 
     def recorded(*arguments):
         called.append(tuple(map(numba.typeof, arguments)))
-        return reduced_variations(*arguments)
+        return reduced_variation_sides(*arguments)
 
     for module in (seldom_used_kernels, matrix):
-        monkeypatch.setattr(module, "reduced_variations", recorded)
+        monkeypatch.setattr(module, "reduced_variation_sides", recorded)
     seldom_used_kernels.warm_up()
     (compiled,) = called
     (curve,) = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-4, True, 500, 50)).curves

@@ -23,13 +23,13 @@ from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
-from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.branch.special.special_curves import (
     CurveEnd,
     CurvePoint,
     HalfCurve,
     SpecialPointCurve,
 )
+from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.status import BranchStatus, CoexistenceStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

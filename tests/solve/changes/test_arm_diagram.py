@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.determinant.stability_boundary import Boundary
 from rodsweep.errors import InputError
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile

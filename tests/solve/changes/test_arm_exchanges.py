@@ -17,7 +17,7 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.following import are_distinct_roots
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.verdict.relative import rod_with_drag
+from rodsweep.verdict.relative_load import rod_with_drag
 
 CONE = SlenderArm(
     length="10.75 cm",

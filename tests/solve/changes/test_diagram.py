@@ -6,9 +6,9 @@ from math import inf, log
 import numpy as np
 import pytest
 
-from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.determinant.stability_boundary import Boundary
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram import boundary_curves
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
@@ -138,8 +138,8 @@ def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
         ):
             beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
             assert beside_an_edge if end == BoundaryEnd.edge else pytest.approx(other, rel=1e-7) == F
-    few = replace(boundary_curves.BOUNDARY_STEPS, max_solutions=5)
-    monkeypatch.setattr(boundary_curves, "BOUNDARY_STEPS", few)
+    few = replace(boundary_curves.BOUNDARY_STEP_CONTROL, max_solutions=5)
+    monkeypatch.setattr(boundary_curves, "BOUNDARY_STEP_CONTROL", few)
     curve = boundary_curves_through(Plane(rod, axes), seeds[:1]).curves[0]
     assert BoundaryEnd.list_full in curve.end_reasons
     assert len(curve.values) < 10

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from pointwise_balance import dissipated_power_per_length, strain, velocity
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation_matrix
@@ -54,9 +55,9 @@ def injected_and_dissipated(beam, z):
     stress = np.zeros((3, beam.mesh.node_count + 1))
     stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
-    V = material.velocity(stress, stress @ matrices.D.T)
-    dissipated = material.dissipated_power_per_length(V) @ matrices.weights
-    straining = ad(material.strain(stress), V)[0, -1]  # ad_E V of the tip
+    V = velocity(material, stress, stress @ matrices.D.T)
+    dissipated = dissipated_power_per_length(material, V) @ matrices.weights
+    straining = ad(strain(material, stress), V)[0, -1]  # ad_E V of the tip
     reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
     return beam.rod.F * reaction, dissipated
 

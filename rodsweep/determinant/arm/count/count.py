@@ -28,8 +28,8 @@ from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..elements.settings import ARM_ELEMENT_SETTINGS
 from ..hull.region import EigenvalueHull
-from ..local_waves import ArmSamples, wave_number_and_length_at
-from .phase_node import PhaseNode, phase_node, tangent_of_log
+from ..local_waves import ArmSamples, mean_wave_number_and_w_scale
+from .phase_node import PhaseNode, linearised_log_determinant, phase_node
 from .settings import CONTOUR_SETTINGS
 
 NO_KNOWN_EIGENVALUES: Complex = np.empty(0, complex)
@@ -112,7 +112,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
     corner = _corner(line, hull)
-    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.phase_change_length(corner)
+    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.w_scale(corner)
 
 
 def _corner(line: float, hull: EigenvalueHull) -> complex:
@@ -133,7 +133,7 @@ def _phase_change(
     largest = largest_w_of_count(line, determinant, hull)
     level = determinant.propagators_for(largest, CONTOUR_SETTINGS.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
-    unit = determinant.phase_change_length(corners[0])
+    unit = determinant.w_scale(corners[0])
     trial = unit, min(CONTOUR_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
     walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
@@ -174,7 +174,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
         if ahead == 0:
             ahead = min(_overlapping_distance(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
-        unit = wave_number_and_length_at(w, samples[0])[1]
+        unit = mean_wave_number_and_w_scale(w, samples[0])[1]
         first = CONTOUR_SETTINGS.first_radius * unit
         radius = min(2 * here.radius, CONTOUR_SETTINGS.largest_radius * unit) if here.radius > 0 else first
         radius = max(radius, CONTOUR_SETTINGS.max_wave_radius * w.imag)
@@ -226,6 +226,9 @@ def _phase_between(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> fl
     between = here.w + share * (there.w - here.w)
     # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi
     # because the reaches overlap.
-    expected = tangent_of_log(here, between, samples).imag - tangent_of_log(there, between, samples).imag
+    expected = (
+        linearised_log_determinant(here, between, samples).imag
+        - linearised_log_determinant(there, between, samples).imag
+    )
     rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
     return expected + cmath.phase(rest)

@@ -25,13 +25,13 @@ from numpy.typing import NDArray
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
 from ....model.rod import Rod
+from ..arm_family import ArmFamily
 from ..completeness import has_conjugate
 from ..determinant import ArmDeterminant, coefficient_samples, elements_for
 from ..elements.propagators import element_propagators
-from ..family import ArmFamily
 from ..family_values import propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
-from ..local_waves import ArmSamples, wave_number_and_length_at
+from ..local_waves import ArmSamples, mean_wave_number_and_w_scale
 from ..value import chain_value, determinant_along_chain
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
@@ -94,7 +94,7 @@ def proves_no_crossing(
     squares = np.array([one.squares for one in samples])
     levels = [propagators_at(family, here)[1] for here in p.tolist()]
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(levels))
-    unit = wave_number_and_length_at(complex(line, 0.0), samples[0])[1]
+    unit = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
         line, 0.0, top, (CONTOUR_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
     )

@@ -50,7 +50,7 @@ class PhaseNode(NamedTuple):
 
 
 @compiled
-def tangent_of_log(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
+def linearised_log_determinant(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
     Phi, slope = node.exponent_and_slope
     ahead = (node.L - slope) * (v - node.w)
@@ -120,7 +120,7 @@ def _node_inside(
         for direction in CONTOUR_SETTINGS.directions:
             v = w + rho * direction
             log = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known)
-            size = max(size, log - tangent_of_log(tried, v, samples).real)
+            size = max(size, log - linearised_log_determinant(tried, v, samples).real)
             growth = math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
             reach = _reach_of_circle(rho, CONTOUR_SETTINGS.between_points_factor * growth, room)
             if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= least):

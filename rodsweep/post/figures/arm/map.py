@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ....arrays import Array
-from ....config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
+from ....config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
 from ....model.arm.drag import DRAG_NAMES
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import ARM_SCALES

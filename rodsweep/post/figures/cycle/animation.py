@@ -46,7 +46,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
             "run with limit_cycle.shapes: 48"
         )
     writer = _film_writer(output, max(1, round(frames / PERIOD_SECONDS)))
-    figure, arms = first_frame(selection)
+    figure, arms = prepared_animation(selection)
     with writer.saving(figure, str(output), dpi=100):
         for k in range(frames):
             for arm in arms:
@@ -55,7 +55,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     return f"one period in {frames} frames" + selection.left_out
 
 
-def first_frame(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
+def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:
     """Returns (figure, arms): the figure in its final layout, and the animated arms in their first shapes."""
     cycles = selection.cycles
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ....arrays import Array
-from ....watch import SolvePosition, report
+from ....solve_progress import SolvePosition, report
 from ..style import BLUE
 from .portrait import SHAPE_MARGIN, WALL_DEPTH, draw_clamp
 from .tip_path import PATH_SEGMENT_COUNT, smooth_tip_path

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
-from ..sections import left_out_clause
+from ..grid_sections import left_out_clause
 from ..style import is_logarithmic
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from ....results.file.view import View
 from ....results.layouts.thresholds import CROSSING_KINDS
@@ -24,18 +23,9 @@ from ..style import (
     parameter_text,
     require_content,
 )
+from .class_colours import CLASS_COLOURS, class_legend_entries
 from .row_classes import class_above_crossing
 
-CLASS_COLOURS = {
-    "missing": "white",
-    "monotone": "#DCE9F5",
-    "oscillatory": "#9CC3E4",
-    "flutter": "#F2B28A",
-    "undecided": "#666666",
-    "crushed": "#BBBBBB",
-}
-"""Colours of the classes: blue for stable rods, orange for unstable rods. The colours also differ in grey
-prints."""
 FURTHER_HOPF = "later"
 """Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
 unstable."""
@@ -77,12 +67,6 @@ def draw_class_bars(view: View) -> Figure:
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
     return figure
-
-
-def class_legend_entries(seen: set[str]) -> list[Patch]:
-    """Legend entries for the classes in `seen`."""
-    shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
-    return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:

@@ -10,14 +10,12 @@ from ....model.crushing import uncrushed_interval
 from ....model.material.build import Build
 from ....results.file.view import View
 from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from ....results.layouts.thresholds import CROSSING_KINDS
+from ....results.layouts.thresholds import CROSSING_KINDS, HOPF_CROSSING_CODES
 from ....results.layouts.variables import flag_number
 from ...crushing import build_of_rods
 
 CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
-STABILITY_CROSSINGS = [CROSSING_KINDS.index(kind) for kind in ("hopf", "hopf_reverse", "restabilization")]
-"""Codes of the kinds of crossings at which the stability of the straight rod may change."""
 ONSET = CROSSING_KINDS.index("onset")
 """Code of an onset of oscillations."""
 CHANGE_TOLERANCE = 1e-9
@@ -82,11 +80,11 @@ def class_above_crossing(kind: int, unstable: int) -> str:
     return stable if unstable == 0 else "undecided"
 
 
-def class_along_row(
-    view: View, variable: str, line: str, row: str, index: int, edges: Array
+def pixel_classes_of_row(
+    view: View, variable: str, line: str, row: str, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
     """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
-    parameters along and across rows. index: index of the row. edges: edges of the pixels, (n + 1,).
+    parameters along and across rows. index: index of the row. pixel_edges: edges of the pixels, (n + 1,).
 
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
@@ -100,7 +98,7 @@ def class_along_row(
         x = np.append(x, between[own])
         classes = np.append(classes, found[own])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
-    pixels = (edges[1:] + edges[:-1]) / 2
+    pixels = (pixel_edges[1:] + pixel_edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
     found = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
@@ -124,7 +122,7 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
     if variable == "class":
         found = [at[kinds > 0]]
     else:
-        found = [at[np.isin(kinds, STABILITY_CROSSINGS)], v[f"cycle_special_{line}"]]
+        found = [at[np.isin(kinds, HOPF_CROSSING_CODES)], v[f"cycle_special_{line}"]]
     row_ends = view.variables[line][[0, -1]]
     ends = np.array(_uncrushed_row(view, build_of_rods(view), line, index))
     changes = np.concatenate([*found, ends[ends != row_ends]])

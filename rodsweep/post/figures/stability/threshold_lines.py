@@ -21,7 +21,7 @@ CRITICAL_FORCES = (
 )
 """(variable, legend entry, colour, marker, line style) of each kind of threshold. The colours are used if a
 panel has no other colours for its lines."""
-FILE_COLOURS = (style.BLUE, style.VERMILION, style.GREEN, "#CC79A7", "#56B4E9", "0.3")
+FILE_COLOURS = (*style.LINE_COLOURS[:5], "0.3")
 """Colours of the files in a figure of several files."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""
@@ -38,13 +38,12 @@ FORCE_AXIS_RATIO = 1.05
 force divided by the lower limit."""
 
 
-def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
+def draw_lines_of_grid(view: View, varied: list[str], searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
-    a line for each value of the other parameter. long: the one or two parameters with several values.
-    searched: clause on the searched range. Raises InputError if nothing can be drawn.
-    """
-    along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.parameter_values[name])))
-    other = next((name for name in long if name != along), None)
+    a line for each value of the other parameter. varied: the one or two parameters with several
+    values. searched: clause on the searched range. Raises InputError if nothing can be drawn."""
+    along = max(varied, key=lambda name: np.count_nonzero(np.isfinite(view.parameter_values[name])))
+    other = next((name for name in varied if name != along), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
     table = _first_force_table(view, along, other)
@@ -66,7 +65,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     _label_axes(axes, view, along, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *long), searched))
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *varied), searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
     return figure, words + _infinite_values_clause(view, [along])
 
@@ -96,16 +95,15 @@ def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tup
     )
 
 
-def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
+def draw_selected_lines(view: View, varied: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
-    parameters `long` as abscissa, with curves for some values of the second parameter. narrow: whether the
-    panels are stacked. searched: clause on the searched range.
-    """
+    parameters `varied` as abscissa, with curves for some values of the second parameter. narrow:
+    whether the panels are stacked. searched: clause on the searched range."""
     rows, columns = (2, 1) if narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
     drawn = []
-    for panel, along, other in zip(panels, long, reversed(long), strict=True):
+    for panel, along, other in zip(panels, varied, reversed(varied), strict=True):
         count = len(view.parameter_values[other])
         drawn.append(f"{_some_lines(panel, view, along, other)} of {count} values of {other}")
         if narrow or panel is panels[0]:
@@ -116,9 +114,11 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *long), searched))
-    shown = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
-    return figure, shown + _infinite_values_clause(view, long)
+    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *varied), searched))
+    shown = (
+        f"critical forces against {' and '.join(varied)}, lines for {' and '.join(drawn)} (--what map: all)"
+    )
+    return figure, shown + _infinite_values_clause(view, varied)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:

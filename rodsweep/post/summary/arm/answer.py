@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ....config.arm.axes import NOT_SLENDER
+from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View

@@ -68,15 +68,14 @@ def range_in_unit(
     values: np.ndarray,
     si: str,
     errors: np.ndarray | float = 0.0,
-    most: int = RANGE_DIGITS,
+    max_digits: int = RANGE_DIGITS,
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
-    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. most: largest
-    number of digits.
-    """
+    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. max_digits:
+    largest number of digits."""
     factor, unit = printing_unit(view, si, _largest_absolute(values))
-    return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), most)} {unit}"
+    return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), max_digits)} {unit}"
 
 
 def _largest_absolute(values: np.ndarray) -> float:
@@ -191,7 +190,7 @@ def load_kind(view: View) -> str:
     return "force" if "force" in view.quantities else "pressure"
 
 
-def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
+def load_range_text(view: View, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
     force, (n,).
     """
@@ -211,7 +210,7 @@ def crossings_of_arm(view: View) -> list[str]:
     lines = []
     for i in np.flatnonzero(kinds > 0):
         kind = CROSSING_KINDS[int(kinds[i])]
-        text = f"{kind} at {loads_at(view, forces[i : i + 1], rod)}: {CROSSING_MEANINGS[kind]}"
+        text = f"{kind} at {load_range_text(view, forces[i : i + 1], rod)}: {CROSSING_MEANINGS[kind]}"
         if frequencies[i]:
             text += f"; frequency {_in_hertz(view, frequencies[i : i + 1], rod)}"
         lines.append(text)
@@ -227,7 +226,7 @@ def thresholds_of_arm(
         return []
     points = np.concatenate([points for _, points in found])
     each = [len(points) for _, points in found]
-    load = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
+    load = load_range_text(view, np.repeat([place.position for place, _ in found], each), points)
     frequency = np.repeat([place.frequency for place, _ in found], each)
     rate = ""
     if np.isfinite(frequency).any():

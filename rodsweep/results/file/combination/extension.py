@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.axes import joined_names
 from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
+from ....wording import enumeration
 from ...layouts import EXTENSION_RULES
 from ...layouts.variables import ExtensionRule, Layout
 from ..creation import Plan
@@ -154,9 +154,9 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPo
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
-            f"a grid of {joined_names(tuple(p.axes), 'and')}"
+            f"a grid of {enumeration(tuple(p.axes), 'and')}"
             if p.axes
-            else f"a list of {joined_names(p.names, 'and')}"
+            else f"a list of {enumeration(p.names, 'and')}"
             for p in (old, new)
         ]
         _refuse_difference(header, config_difference(kinds[0], kinds[1], "parameters"))

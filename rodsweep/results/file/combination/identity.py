@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from ....arrays import Array
-from ....config.axes import Axes
 from ....config.document.reading import config_from_resolved
+from ....config.parameters_section import Axes
 
 LONGEST_VALUE = 80
 """Maximum number of characters of a value in a message; longer values are cut."""

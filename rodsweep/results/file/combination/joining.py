@@ -14,13 +14,13 @@ import h5py
 import numpy as np
 
 from ....arrays import Array
+from ....config.axis import Axis
+from ....config.base_config import Config
 from ....config.document.reading import config_from_resolved, config_yaml, resolved_config
-from ....config.schema import Config
-from ....config.values import Axis
 from ....errors import InputError
 from ....sweep.points.points import Points
 from ...layouts.variables import MISSING_STATUS, SECONDS
-from ..content import SEAL_ATTRIBUTE
+from ..content_digests import SEAL_ATTRIBUTE
 from ..creation import Plan
 from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in

@@ -71,12 +71,12 @@ def _merge(replacement: FileReplacement, sources: Sequence[ResultHeader], planne
         return _finish_merge(copy, plan, gave)
 
 
-def _write_joined_file(replacement: FileReplacement, joint: JoinedFile) -> MergeResult:
+def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> MergeResult:
     """Replaces the output by the planned joined file and writes the points of all sources into it."""
     with replacement.replacing(None) as copy:
-        create_file(copy, joint.plan)
-        gave = joint.write(copy)
-        return _finish_merge(copy, joint.plan, gave or joint.sources[:1])
+        create_file(copy, joined.plan)
+        gave = joined.write(copy)
+        return _finish_merge(copy, joined.plan, gave or joined.sources[:1])
 
 
 def _finish_merge(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:

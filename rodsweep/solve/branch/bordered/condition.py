@@ -10,7 +10,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
-from ....watch import report
+from ....solve_progress import report
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_change
 from ...orbit.orbit import Orbit

@@ -13,7 +13,7 @@ from ...orbit.matrix.linearisation import (
     closing_residual,
     parameter_derivatives,
     reduced_residuals,
-    reduced_variations,
+    reduced_variation_sides,
 )
 from ...orbit.matrix.multipliers import multipliers_over_period, multipliers_over_solved_part
 from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_row
@@ -108,7 +108,7 @@ class BorderedMatrix:
         along = parameter_derivatives(orbit.form, self.scale.parameter_name)
         equations = orbit.semidiscrete_equations
         p = self.orbit.semidiscrete_equations
-        changed: tuple[Array, Array] = reduced_variations(
+        changed: tuple[Array, Array] = reduced_variation_sides(
             orbit.values, equations, along, variations, p, self._memory.factors
         )
         return changed

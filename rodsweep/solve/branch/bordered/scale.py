@@ -40,13 +40,18 @@ class ArcLengthScale:
     min_deflection_unit: float
 
     @classmethod
-    def at_orbit(cls, orbit: Orbit, name: str, least: float) -> "ArcLengthScale":
-        """The scale of an orbit. The units are sqrt(d^2 + least^2), d: largest deflection over the orbit, and
-        the modulus of the parameter coordinate. name: continuation parameter. least: smallest unit of the
-        deflection, in L."""
+    def at_orbit(cls, orbit: Orbit, name: str, min_deflection_unit: float) -> "ArcLengthScale":
+        """The scale of an orbit. The units are sqrt(d^2 + min_deflection_unit^2), d: largest deflection over
+        the orbit, and the modulus of the parameter coordinate. name: continuation parameter.
+        min_deflection_unit: smallest unit of the deflection, in L."""
         largest = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
-        # `least` keeps the unit positive near a Hopf point, where the deflection vanishes.
-        return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
+        # `min_deflection_unit` keeps the unit positive near a Hopf point, where the deflection vanishes.
+        return cls(
+            name,
+            float(np.hypot(largest, min_deflection_unit)),
+            abs(orbit.form.rod.coordinate(name)),
+            min_deflection_unit,
+        )
 
     def components(self, orbit: Orbit) -> Array:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...point import FAILURES
+from ...point_outcome import FAILURES
 from ...unsolvable import Unsolvable
 from .curve_problem import END_SETTINGS, SpecialCurveProblem
-from .on_curve import SolvedPoint
-from .point import RowSpecialPoint, SpecialKind, SpecialPoint
+from .solved_curve_point import SolvedPoint
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
     CurveEnd,
@@ -22,6 +21,7 @@ from .special_curves import (
     SpecialPointCurve,
     TracedHalfCurve,
 )
+from .special_point import RowSpecialPoint, SpecialKind, SpecialPoint
 
 FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 """Kinds of special points that are followed as curves, with the plural noun for messages."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
-from ....watch import SolvePosition, report
+from ....solve_progress import SolvePosition, report
 from ....wording import counted
 from ...continuation.follower import Curve, CurveStop, StepControl, StepResult, follow_curve, zero_along_step
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -17,9 +17,9 @@ from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..bordered.matrix import BorderedMatrix
 from .augmented.functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
-from .family import CycleFamily
+from .cycle_family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
-from .on_curve import (
+from .solved_curve_point import (
     ALONG_BRANCH,
     SolvedPoint,
     arc_lengths,
@@ -27,8 +27,8 @@ from .on_curve import (
     orbit_with_parameters,
     with_parameter_errors,
 )
-from .point import SpecialKind, SpecialPoint
 from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
+from .special_point import SpecialKind, SpecialPoint
 
 CURVE_STEP_CONTROL = StepControl(
     first_length=0.01,

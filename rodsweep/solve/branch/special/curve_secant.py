@@ -18,15 +18,15 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable
-from ..arc import tangent_at
+from ..arc_length_step import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.scale import ArcLengthScale
 from .augmented.functions import AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
-from .on_curve import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
+from .solved_curve_point import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
 
 if TYPE_CHECKING:
-    from .family import CycleFamily  # for annotations only: the module imports this one
+    from .cycle_family import CycleFamily  # for annotations only: the module imports this one
 
 
 class _SecantIterate(NamedTuple):

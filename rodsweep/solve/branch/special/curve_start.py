@@ -10,14 +10,14 @@ from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit_mesh import cheapest_stage_count, mesh_of
 from ...unsolvable import Unsolvable
-from ..arc import tangent_at
+from ..arc_length_step import tangent_at
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
 from ..start.first_cycle import ALONG_DEFLECTION
 from ..start.hopf_point import BRANCH_START_SETTINGS
-from .family import CycleFamily
-from .on_curve import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
-from .point import SpecialPoint
+from .cycle_family import CycleFamily
+from .solved_curve_point import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
+from .special_point import SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,9 +12,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ...unsolvable import Unsolvable
-from ..arc import BranchCycle, arc_length_between
+from ..arc_length_step import BranchCycle, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
-from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
 CycleStep = Callable[[BranchCycle, float], BranchCycle]
 """Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises

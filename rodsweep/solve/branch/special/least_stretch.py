@@ -10,7 +10,7 @@ from ....discretization.element_strains import index_before_jump
 from ....discretization.elements.periodic import series_maxima, series_samples
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
-from ..arc import BranchCycle
+from ..arc_length_step import BranchCycle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,22 +4,22 @@ from dataclasses import replace
 from math import ceil, log
 
 from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count
-from ..errors import BranchCalibration
-from .point import SPECIAL_POINT_SETTINGS
+from ..branch_errors import BranchCalibration
+from .special_point import SPECIAL_POINT_SETTINGS
 
 
-def first_mesh(calibration: BranchCalibration, aim: float) -> OrbitMesh:
-    """The first mesh for a special point of the relative accuracy `aim`. calibration: errors of the cycle
-    after the special point.
+def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
+    """The first mesh for a special point of the relative accuracy `accuracy`. calibration: errors of the
+    cycle after the special point.
 
     The number of stages is at least the number with the smallest cost at this accuracy. With s' instead of s
     stages an error e in time becomes about e^(s'/s) on the same intervals, as in `mesh_from_tails`. The
     intervals are therefore chosen for the larger error that s stages may have: with the intervals that s
     stages need, the first mesh of a cone had 3.8 times the necessary number, and 2.3 GB of factors.
     """
-    planned = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * aim
+    planned = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * accuracy
     mesh = calibration.cheapest_mesh_for_parameter(planned)
-    stages = max(mesh.stage_count, cheapest_stage_count(aim))
+    stages = max(mesh.stage_count, cheapest_stage_count(accuracy))
     if stages == mesh.stage_count:
         return mesh
     coarser = calibration.cheapest_mesh_for_parameter(planned ** (mesh.stage_count / stages))

@@ -18,15 +18,15 @@ from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable, WorkLimitReached
-from ..arc import BranchCycle
+from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
 from .augmented.functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
 from .located_meshes import first_mesh, next_mesh
-from .point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .segment import BranchSegment
+from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:

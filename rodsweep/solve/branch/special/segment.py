@@ -4,11 +4,11 @@ from ....arrays import Array
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..arc import BranchCycle, arc_length_between
+from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import bordered_matrix_of
 from .augmented.functions import FoldFunction, correct_until_converged
-from .point import SPECIAL_POINT_SETTINGS
+from .special_point import SPECIAL_POINT_SETTINGS
 
 
 class BranchSegment:

@@ -11,8 +11,8 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ...hopf.generalised import GeneralisedHopfPoint
 from ...orbit.normalised import polynomial_weights
-from .on_curve import SolvedPoint
-from .point import SpecialKind
+from .solved_curve_point import SolvedPoint
+from .special_point import SpecialKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,7 +19,7 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ...unsolvable import Unsolvable
-from ..arc import BranchCycle, branch_derivatives, tangent_at
+from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale, deflection_of
@@ -133,8 +133,8 @@ class _WayFromSymmetry:
         )
         near = rough.orbit
         _require_asymmetry(near, start)
-        aim = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
-        mesh = mesh_from_tails(near, aim, cheapest_stage_count(self.accuracy))
+        mesh_accuracy = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
+        mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(self.accuracy))
         first = condition.solve_on_mesh(
             mesh, rough, newton_tolerance(self.accuracy), max_matrix_distance(self.accuracy)
         )

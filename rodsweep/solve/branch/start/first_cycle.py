@@ -15,7 +15,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ...unsolvable import Unsolvable
-from ..arc import BranchCycle
+from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition
 from ..bordered.scale import ArcLengthScale, deflection_of
 from ..mesh_choice import first_measured_cycle
@@ -53,11 +53,11 @@ def _cycle_beside_hopf_point(
     a = abs(hopf.amplitude_coefficient)
     usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
-    for aim, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
+    for mesh_accuracy, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
         for share in BRANCH_START_SETTINGS.first_amplitudes:
             amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a, largest)
             try:
-                return _cycle_of_amplitude(hopf, amplitude, aim, finer, accuracy, workspace)
+                return _cycle_of_amplitude(hopf, amplitude, mesh_accuracy, finer, accuracy, workspace)
             except Unsolvable as error:
                 why = error
     raise Unsolvable(f"no cycle is found near the Hopf point: {why}") from why
@@ -66,7 +66,7 @@ def _cycle_beside_hopf_point(
 def _cycle_of_amplitude(
     hopf: HopfBranchStart,
     amplitude: float,
-    aim: float,
+    mesh_accuracy: float,
     finer: bool,
     accuracy: float,
     workspace: NewtonWorkspace,
@@ -74,13 +74,15 @@ def _cycle_of_amplitude(
     """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
     L, solved to the relative `accuracy`; raises Unsolvable.
 
-    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `aim`. finer:
-    whether the starting mesh is chosen for `aim` too; otherwise the starting mesh is the coarser mesh of the
+    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `mesh_accuracy`. finer:
+    whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh is the coarser mesh of the
     normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
-        start = mesh_from_tails(start, aim, cheapest_stage_count(aim)).interpolated_orbit(start)
+        start = mesh_from_tails(start, mesh_accuracy, cheapest_stage_count(mesh_accuracy)).interpolated_orbit(
+            start
+        )
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
     scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
@@ -93,7 +95,7 @@ def _cycle_of_amplitude(
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = mesh_from_tails(near, aim, cheapest_stage_count(accuracy))
+    mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
     arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, arc_from_start, accuracy)

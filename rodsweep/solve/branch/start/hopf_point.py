@@ -11,7 +11,7 @@ from ...changes.kinds import Threshold
 from ...cycle.hopf_start import HOPF_START_SETTINGS
 from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
-from ..special.point import SpecialKind, SpecialPoint
+from ..special.special_point import SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -115,14 +115,14 @@ class AxisModesOfPath:
         found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
         return found or self._leading_modes(p, growing)
 
-    def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `highest`, (n,), one of
-        each pair. known: some of these eigenvalues, (k,), which come first.
+    def eigenvalues_near_axis(self, p: float, max_frequency: float, known: Complex) -> Complex:
+        """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `max_frequency`, (n,),
+        one of each pair. known: some of these eigenvalues, (k,), which come first.
 
         Raises Unsolvable if no elements resolve the arm.
         """
         try:
-            return self.problem.eigenvalues_near_axis(p, highest, known)
+            return self.problem.eigenvalues_near_axis(p, max_frequency, known)
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 

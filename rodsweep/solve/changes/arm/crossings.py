@@ -68,22 +68,22 @@ class CrossingSearch:
         self.crossings_by_p: dict[float, Threshold] = {}
         self.gaps: list[tuple[float, float]] = []
 
-    def crossings(self, edges: list[float], most: float) -> tuple[list[Threshold], SearchEnd]:
+    def crossings(self, edges: list[float], max_crossings: float) -> tuple[list[Threshold], SearchEnd]:
         """Returns (crossings, end). crossings: all crossings from the first of `edges` to the end of the
         search, in increasing order of p. end: end of the search.
 
-        The search ends after the first crossing beyond `most`: where dozens of modes grow, each further
-        crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first edge.
-        """
+        The search ends after the first crossing beyond `max_crossings`: where dozens of modes grow, each
+        further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
+        edge."""
         intervals = SearchedIntervals(edges)
         beside = ARM_CROSSING_SETTINGS.count_distance * intervals.length
         self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
         self.axis_modes.modes_at(edges[0])
         for a, b in intervals:
-            if sum(p < a for p in self.crossings_by_p) > most:
-                intervals.stop_at(a, f"more than {most:g} crossings; raise the option crossings")
+            if sum(p < a for p in self.crossings_by_p) > max_crossings:
+                intervals.stop_at(a, f"more than {max_crossings:g} crossings; raise the option crossings")
                 continue
-            if self._must_be_halved(a, b, most, intervals.length):
+            if self._must_be_halved(a, b, max_crossings, intervals.length):
                 intervals.add_parts((a, (a + b) / 2), ((a + b) / 2, b))
                 continue
             try:
@@ -100,15 +100,13 @@ class CrossingSearch:
         first, last = sorted(map(self.problem.path.coordinate, near))
         return first <= high and last >= low
 
-    def _must_be_halved(self, a: float, b: float, most: float, length: float) -> bool:
+    def _must_be_halved(self, a: float, b: float, max_crossings: float, length: float) -> bool:
         """Whether (a, b) must be halved before its search: it is not short, the modes at b are not known, and
-        the list of `most` crossings is likely to be full before b. length: length of the path."""
+        the list of `max_crossings` crossings is likely to be full before b. length: length of the path."""
         if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
-        expected = self.problem.expected_unstable_count(b)
-        return (
-            self.axis_modes.has_many_modes(b) and expected > ARM_CROSSING_SETTINGS.full_list_ratio * 2 * most
-        )
+        full = ARM_CROSSING_SETTINGS.full_list_ratio * 2 * max_crossings
+        return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > full
 
     def _search_interval(self, a: float, b: float, intervals: SearchedIntervals) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
@@ -150,7 +148,9 @@ class CrossingSearch:
         """
         parts: list[tuple[float, float]] = []
         start = left.p
-        highest = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(left.largest_modulus, right.largest_modulus)
+        max_frequency = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(
+            left.largest_modulus, right.largest_modulus
+        )
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
             before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
@@ -158,7 +158,7 @@ class CrossingSearch:
             beside = None
             if self.axis_modes.has_many_modes(before):
                 beside = self.axis_modes.eigenvalues_near_axis(
-                    p, highest, np.array([1j * crossing.frequency])
+                    p, max_frequency, np.array([1j * crossing.frequency])
                 )
             change = (
                 self.axis_modes.modes_at(behind, beside).unstable_count
@@ -180,7 +180,7 @@ class CrossingSearch:
         if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if many else 1):
             return []
         if many:
-            self.problem.make_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
+            self.problem.ensure_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         grows = change > 0
         found: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are

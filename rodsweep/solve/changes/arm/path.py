@@ -8,9 +8,9 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....determinant.arm.along_path import ArmAlongPath
+from ....determinant.arm.arm_family import ArmFamily, interpolated_family
 from ....determinant.arm.count.modes_near_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
-from ....determinant.arm.family import ArmFamily, interpolated_family
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import EigenvalueCount
 from ....determinant.parameter_path import Path
@@ -86,12 +86,13 @@ class ArmPath(PathProblem):
             return self._followed_arms.family_at(p)
         return made
 
-    def make_family(self, low: float, high: float, highest: float) -> None:
-        """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `highest`, if possible
-        and if no stored family suffices."""
-        W = ARM_PATH_SETTINGS.largest_w_factor * highest
+    def ensure_family(self, low: float, high: float, largest_modulus: float) -> None:
+        """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `largest_modulus`, if
+        possible and if no stored family suffices."""
+        W = ARM_PATH_SETTINGS.largest_w_factor * largest_modulus
         if any(
-            one.p_low <= low and high <= one.p_high and highest * 2 <= one.largest_w for one in self._families
+            one.p_low <= low and high <= one.p_high and largest_modulus * 2 <= one.largest_w
+            for one in self._families
         ):
             return
         with suppress(ValueError, FloatingPointError):
@@ -203,14 +204,14 @@ class ArmPath(PathProblem):
             self._unstable_counts[p] = number
         return self._unstable_counts[p]
 
-    def eigenvalues_near_axis(self, p: float, highest: float, known: Complex) -> Complex:
-        """Eigenvalues at p near the imaginary axis with |Im w| up to `highest`, (n,), one of each pair.
+    def eigenvalues_near_axis(self, p: float, max_frequency: float, known: Complex) -> Complex:
+        """Eigenvalues at p near the imaginary axis with |Im w| up to `max_frequency`, (n,), one of each pair.
 
         known: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
         resolve the arm.
         """
         rod = self.path.rod_at(p)
-        return modes_near_axis(arm_determinant(rod), min(highest, hull_of(rod).box()[1]), known)
+        return modes_near_axis(arm_determinant(rod), min(max_frequency, hull_of(rod).box()[1]), known)
 
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary
 from ....determinant.parameter_plane import Plane
+from ....determinant.stability_boundary import Boundary
 from ...continuation.boundaries import Boundaries, trace_boundaries
 from ..kinds import ChangeKind
 from .boundary_curves import BoundaryCurve, trace_boundary

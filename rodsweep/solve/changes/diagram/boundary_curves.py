@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary, BoundarySolution
 from ....determinant.parameter_plane import Plane
-from ....watch import report
+from ....determinant.stability_boundary import Boundary, BoundarySolution
+from ....solve_progress import report
 from ...continuation.follower import CurveStop, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
-    BOUNDARY_STEPS,
+    BOUNDARY_STEP_CONTROL,
     BoundaryCurveProblem,
     BoundaryEnd,
     BoundaryPoint,
@@ -77,11 +77,13 @@ def trace_boundary(
         first = BoundaryPoint.oriented(curve.boundary_point_near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
-    ahead = follow_curve(curve, first, BOUNDARY_STEPS, lambda _: report())
+    ahead = follow_curve(curve, first, BOUNDARY_STEP_CONTROL, lambda _: report())
     back = ahead
     passed = ahead.solutions
     if ahead.end_reason is not CurveStop.closed:
-        back = follow_curve(curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEPS, lambda _: report())
+        back = follow_curve(
+            curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEP_CONTROL, lambda _: report()
+        )
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.

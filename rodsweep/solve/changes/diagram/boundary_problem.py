@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.boundary import Boundary, BoundarySolution
+from ....determinant.stability_boundary import Boundary, BoundarySolution
 from ...continuation.follower import Curve, CurveStop, StepControl, StepResult
 from ...unsolvable import Unsolvable
 
-BOUNDARY_STEPS = StepControl(
+BOUNDARY_STEP_CONTROL = StepControl(
     first_length=0.01,
     max_length=0.04,
     min_length=1e-9,
@@ -164,6 +164,6 @@ class BoundaryCurveProblem:
             <= BOUNDARY_CURVE_SETTINGS.edge_tolerance
         ):
             return BoundaryEnd.edge
-        beyond = BoundaryPoint(v + 2 * BOUNDARY_STEPS.min_length * tangent, tangent)
+        beyond = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)
         is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
         return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
-from ...point import outcome_or_failure
+from ...point_outcome import outcome_or_failure
 from ..along_path import ThresholdList, find_thresholds
+from ..search_range import CRUSHING_END_SETTINGS
 from ..status import ThresholdStatus
 from ..thresholds import Thresholds, empty_thresholds, thresholds_with_status
-from ..unstable_modes import UNSTABLE_MODE_COUNT_SETTINGS
 
 
 class RodClass(IntEnum):
@@ -93,8 +93,8 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
     share = rod.build.relative_crushing_force(rod.taper)
     crushing = k1 * share
-    uncrushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin) > F
-    crushed = crushing * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_tolerance) <= F
+    uncrushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
+    crushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F
     nearly_crushed = ~uncrushed & ~crushed
     if not uncrushed.any():
         row = _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
@@ -103,9 +103,9 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     stop = float(values[uncrushed][-1])
     # Thresholds may lie between the last value that is not crushed and the crushing force.
     if name == "F" and not uncrushed.all():
-        stop = rod.crushing_force * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)
+        stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin)
     if name == "k1" and not uncrushed.all():
-        start = rod.F / (share * (1 - UNSTABLE_MODE_COUNT_SETTINGS.crushing_margin)) if rod.F > 0 else start
+        start = rod.F / (share * (1 - CRUSHING_END_SETTINGS.crushing_margin)) if rod.F > 0 else start
     found = find_thresholds(Path(rod.with_values(**{name: start}), name), start, stop, request.certify)
     classes, unstable = classes_and_unstable_counts(found, values)
     # Nearly crushed rods lie outside the searched range.

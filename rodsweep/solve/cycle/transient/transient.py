@@ -16,7 +16,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
-from ....watch import SolvePosition, report
+from ....solve_progress import SolvePosition, report
 from ....wording import counted
 from ...motion.integrator import INTEGRATOR_SETTINGS, RunEnding, Trajectory, integrator, relax_fast_components
 from ...motion.leading_mode import leading_mode

@@ -191,7 +191,7 @@ def reduced_residuals(
 
 
 @compiled_for_vectors
-def reduced_variations(
+def reduced_variation_sides(
     values: Array,
     rod: SemidiscreteEquations,
     along: ParameterDerivatives,

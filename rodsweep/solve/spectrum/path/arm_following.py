@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
+from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.arm.completeness import (
     COMPLETENESS_SETTINGS,
     points_right_of_hull,
     proves_completeness,
     remainder_of_sum,
 )
-from ....determinant.arm.family import ArmFamily
 from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
 from ....determinant.arm.rounding import error_of_interpolated_chain

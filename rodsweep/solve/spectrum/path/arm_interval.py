@@ -3,7 +3,7 @@ each arm.
 
 Krylov-Schur solves the first arm for more modes than wanted: a proof that all eigenvalues to the right of a
 line are known is easier with known eigenvalues to the left of the line. The propagators of all arms are
-interpolated from the propagators of a few arms (`rodsweep.determinant.arm.family`), on an interval short
+interpolated from the propagators of a few arms (`rodsweep.determinant.arm.arm_family`), on an interval short
 enough for smooth polynomials.
 """
 
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
+from ....determinant.arm.arm_family import ArmFamily, has_smooth_coefficients, interpolated_family
 from ....determinant.arm.completeness import (
     COMPLETENESS_SETTINGS,
     has_conjugate,
@@ -21,13 +22,12 @@ from ....determinant.arm.completeness import (
     prove_complete,
 )
 from ....determinant.arm.determinant import arm_determinant
-from ....determinant.arm.family import ArmFamily, has_smooth_coefficients, interpolated_family
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
 from ....determinant.parameter_path import Path
 from ....determinant.roots.roots import Roots
 from ...backend.solver_pools import destroy_pooled_solvers
-from ...point import FAILURES
+from ...point_outcome import FAILURES
 from ..candidates import line_for_proof
 from ..search import Search
 from ..spectrum import SpectrumRequest

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.arm.family import ArmFamily
+from ....determinant.arm.arm_family import ArmFamily
 from ....determinant.parameter_path import Path
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus

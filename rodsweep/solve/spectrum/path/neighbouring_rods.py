@@ -17,7 +17,7 @@ from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod, coefficients_of
 from ...backend.solver_pools import destroy_pooled_solvers
-from ...point import FAILURES
+from ...point_outcome import FAILURES
 from ..search import Search, SpectrumRequest
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding

@@ -13,13 +13,11 @@ from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_WORDS
-from ...sections import left_out_clause
+from ...grid_sections import left_out_clause
 from ...style import (
-    BLUE,
-    GREEN,
     LABELS,
+    LINE_COLOURS,
     SYMBOLS,
-    VERMILION,
     escape_dollar_signs,
     heading_text,
     legend_below,
@@ -30,13 +28,10 @@ from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
 from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
+from .square_root import square_root_laws
 
-BRANCH_LOOKS = tuple(
-    zip(
-        (BLUE, VERMILION, GREEN, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True
-    )
-)
-"""(colour, marker) of each line. The colours are Okabe and Ito's palette."""
+BRANCH_LOOKS = tuple(zip(LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
+"""(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
@@ -72,7 +67,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     handles += mark_hopf_points(panels, marks)
     handles += draw_square_root_laws(
         panels[1],
-        [law for branch in branches for law in branch.square_root_fits],
+        [law for each in branches for law in square_root_laws(each.x, each.amplitude_y, each.hopf)],
         units[0].names[0] * units[0].in_si,
     )
     _label_axes(panels, name, units[0].panel_labels)

@@ -12,7 +12,6 @@ from .....results.layouts.limit_cycle import CYCLE_WORDS
 from .....sweep.points.points import lines_along
 from ....hopf_points import LocatedThreshold, StoredThresholds
 from ..units_and_labels import PLAIN_UNITS, CycleUnits
-from .square_root import SquareRootLaw, square_root_laws
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +45,6 @@ class AmplitudeBranch:
     def measures(self) -> tuple[Array, ...]:
         """Quantities drawn in the panels, from top to bottom."""
         return self.amplitude_x, self.amplitude_y, self.period, self.power
-
-    @property
-    def square_root_fits(self) -> list[SquareRootLaw]:
-        """Square-root laws of the largest y of the tip near the Hopf points."""
-        return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
     def with_gap_at_onset(self, values: Array) -> tuple[Array, Array]:
         """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one

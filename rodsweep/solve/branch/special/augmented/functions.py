@@ -17,7 +17,7 @@ from ....orbit.orbit import Orbit
 from ....unsolvable import Unsolvable
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import deflection_of
-from ..point import SPECIAL_POINT_SETTINGS
+from ..special_point import SPECIAL_POINT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

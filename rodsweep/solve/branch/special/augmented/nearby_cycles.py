@@ -4,7 +4,7 @@ module `functions`. A new matrix is assembled only if the corrections converge s
 from typing import Protocol
 
 from .....arrays import Array
-from .....watch import report
+from .....solve_progress import report
 from ....orbit.matrix.workspace import NewtonWorkspace
 from ....orbit.newton import ORBIT_NEWTON_SETTINGS, relative_change
 from ....orbit.orbit import Orbit
@@ -66,14 +66,13 @@ class NearbyCycleSolver:
         self.test_function.set_approximate_vectors(vectors)
 
     def solve(
-        self, orbit: Orbit, condition: BorderCondition, slope: float, enough: float
+        self, orbit: Orbit, condition: BorderCondition, slope: float, tolerance: float
     ) -> tuple[Orbit, float]:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
-        slope: approximate modulus of the derivative of the test function across the curve. enough: relative
-        tolerance of cycle and test function; far from the curve `AUGMENTED_SETTINGS.tolerance_share` allows
-        more.
-        """
+        slope: approximate modulus of the derivative of the test function across the curve. tolerance:
+        relative tolerance of cycle and test function; far from the curve `AUGMENTED_SETTINGS.tolerance_share`
+        allows more."""
         last = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
             report()
@@ -89,7 +88,9 @@ class NearbyCycleSolver:
             if last and not self._family.has_small_cycles:
                 measured = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
                 self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, measured)
-            if off * min(rate, 1.0) <= max(enough, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope):
+            if off * min(rate, 1.0) <= max(
+                tolerance, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope
+            ):
                 return orbit, value
             if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
                 if off <= AUGMENTED_SETTINGS.rounding_correction:

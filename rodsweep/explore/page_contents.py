@@ -18,8 +18,8 @@ from .pictures.diagram import DiagramPicture
 from .pictures.growth import GrowthPicture
 from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
-from .scales import SCALES, length_axis, load_axis
 from .sharing import Sharing
+from .slider_scales import SCALES, length_axis, load_axis
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
 from .texts import SolvingSign, add_texts

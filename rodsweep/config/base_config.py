@@ -12,8 +12,8 @@ from pydantic import Field, model_validator
 from ..model.material.build import DEFAULT_BUILD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
-from .axes import Axes, LinearParameters
 from .material import MaterialSection
+from .parameters_section import Axes, LinearParameters
 from .values import Number, StrictSection, Text
 
 ModeCount = Annotated[int, Field(ge=1, le=100)]
@@ -80,9 +80,9 @@ class Config(StrictSection):
         return DEFAULT_BUILD if self.parameters.arm is None else self.parameters.arm.build
 
     @property
-    def standard(self) -> bool:
+    def is_uniform_and_linear(self) -> bool:
         """Whether all rods are uniform and of linear material."""
-        if self.parameters.arm is not None and not self.parameters.arm.standard:
+        if self.parameters.arm is not None and not self.parameters.arm.is_uniform_and_linear:
             return False
         if "taper" in (self.parameters.columns or ()):
             return False

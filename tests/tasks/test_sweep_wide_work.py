@@ -14,13 +14,13 @@ from surveyed import survey_only
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
-from rodsweep.solve.branch.special.point import RowSpecialPoint, SpecialKind
 from rodsweep.solve.branch.special.special_curves import (
     CurveEnd,
     CurvePoint,
     HalfCurve,
     TracedHalfCurve,
 )
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 from rodsweep.sweep.chunk_queue import NO_WORK_LEFT, DependentItemQueue, RankReport
 
 DIAGRAM = """
@@ -35,7 +35,7 @@ phase_diagram: {cycles: true}
 HALT = """
 import pathlib, time
 from rodsweep.results.run.checkpoints import ItemResults
-import rodsweep.watch as watch
+import rodsweep.solve_progress as watch
 from rodsweep.sweep.stop import RankListener
 
 write, hear = ItemResults.write, RankListener.__call__
@@ -60,7 +60,7 @@ ItemResults.write, RankListener.__call__ = write_and_note, hear_and_wait
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory, loaded):
     """The command in a directory with the diagram computed by one rank without a break, `whole.h5`."""
-    command = Command(tmp_path_factory.mktemp("joint"), lambda: loaded)
+    command = Command(tmp_path_factory.mktemp("sweep_wide"), lambda: loaded)
     command.write("c.yaml", DIAGRAM)
     run = command("run", "c.yaml", "-o", "whole.h5")
     assert run.returncode == 0, run.stderr

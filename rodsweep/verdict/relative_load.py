@@ -22,7 +22,7 @@ from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
 from ..solve.changes.kinds import ChangeKind
-from ..solve.changes.unstable_modes import end_below_crushing
+from ..solve.changes.search_range import end_below_crushing
 
 A = TypeVar("A", bound=SlenderArm)
 SEARCH_END = 1000.0
@@ -64,7 +64,7 @@ def plane_rods(
     replace the values of the arm.
     """
     planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
-    if not arm.is_equally_stiff:
+    if not arm.is_equally_stiff_in_all_planes:
         other = with_exchanged_sides(arm)
         scale = other.cross_section.second_moment / arm.cross_section.second_moment
         planes.append((_rod_in_its_plane(other, build, taper), scale))
@@ -83,13 +83,6 @@ def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Ro
     """
     own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
     return Rod(F=0.0, **own, build=build or arm.build_with_drag(drag))
-
-
-def first_flutter_force(arm: SlenderArm) -> float:
-    """Smallest flutter force of an arm over its planes of motion, in k3/L^2 of the arm; inf if the arm does
-    not flutter. Raises FlutterSearchFailed if the search fails.
-    """
-    return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
 
 
 @cache
@@ -141,7 +134,7 @@ def _first_hopf_force_of_varied(path: Path, end: float) -> float:
     FlutterSearchFailed if the search along F fails or a smaller F is not excluded.
     """
     from ..solve.changes.along_path import find_axis_crossings
-    from ..solve.point import FAILURES, cause_of
+    from ..solve.point_outcome import FAILURES, cause_of
 
     try:
         found = find_axis_crossings(path, 0.0, end)

@@ -43,7 +43,7 @@ class ArmFamilySettings(CompiledSettings):
     """The tolerance for series of the coefficients along the arms is `converged_tail` times this factor."""
 
     def trials(self) -> list[tuple[int, float]]:
-        """Pairs (number of arms, scale over the length of the interval) of all trials, in order."""
+        """Pairs from `arm_counts` and `spacing_scales`, in the order of the trials."""
         return list(zip(self.arm_counts, self.spacing_scales, strict=True))
 
 

@@ -10,7 +10,7 @@ from ...config.document.refusals import unknown_key_hint
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import joint_variables_of_config, layout_of
+from ...results.layouts import layout_of, sweep_wide_variables
 from ...results.layouts.variables import Variable
 
 LIST_INTRO = "there are"
@@ -57,17 +57,16 @@ DEFAULT_TABLE = {
 
 
 @dataclass(frozen=True, slots=True)
-class Contents:
+class TableContents:
     """Variables of a result, divided into tables.
 
     point_variables: variables with one value per point, which are columns of all tables. lists: variables of
-    each list, by name of the table. joint_lists: names of lists that belong to the whole file, not to single
-    points.
-    """
+    each list, by name of the table. sweep_wide_lists: names of lists that belong to the whole file, not to
+    single points."""
 
     point_variables: tuple[Variable, ...]
     lists: dict[str, tuple[Variable, ...]]
-    joint_lists: frozenset[str]
+    sweep_wide_lists: frozenset[str]
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -80,7 +79,7 @@ class Contents:
         return self.lists[table][0].extra if table in self.lists else ()
 
 
-def contents_of(view: View) -> Contents:
+def table_contents_of(view: View) -> TableContents:
     """Names and variables of the tables of a result."""
     config = view.config
     own: list[Variable] = []
@@ -91,7 +90,7 @@ def contents_of(view: View) -> Contents:
         else:
             own.append(variable)
     with_points = set(lists)
-    for variable in joint_variables_of_config(config, view.is_grid):
+    for variable in sweep_wide_variables(config, view.is_grid):
         if variable.name not in view.variables:
             continue
         of_items = tuple(name for name in variable.extra if name not in ("point", *view.parameters))
@@ -101,7 +100,7 @@ def contents_of(view: View) -> Contents:
             lists.setdefault(table_name_of(variable.extra), []).append(variable)
     own.sort(key=lambda variable: variable.name != "status")
     found = {name: tuple(variables) for name, variables in lists.items()}
-    return Contents(tuple(own), found, frozenset(found.keys() - with_points))
+    return TableContents(tuple(own), found, frozenset(found.keys() - with_points))
 
 
 def table_name_of(dimensions: tuple[str, ...]) -> str:
@@ -109,7 +108,7 @@ def table_name_of(dimensions: tuple[str, ...]) -> str:
     return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
-def chosen_table(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
+def chosen_table(view: View, contents: TableContents, table: str | None, columns: tuple[str, ...]) -> str:
     """Name of the table that the user requests: `table` if given, else the list that has the columns
     `columns`, else POINTS if only columns of points are named, else the default table of the task. Raises
     InputError for an unknown name, and for columns of two tables."""

@@ -22,8 +22,8 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix, bordered_matrix_of
-from .bordered.scale import ArcLengthScale, deflection_of
-from .errors import BranchCalibration, BranchDerivatives
+from .bordered.scale import ArcLengthScale
+from .branch_errors import BranchCalibration, BranchDerivatives
 
 ARC_STEP_CONTROL = StepControl(
     first_length=0.02,
@@ -102,11 +102,6 @@ class BranchCycle:
         """Derivative of the scaled parameter coordinate with respect to arc length; changes sign at a
         fold."""
         return self.derivatives.parameter_rate
-
-    @property
-    def deflection(self) -> float:
-        """Deflection of the cycle at t = 0, in L (see `deflection_of`)."""
-        return deflection_of(self.orbit)
 
     @cached_property
     def multipliers_over_solved_part(self) -> Complex:

@@ -15,16 +15,16 @@ from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
-from ..solve.exclusive import exclusive_solve
+from ..solve.solve_lock import exclusive_solve
+from ..solve_progress import reporting_to, solve_part
 from ..sweep.points.stretches import SolveStretch, Stretches
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from ..tasks.protocol import JointVariables, NamedArrays, Solver
+from ..tasks.protocol import NamedArrays, Solver, SweepWideSolver
 from ..tasks.running.failures import FailureReasons, parameters_text
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
-from ..watch import reporting_to, solve_part
 from .keyword_arguments import plain_keyword
 from .solved import SolvedPoints
 
@@ -60,9 +60,9 @@ def solve_in_process(
         shown(0)
         try:
             values, messages, reasons = _solve_points(job, solver, plan, shown)
-            joint = (
-                _solve_joint_variables(solver.joint_variables, view_in_memory(job, plan, values), shown)
-                if solver.joint_variables
+            sweep_wide = (
+                _sweep_wide_variables(solver.sweep_wide_solver, view_in_memory(job, plan, values), shown)
+                if solver.sweep_wide_solver
                 else ()
             )
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
@@ -70,7 +70,7 @@ def solve_in_process(
             raise
         finally:
             shown.close()
-        filled = (*plan.config_variables(), *joint, *plan.variables_from_points(values))
+        filled = (*plan.config_variables(), *sweep_wide, *plan.variables_from_points(values))
     return SolvedPoints(
         job=job,
         plan=plan,
@@ -148,17 +148,17 @@ def _solve_stretches(
     return left
 
 
-def _solve_joint_variables(together: JointVariables, view: View, shown: Display) -> Sequence[FilledVariable]:
+def _sweep_wide_variables(solver: SweepWideSolver, view: View, shown: Display) -> Sequence[FilledVariable]:
     """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
     progress display.
     """
-    items = together.work_items(view)
+    items = solver.work_items(view)
     results = dict[int, NamedArrays]()
     while items is not None and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
         with solve_part(name), reporting_to(display_listener(shown, name)):
-            results[chosen[0]] = together.solve(items, chosen[0])
-    return together.variables(view, items, results)
+            results[chosen[0]] = solver.solve(items, chosen[0])
+    return solver.variables(view, items, results)
 
 
 def _solve_outcomes(

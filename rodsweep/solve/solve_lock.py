@@ -18,7 +18,7 @@ from threading import RLock, current_thread, main_thread
 from types import FrameType
 from typing import Any, ParamSpec, Self, TypeVar
 
-from ..watch import PositionMaker, reporting_to
+from ..solve_progress import PositionMaker, reporting_to
 from .backend.solver_pools import destroy_pooled_solvers
 
 P = ParamSpec("P")

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from ..api.dataset import open_result
+from ..config.base_config import Config
 from ..config.document.reading import config_from_resolved, load_config
-from ..config.schema import Config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
-from .scales import SCALES
+from ..results import RESULT_ENDINGS
+from .slider_scales import SCALES
 from .solving.diagrams import (
     Dataset,
     diagram_from_arm_result,
@@ -26,14 +27,12 @@ from .state import (
     DEFAULT_F_MAX,
     DEFAULT_ROD,
     LARGEST_FORCE_KEYS,
-    LAWS,
+    MATERIAL_CHOICES,
     SECOND_PARAMETERS,
     PageState,
 )
 from .stored_answers import StoredAnswers
 
-RESULT_SUFFIXES = (".h5", ".hdf5", ".nc")
-"""Suffixes of result files; a file with any other suffix is read as a config."""
 HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
 
@@ -44,7 +43,7 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredAnswers | None]:
 
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
-    if path.suffix not in RESULT_SUFFIXES:
+    if path.suffix not in RESULT_ENDINGS:
         return state_from_config(load_config(path)[0], path), None
     data = open_result(path)
     try:
@@ -130,14 +129,13 @@ def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
 
 
 def _law_key(config: Config, path: Path) -> str:
-    """Constitutive law of a config, as a key of `LAWS`; "linear" for a law that the page does not offer.
-    Raises InputError if the arm has a profile.
-    """
+    """Constitutive law of a config, as a key of `MATERIAL_CHOICES`; "linear" for a law that the page does not
+    offer. Raises InputError if the arm has a profile."""
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
     words = {"law": build.law, "section": build.section}
-    return next((key for key, value in LAWS.items() if value == words), "linear")
+    return next((key for key, value in MATERIAL_CHOICES.items() if value == words), "linear")
 
 
 def _middle_value_text(values: np.ndarray) -> str:

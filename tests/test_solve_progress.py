@@ -1,6 +1,6 @@
 """Progress of long solves: what each listener receives of the same report."""
 
-from rodsweep.watch import SolvePosition, report, reporting_to, solve_part
+from rodsweep.solve_progress import SolvePosition, report, reporting_to, solve_part
 
 
 def test_a_listener_receives_positions_within_its_own_block():

@@ -26,8 +26,8 @@ from ...results.layouts.variables import FilledVariable, Variable, outcome_value
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.point import RowSpecialPoint
     from ...solve.branch.special.special_curves import SpecialPointCurve
+    from ...solve.branch.special.special_point import RowSpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.boundaries import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
@@ -179,7 +179,7 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     rows. rows: parameter value of every row, (rows,).
     """
     from ...solve.branch.special.boundaries import FOLLOWED_KINDS
-    from ...solve.branch.special.point import RowSpecialPoint, SpecialKind
+    from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
     kinds, at, period, height = map(view.by_point, names)
@@ -216,7 +216,7 @@ def with_hopf_ends(
 ) -> "Boundaries[SpecialPointCurve]":
     """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
-    not stored, added to `untraced`.
+    not stored, added to `untraced_count`.
     """
     from ...solve.branch.special.special_curves import with_located_ends
 

@@ -10,21 +10,21 @@ from ...results.layouts.variables import FilledVariable
 from ...results.run.checkpoints import ItemResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
+from ...solve_progress import SolveStopped, reporting_to
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
 from ...sweep.loop import Indices, RankWork, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
-from ...tasks.protocol import JointVariables, NamedArrays, WorkItems
+from ...tasks.protocol import NamedArrays, SweepWideSolver, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
-from ...watch import SolveStopped, reporting_to
 
 HALF_CURVE_NOUN = "half curves"
 """Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 
 @dataclass(frozen=True, slots=True)
-class PendingJointWork:
+class PendingSweepWideWork:
     """Variables that depend on all points. is_missing: whether the file lacks these variables. work_items:
     the half curves to be followed; None if nothing is divided among the ranks.
     """
@@ -33,7 +33,7 @@ class PendingJointWork:
     work_items: WorkItems | None = None
 
 
-class JointWork:
+class SweepWideWork:
     """Computes the variables of a run that depend on all points, in work items (half curves) shared among the
     ranks.
     """
@@ -41,17 +41,17 @@ class JointWork:
     def __init__(
         self,
         team: Team,
-        together: JointVariables,
+        solver: SweepWideSolver,
         output: Path,
         fingerprint: str,
         note: ItemExceptionNote,
         stop: StopRequest,
     ):
-        """together: computes the variables. output: the result file. fingerprint: of config and points. note:
+        """solver: computes the variables. output: the result file. fingerprint: of config and points. note:
         function called with every unforeseen exception; the half curve then stays empty.
         """
         self.team = team
-        self.joint_variables = together
+        self.solver = solver
         self.output = output
         self.note = note
         self.stop = stop
@@ -61,9 +61,8 @@ class JointWork:
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankWork:
         """Follows all half curves that are still missing, on all ranks; returns the work of this rank. items:
-        half curves, as in `PendingJointWork`. prepare: function called before the first solve. title: text of
-        the progress display; None for no display.
-        """
+        half curves, as in `PendingSweepWideWork`. prepare: function called before the first solve. title:
+        text of the progress display; None for no display."""
         found: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
@@ -99,28 +98,28 @@ class JointWork:
 
     def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again. items: half curves, as in `PendingJointWork`.
+        these points again. items: half curves, as in `PendingSweepWideWork`.
         """
         chosen = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
-        for starts in self.team.gather_on_all_ranks(self.joint_variables.initial_data(items, chosen)):
-            self.joint_variables.add_initial_data(starts)
+        for starts in self.team.gather_on_all_ranks(self.solver.initial_data(items, chosen)):
+            self.solver.add_initial_data(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
-            yield item, self.joint_variables.solve(items, item)
+            yield item, self.solver.solve(items, item)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
             destroy_pooled_solvers()
             self.note(items.item_label(item), error)
-            yield item, self.joint_variables.empty_result()
+            yield item, self.solver.empty_result()
 
     def variables(self, items: WorkItems | None) -> Sequence[FilledVariable] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
-        before these variables were complete. items: half curves, as in `PendingJointWork`.
+        before these variables were complete. items: half curves, as in `PendingSweepWideWork`.
         """
         if items is not None and items.items_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
-            return self.joint_variables.variables(read_view(self.output), items, self.results)
+            return self.solver.variables(read_view(self.output), items, self.results)
         return None

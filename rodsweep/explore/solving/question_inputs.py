@@ -18,7 +18,7 @@ INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of questions that are sent after every change of the controls."""
 IDLE_KINDS = ("branch", "diagram")
 """Kinds of questions that take seconds; they are sent once the controls have not changed for
-IDLE_MILLISECONDS."""
+`PAUSE_MILLISECONDS`."""
 MANUAL_KINDS = ("motion", "film", "cycles")
 """Kinds of questions that are sent only when the user presses a button or drags the tip. A change of the rod
 cancels these questions."""

@@ -77,18 +77,17 @@ class BranchDerivatives:
         """Derivative of the scaled parameter coordinate with respect to arc length; 0 at a fold."""
         return float(self.unit_tangent[2])
 
-    def arc_length_for_parameter_change(self, off: float) -> float:
-        """Signed arc length over which the scaled parameter coordinate changes by `off`: off /
-        `parameter_rate`. Near a fold, where the parameter may never change by `off`: an upper bound of this
-        length with the same sign, of modulus 2 sqrt(|off / `parameter_curvature`|)."""
+    def arc_length_for_parameter_change(self, change: float) -> float:
+        """Signed arc length over which the scaled parameter coordinate changes by `change`: change /
+        `parameter_rate`. Near a fold, where the parameter may never change by `change`: an upper bound of
+        this length with the same sign, of modulus 2 sqrt(|change / `parameter_curvature`|)."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
-        if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * off):
-            return off / self.parameter_rate
-        way = np.copysign(1.0, off * self.parameter_rate)
-        # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = off.
-        return float(
-            way * 2 * (abs(off) / max(abs(self.parameter_curvature), EXPONENT_SETTINGS.least_divisor)) ** 0.5
-        )
+        if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * change):
+            return change / self.parameter_rate
+        way = np.copysign(1.0, change * self.parameter_rate)
+        # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = change.
+        curvature = max(abs(self.parameter_curvature), EXPONENT_SETTINGS.least_divisor)
+        return float(way * 2 * (abs(change) / curvature) ** 0.5)
 
 
 @dataclass(frozen=True, eq=False)

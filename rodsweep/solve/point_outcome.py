@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ..watch import report
+from ..solve_progress import report
 from .backend.petsc import PETSC_ERRORS
 from .unsolvable import Unsolvable
 

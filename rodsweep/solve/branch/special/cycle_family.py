@@ -21,7 +21,7 @@ from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.functions import FoldFunction, TorusFunction
 from .curve_secant import SecantSearch
-from .on_curve import (
+from .solved_curve_point import (
     CURVE_SECANT_SETTINGS,
     MeasuredCurveError,
     NormalDerivatives,
@@ -29,7 +29,7 @@ from .on_curve import (
     SolvedPoint,
     orbit_with_parameters,
 )
-from .point import SpecialKind
+from .special_point import SpecialKind
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm.axes import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
+from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
 from ...model.arm.drag import LEAST_SLENDERNESS
 from ...model.arm.neglected import Validity
 from ...results.layouts.arm import VALIDITY

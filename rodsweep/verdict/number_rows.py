@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
 from ..model.material.laws import LINEAR
+from .material_words import law_words, station_words
 from .planes import PlaneOfMotion
 from .rounding import range_text
-from .shape import law_words, station_words
 
 LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
 """Formula of the stress in neo-Hookean rubber, for the table."""

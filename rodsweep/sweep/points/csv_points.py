@@ -9,12 +9,12 @@ from typing import Any, TextIO
 import numpy as np
 
 from ...arrays import Array
-from ...config.axes import joined_names
 from ...config.values import cell_number, short_repr
 from ...errors import InputError
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
+from ...wording import enumeration
 from .points import NEUTRAL_VALUES
 
 LONGEST_LINE = 10_000
@@ -35,9 +35,7 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD
             rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
-                raise InputError(
-                    f"{path}: {_header_fault(header)}; it must name {joined_names(names, 'and')}"
-                )
+                raise InputError(f"{path}: {_header_fault(header)}; it must name {enumeration(names, 'and')}")
             columns = [array("d") for _ in header]  # a Python list would take eight times the memory
             for row in filter(None, rows):
                 numbers = _row_numbers(row, header, f"{path}, line {rows.line_num}", build)

@@ -6,10 +6,18 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model, model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS, PARAMETERS
+from ..model.parameters import (
+    LINEAR_PARAMETERS,
+    NONLINEAR_PARAMETERS,
+    OPTIONAL_PARAMETERS,
+    PARAMETERS,
+    TRANSVERSE_PARAMETERS,
+)
+from ..wording import enumeration
 from .arm.axes import MAX_ARM_GRID_POINTS, grid_axis_names, parameter_of_axis
 from .arm.section import ArmSection
-from .values import Axis, Number, ParameterAxis, StrictSection, Text
+from .axis import Axis, ParameterAxis
+from .values import Number, StrictSection, Text
 
 NONLINEAR_ONLY_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 """Names of the parameters on which limit cycles depend but the linear problem does not."""
@@ -27,7 +35,7 @@ def _section_with_keys(base: type[StrictSection], names: tuple[str, ...], kind: 
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section_with_keys(StrictSection, (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS), ParameterAxis)
+LinearAxes: Any = _section_with_keys(StrictSection, TRANSVERSE_PARAMETERS, ParameterAxis)
 
 
 class Axes(LinearAxes):
@@ -44,7 +52,7 @@ class Axes(LinearAxes):
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given in addition to the arm replaces the arm's value."""
 
-    task_parameters: ClassVar[tuple[str, ...]] = (*LINEAR_PARAMETERS, *OPTIONAL_PARAMETERS)
+    task_parameters: ClassVar[tuple[str, ...]] = TRANSVERSE_PARAMETERS
     """Names of the parameters that the task takes from an arm, or from axes given in addition to the arm."""
     in_diagram: ClassVar[bool] = False
     """Whether the points are the rows of a phase diagram, which needs a grid of parameters."""
@@ -136,7 +144,7 @@ class Axes(LinearAxes):
         missing = [name for name in names if name not in self.axes]
         if missing and self.points is None:
             hint = ", or points: FILE.csv" if or_points else ""
-            raise ValueError(f"parameters.{missing[0]} is missing; give {joined_names(names, 'and')}{hint}")
+            raise ValueError(f"parameters.{missing[0]} is missing; give {enumeration(names, 'and')}{hint}")
 
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
         """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
@@ -177,8 +185,3 @@ class NonlinearParameters(AllAxes):
     """Section `parameters` of a task on the nonlinear rod, all of whose parameters may be axes."""
 
     task_parameters: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)
-
-
-def joined_names(names: tuple[str, ...], last: str) -> str:
-    """The names joined for a sentence, like "a, b and c". last: conjunction before the last name."""
-    return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

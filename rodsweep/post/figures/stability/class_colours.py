@@ -1,0 +1,80 @@
+"""Colours and legend entries of the stability classes of the straight rod, and of the stable states."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch
+
+from ....arrays import Array
+from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
+
+CLASS_COLOURS = {
+    "missing": "white",
+    "monotone": "#DCE9F5",
+    "oscillatory": "#9CC3E4",
+    "flutter": "#F2B28A",
+    "undecided": "#666666",
+    "crushed": "#BBBBBB",
+}
+"""Colours of the classes: blue for stable rods, orange for unstable rods. The colours also differ in grey
+prints."""
+STATE_COLOURS = {
+    "missing": "white",
+    "neither_known": "#F6E3A1",
+    "straight": CLASS_COLOURS["oscillatory"],
+    "cycle": CLASS_COLOURS["flutter"],
+    "both": "#8E6BB0",
+    "undecided": CLASS_COLOURS["undecided"],
+    "crushed": CLASS_COLOURS["crushed"],
+}
+"""Colours of the words of `stable_states`. The colour of "both" lies between the colours of the two
+states."""
+STATE_LEGEND = {
+    "straight": "straight rod stable",
+    "cycle": "cycle stable",
+    "both": "both stable",
+    "neither_known": "no stable state known",
+}
+"""Legend entries for the words of `stable_states` and `class`. A word that is not listed is its own legend
+entry."""
+
+
+def class_legend_entries(seen: set[str]) -> list[Patch]:
+    """Legend entries for the classes in `seen`."""
+    shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
+    return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """Colours for a map of an integer variable. variable: name of the variable. words: (integer, word) of
+    each value. colours: colour of each word.
+    """
+
+    variable: str
+    words: tuple[tuple[int, str], ...]
+    colours: dict[str, str]
+
+    @property
+    def colour_keywords(self) -> dict[str, Any]:
+        """Keywords for matplotlib with which an array of the integers is drawn in the colours."""
+        numbers = [number for number, _ in self.words]
+        return {
+            "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
+            "norm": BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers)),
+        }
+
+    def legend_entries(self, table: Array) -> list[Patch]:
+        """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
+        shown = (word for number, word in self.words if (table == number).any())
+        return [
+            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=STATE_LEGEND.get(word, word))
+            for word in shown
+        ]
+
+
+CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
+"""Palette for the stability class of the straight rod."""
+STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
+"""Palette for the stable states listed in STABLE_STATES."""
