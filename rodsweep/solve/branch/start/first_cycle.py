@@ -74,9 +74,9 @@ def _cycle_of_amplitude(
     """The cycle near the cycle that the normal form of `hopf` predicts for the largest tip y `amplitude`, in
     L, solved to the relative `accuracy`; raises Unsolvable.
 
-    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `mesh_accuracy`. finer:
-    whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh is the coarser mesh of the
-    normal form.
+    The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `mesh_accuracy`.
+    finer: whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh is the
+    coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
     if finer:
