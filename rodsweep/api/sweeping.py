@@ -57,6 +57,8 @@ def sweep(
     """
     ranks = plain_keyword("ranks", ranks)
     strict = plain_keyword("strict", strict)
+    if not isinstance(strict, bool):
+        raise InputError(f"strict = {strict!r} is not allowed; it should be True or False")
     if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)

@@ -80,7 +80,8 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     output = result_file_path(output)
     merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources = counted(len(shards), "file")
-    click.echo(f"{output}: {merged.point_count} points from {sources}, {merged.missing_count} missing")
+    points = counted(merged.point_count, "point")
+    click.echo(f"{output}: {points} from {sources}, {merged.missing_count} missing")
     if merged.kernel_warning:
         click.echo(f"{output}: {merged.kernel_warning}")
     if merged.missing_count:

@@ -158,6 +158,10 @@ def float_or_text(text: str) -> Any:
     return text if isnan(value) or overflows_float(text.strip()) else value
 
 
+PAGE_KEYS = ("tab", "law", "across", "F_max")
+"""Keys of an address that name no parameter and no quantity."""
+
+
 def from_address(query: str, default: PageState | None = None) -> PageState:
     """State of the page from the query string of its address. Raises InputError for an unknown name or
     choice. default: state whose values replace missing values of the query; None: `PageState()`."""
@@ -172,7 +176,8 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     for name in given:
         if name not in known:
             raise InputError(
-                f"unknown key {short_repr(name)} in the address; {unknown_key_hint(name, list(known))}"
+                f"unknown key {short_repr(name)} in the address; "
+                f"{unknown_key_hint(name, [*PAGE_KEYS, *known])}"
             )
     return state.with_values(**given)
 

@@ -347,6 +347,7 @@ def test_rows_of_a_phase_diagram_lie_along_the_first_of_its_two_axes(tmp_path, a
     [
         ("", "the first line names no parameter"),
         ("F,k1,k2\n1,2,3\n", "header"),
+        ("F,k1,k2,gamma3,\n1,9,9,0,\n", "has an empty name"),
         ("F,k1,k2,gamma3\n", "no point"),
         ("F,k1,k2,gamma3\n1,9,9,x\n", "gamma3"),
         ("F,k1,k2,gamma3\n1,9,9\n", "line 2"),

@@ -751,3 +751,31 @@ def test_what_a_figure_leaves_out_is_said(command, monkeypatch):
     arm = "{length: [10 cm, 12 cm], radius: [4 mm, 5 mm], young: 100 kPa, viscosity: [1 Pa s, 2 Pa s]}"
     _, shown = drawn_of(command, monkeypatch, f"task: thresholds\nparameters: {{arm: {arm}}}\n")
     assert "only for viscosity 1 Pa s (of 2 values)" in shown
+
+
+def test_panels_of_numbers_that_only_cycles_have_say_that_there_is_no_cycle(command, drawn):
+    command.write(
+        "c.yaml",
+        "task: limit_cycle\nparameters: {F: [5, 10], k1: 200, k2: 1.0e4, gamma3: 1.0e-3}\naccuracy: 1.0e-3\n",
+    )
+    command.solved("c.yaml")
+    draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
+    empty = [axes for axes in drawn[0].axes if [text.get_text() for text in axes.texts] == ["no cycle"]]
+    assert [axes.get_ylabel().split()[0] for axes in empty] == ["period", "mean"]
+
+
+@pytest.mark.parametrize(
+    "parameters, names",
+    [
+        ("{F: {start: 1, stop: 60, num: 9}, k1: [100, 120, 150, 200, 300, 500, .inf], k2: 1.0e4}", "k1"),
+        ("{F: 20, k1: [100, 150, .inf], k2: [50, .inf]}", "k1"),
+        ("{F: 20, k1: [100, 150, .inf], k2: 50}", "k1"),
+        ("{F: {start: 1, stop: 60, num: 9}, k1: [100, .inf], k2: 1.0e4}", ""),
+    ],
+)
+def test_figures_of_spectra_name_the_infinite_values_that_have_no_place(command, parameters, names):
+    command.write("c.yaml", f"task: spectrum\nparameters: {parameters[:-1]}, gamma3: 1.0e-3}}\n")
+    command.solved("c.yaml")
+    shown = draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
+    clause = f"; {names} = inf has no place on an axis and is left out"
+    assert shown.endswith(clause) if names else "left out" not in shown

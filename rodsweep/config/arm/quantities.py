@@ -106,6 +106,8 @@ def drag_axis(value: Any) -> Axis:
             f"{short_repr(value)} is not a drag; write {DRAG_RANGE_NAME}, one of the names "
             f"{', '.join(DRAG_NAMES)}, or a list of these names"
         )
+    if len(set(names)) < len(names):
+        raise ValueError(f"{short_repr(value)} names a drag twice; list each name once")
     return Axis(values=tuple(float(index) for index in sorted({DRAG_NAMES.index(name) for name in names})))
 
 

@@ -184,8 +184,11 @@ def _task_name(tree: dict) -> str:
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
         close = similar_keys("task", others)
-        problem = f"unknown key {dotted_key(close)}; did you mean task?" if close else "task is missing;"
-        raise InputError(f"{problem} it should be {known}")
+        if close:
+            raise InputError(
+                f"unknown key {dotted_key(close)}; did you mean task? Its value should be {known}"
+            )
+        raise InputError(f"task is missing; it should be {known}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
         raise InputError(f"task = {short_repr(task)} is not allowed; it should be {known}")

@@ -46,12 +46,12 @@ class BranchOptions(StrictSection):
         allowed = PARAMETERS[self.along].allowed
         for key, value in (("start", self.start), ("stop", self.stop)):
             if not allowed.contains(value) or not isfinite(value):
-                finite = (
-                    " (not inf: a branch has finite ends)" if PARAMETERS[self.along].rigid_adjective else ""
-                )
+                # Stiffnesses may be infinite, the ends of a branch may not.
+                described = allowed.description.partition(", or inf")[0]
+                if "finite" not in described:
+                    described = described.replace("a number", "a finite number")
                 raise ValueError(
-                    f"{key} = {value:g} is not allowed along {self.along}; allowed: "
-                    f"{allowed.description}{finite}"
+                    f"{key} = {value:g} is not allowed along {self.along}; it should be {described}"
                 )
         if not self.start < self.stop:
             raise ValueError(f"start = {self.start:g} is not below stop = {self.stop:g}")

@@ -93,7 +93,7 @@ def _draw_files(request: FigureRequest) -> str:
 def searched_range_clause(*views: View) -> str:
     """Clause on the searched range of forces: a threshold that is not shown may lie outside this range."""
     ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
-    low, high = (style.number_in_tex(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
+    low, high = (f"{end(ends):.{SEARCH_DIGITS}g}" for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 

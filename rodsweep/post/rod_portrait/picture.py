@@ -28,6 +28,8 @@ PORTRAIT_SIZE = (10.0, 10.4)
 ROW_HEIGHTS = (0.4, 2.4, 1.5, 2.2)
 """Relative heights of the rows of panels: thresholds, largest y of the tip, periods, and modes
 with cycles."""
+ROW_HEIGHTS_WITHOUT_BRANCHES = (0.4, 0.3, 0.1, 2.2)
+"""`ROW_HEIGHTS` of a rod without branches: a sentence and no panel of periods."""
 MODE_WIDTH = 0.65
 """Width of the panel of a mode, divided by the width of the panel of a cycle."""
 PARAGRAPH_WIDTH = 162
@@ -53,10 +55,12 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
     The panel of a missing result contains a sentence with the reason.
     """
     with matplotlib.rc_context(style.FIGURE_STYLE):
-        figure = Figure(figsize=PORTRAIT_SIZE, layout="constrained")
+        heights = ROW_HEIGHTS if _has_branches(results) else ROW_HEIGHTS_WITHOUT_BRANCHES
+        size = (PORTRAIT_SIZE[0], PORTRAIT_SIZE[1] * sum(heights) / sum(ROW_HEIGHTS))
+        figure = Figure(figsize=size, layout="constrained")
         modes = list(results.modes) or [""]
         widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLE_COUNT
-        grid = figure.add_gridspec(4, len(widths), height_ratios=ROW_HEIGHTS, width_ratios=widths)
+        grid = figure.add_gridspec(4, len(widths), height_ratios=heights, width_ratios=widths)
         bar = figure.add_subplot(grid[0, :])
         upper = figure.add_subplot(grid[1, :], sharex=bar)
         lower = figure.add_subplot(grid[2, :], sharex=bar)
@@ -75,6 +79,11 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
             text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
             figure.suptitle(style.escape_dollar_signs(text), x=0.01, ha="left", fontsize=8)
         return figure
+
+
+def _has_branches(results: RodResults) -> bool:
+    """Whether the portrait shows branches of cycles."""
+    return results.branches is not None and bool(results.branches.curves)
 
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
@@ -112,7 +121,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
     branches, the upper panel states the reason, and the list is empty. upper: panel of the largest y. lower:
     panel of the period."""
     rod = results.branches
-    if rod is None or not rod.curves:
+    if rod is None or not _has_branches(results):
         lower.set_axis_off()
         _write_sentence(
             upper, results.missing.get("branch", "no branch of cycles begins in this range"), PARAGRAPH_WIDTH

@@ -57,6 +57,8 @@ def _header_fault(header: list[str]) -> str:
 
     A header without parameter names is not quoted: it may be anything.
     """
+    if "" in header and set(header) & set(PARAMETERS):
+        return f"the header {short_repr(','.join(header))} has an empty name"
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
         return f"the header is {short_repr(','.join(header))}"
     return "the first line names no parameter"

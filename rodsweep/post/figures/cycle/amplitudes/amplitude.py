@@ -166,6 +166,9 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
     labels: labels of the vertical axes. name: parameter on the horizontal axis.
     """
     for axes, label in zip(panels, labels, strict=True):
+        if not np.isfinite(axes.dataLim.y1):
+            axes.text(0.5, 0.5, "no cycle", color="0.5", ha="center", transform=axes.transAxes)
+            axes.set_yticks([])
         height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
         axes.axhline(0, color="0.8", lw=0.6, zorder=0)
