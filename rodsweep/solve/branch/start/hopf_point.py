@@ -60,6 +60,8 @@ class HopfBranchStart:
     """Coefficients of the normal form with error estimates, from a comparison of meshes."""
     keeps_omega: bool = False
     """Whether Omega is an unknown of all cycles of the branch, see `StressForm`."""
+    min_coordinate_unit: float = 0.0
+    """Smallest unit of the parameter coordinate on the branch, see `ArcLengthScale`."""
 
     @property
     def period(self) -> float:
@@ -120,9 +122,12 @@ class HopfBranchStart:
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_branch_start(path: Path, crossing: Threshold, keeps_omega: bool = False) -> HopfBranchStart:
+def hopf_branch_start(
+    path: Path, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0
+) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
-    `path`; raises Unsolvable. keeps_omega: whether Omega is an unknown of all cycles of the branch."""
+    `path`; raises Unsolvable. keeps_omega: whether Omega is an unknown of all cycles of the branch.
+    min_coordinate_unit: as in `ArcLengthScale`."""
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
@@ -136,6 +141,7 @@ def hopf_branch_start(path: Path, crossing: Threshold, keeps_omega: bool = False
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
         keeps_omega=keeps_omega,
+        min_coordinate_unit=min_coordinate_unit,
     )
 
 
