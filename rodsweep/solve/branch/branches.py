@@ -21,7 +21,7 @@ from .branch_request import BranchRequest
 from .computing_time import fractions_before_branches
 from .following import follow_asymmetric_branch, follow_branch
 from .special.special_point import SPECIAL_POINT_SETTINGS, EndReason
-from .start.hopf_point import hopf_branch_start
+from .start.hopf_point import accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
 from .symmetry import SymmetryBreaking, symmetry_breakings_in
 
@@ -111,9 +111,8 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
-    limits = BranchLimits(
-        hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace, unit
-    )
+    accuracy = accuracy_beside_hopf_points(hopfs, request.accuracy)
+    limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), accuracy, request.cycles, workspace, unit)
     curves = _follow_all_branches(limits, request.along)
     status, message = _status_and_message(found, curves, failures, request)
     return BranchesOfRod(

@@ -1,5 +1,6 @@
 """A Hopf point with its normal form, as the start of a branch of cycles."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +34,11 @@ class BranchStartSettings:
     min_amplitude_before_fold: float = 5e-4
     """Smallest amplitude (largest tip y, in L) to which the first cycle is moved towards the Hopf point if
     the branch has a fold before it, and the last cycle of a branch that ends at a Hopf point."""
+    max_amplitude_coefficient: float = 3.0
+    """Close to a generalised Hopf point, where the amplitude coefficient |a| of a Hopf point is larger than
+    this number, in L, a coarse mesh moves or invents folds."""
+    max_accuracy_if_degenerate: float = 1e-6
+    """Largest relative accuracy of the cycles of a rod that has such a Hopf point."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
@@ -143,6 +149,15 @@ def hopf_branch_start(
         keeps_omega=keeps_omega,
         min_coordinate_unit=min_coordinate_unit,
     )
+
+
+def accuracy_beside_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
+    """Relative accuracy of the cycles of a rod with the given Hopf points: `accuracy`, or a smaller one if a
+    Hopf point is close to a generalised Hopf point."""
+    largest = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
+    if not largest > BRANCH_START_SETTINGS.max_amplitude_coefficient:
+        return accuracy
+    return min(accuracy, BRANCH_START_SETTINGS.max_accuracy_if_degenerate)
 
 
 def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
