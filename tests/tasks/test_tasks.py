@@ -347,6 +347,29 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     assert line.startswith(f"curve of folds: from {first} to {last}; 1 point,")
 
 
+def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
+    points = tuple(
+        CurvePoint(at=at, row_value=k1, row_coordinate=x, error=1e-7, period=0.02, tip_y_max=0.3)
+        for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
+    )
+    curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEnd.edge,) * 2, (None, None))
+    filled = cycle_curve_record(
+        Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+    )
+    nan = float("nan")
+    rows = {
+        "cycle_special_kind": np.array([[0, 0], [1, 2], [3, 0], [2, 0]]),
+        "cycle_special_F": np.array([[nan, nan], [55.0, 60.0], [65.0, nan], [70.0, nan]]),
+    }
+    view = SimpleNamespace(
+        variables={variable.name: values for variable, values in filled} | {"F": np.array([0.0, 100.0])},
+        point_columns={"k1": np.array([100.0, 150.0, 175.0, 200.0])},
+        by_point=rows.__getitem__,
+    )
+    _, line = cycle_curve_lines(view, "F", "k1")
+    assert line.startswith("this curve meets the row k1 = 175 at F = 65, which no branch from a Hopf point")
+
+
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     """For any task: they must work on a login node."""
     code = (

@@ -1,6 +1,9 @@
 """Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points."""
 
+from itertools import pairwise
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
@@ -20,6 +23,9 @@ CURVE_END_WORDS = {
     "not_followed": "no further point found",
 }
 """Phrase for the reason for which a curve of folds or torus points of cycles ends."""
+MAX_ROW_DISTANCE = 0.01
+"""Largest distance of a special point of a row from a curve that meets the row, divided by the length of the
+row: between two points a curve is interpolated linearly."""
 END_SUFFIXES = ("start", "end")
 """Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
@@ -58,7 +64,33 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
         error = error_text(float(v["cycle_curve_error"][on].max()))
         points = counted(len(on), "point")
         lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")
+        lines += _rows_without_cycles_of_curve(view, line, row, on)
     return lines
+
+
+def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[np.intp]) -> list[str]:
+    """Lines about rows that a curve of folds or torus points crosses although no branch from a Hopf point of
+    the row has this special point. line, row: as in `curve_lines`. on: indices of the points of the curve.
+    """
+    v = view.variables
+    if len(on) < 2:
+        return []
+    kind = int(v["cycle_curve_kind"][on[0]])
+    kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line}"))
+    near = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
+    along = zip(v[f"cycle_curve_{row}"][on], v[f"cycle_curve_{line}"][on], strict=True)
+    lines = []
+    for (x, y), (next_x, next_y) in pairwise(along):
+        for index, value in enumerate(view.point_columns[row]):
+            if x == next_x or not min(x, next_x) <= value <= max(x, next_x):
+                continue
+            at = y + (value - x) / (next_x - x) * (next_y - y)
+            if not (np.abs(specials[index][kinds[index] == kind] - at) <= near).any():
+                lines.append(
+                    f"this curve meets the row {row} = {value:g} at {line} = {at:.6g}, which no branch from "
+                    "a Hopf point of the row reaches: the stable states of the row leave out the cycles there"
+                )
+    return list(dict.fromkeys(lines))
 
 
 def agreement_lines(view: View, line: str) -> list[str]:
