@@ -18,6 +18,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 PLACES = (-3.0 + 0j, 60j, -300 + 70j, -2000 + 0j, 3000 + 100j)
@@ -132,3 +133,12 @@ def test_double_eigenvalues_have_no_interpolation_error(rod, x, F):
     own = ArmAlongPath(path).double_eigenvalue(x, F, 0.1)
     assert abs(by_family.p - own.p) <= by_family.error_of_p + own.error_of_p < 1e-14 * 2 * F
     assert abs(by_family.eta_or_x - own.eta_or_x) <= by_family.error + own.error
+
+
+def test_hopf_points_of_rubber_that_is_very_soft_in_shear_are_within_their_errors():
+    """Small entries of propagators have larger truncation than rounding errors here. F by the closed form of
+    D with 40 digits."""
+    rod = Rod(F=0.0, k1=60.0, k2=0.3, gamma3=1.0, build=Build("neo_hookean", "swelling"))
+    found = find_axis_crossings(Path(rod, "F"), 0.0, 400.0).thresholds
+    near = min(found, key=lambda one: abs(one.value - 57))
+    assert abs(near.value - 56.9264722670805158) <= near.error < 1e-11

@@ -15,6 +15,7 @@ from numpy.polynomial import chebyshev
 
 from ...arrays import Array
 from ...model.compiled.settings import CompiledSettings
+from ..exponents import ROUND_OFF
 from ..parameter_path import Path
 from .determinant import CoefficientSamples, coefficient_samples, elements_for
 from .elements.minor_rates import PADDED
@@ -85,7 +86,8 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
         values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
         if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail):
             coefficients = np.tensordot(_chebyshev_coefficient_matrix(number), values, 1)
-            largest = np.abs(values).max(axis=0)
+            # The last coefficients show truncation errors, which may exceed rounding errors of small entries.
+            largest = np.abs(values).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
             sizes = np.stack([largest[:, 0], largest[:, 1:].sum(axis=1)], axis=1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), sizes)
     return None
