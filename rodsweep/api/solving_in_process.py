@@ -70,7 +70,7 @@ def solve_in_process(
             raise
         finally:
             shown.close()
-        filled = (*plan.config_variables(), *sweep_wide, *plan.variables_from_points(values))
+        filled = (*plan.variables_from_config(), *sweep_wide, *plan.variables_from_points(values))
     return SolvedPoints(
         job=job,
         plan=plan,

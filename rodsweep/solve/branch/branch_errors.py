@@ -16,10 +16,11 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.calibration import MULTIPLIER_INDEX, Calibration, calibration_of
+from ..cycle.accuracy.calibration import Calibration, calibration_of
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
-from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
+from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, MULTIPLIER_INDEX, CycleErrors
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
+from ..cycle.accuracy.mesh_choice import cheapest_mesh
 from ..cycle.along_parameter import interpolated_change
 from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
@@ -124,11 +125,11 @@ class BranchCalibration:
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh for a `largest_weighted_error` within the accuracy, else the next finer mesh."""
-        return self._limiting_errors.cheapest_mesh(accuracy)
+        return cheapest_mesh(self._limiting_errors, accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
         """Like `cheapest_mesh`, for a relative accuracy of the parameter at equal deflection."""
-        return self._parameter_errors_only.cheapest_mesh(accuracy)
+        return cheapest_mesh(self._parameter_errors_only, accuracy)
 
     @cached_property
     def _limiting_errors(self) -> Calibration:

@@ -198,7 +198,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 @compiled
 def _serves_efficiently(W: float, needed: float) -> bool:
     """Whether propagators for |w| <= W are valid at |w| = `needed`, with W not much larger than necessary."""
-    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_largest_w)
+    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_W)
 
 
 @compiled
