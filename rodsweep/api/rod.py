@@ -25,7 +25,8 @@ from ..sweep.points.grid import refuse_invalid_axes
 from ..wording import enumeration
 from .answers.answer import Answer
 from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
-from .options import (
+from .solving_in_process import solve_in_process
+from .task_keywords import (
     BranchKeywords,
     CriticalityKeywords,
     LimitCycleKeywords,
@@ -33,7 +34,6 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving_in_process import solve_in_process
 
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait

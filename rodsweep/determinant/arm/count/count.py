@@ -159,7 +159,8 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 
     box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
-    samples: of the arm, for the lengths over which D changes and for the dominant wave.
+    samples: samples of the arm's coefficients, which give the lengths over which D changes and the dominant
+    wave.
     """
     corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
