@@ -5,7 +5,7 @@ special points. A cycle with a multiplier that lies on the circle within its err
 of the other cycles between the same two special points, if these cycles have equal stability.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from itertools import combinations, pairwise
 from math import nan
@@ -18,15 +18,12 @@ from ..model.floquet import min_unstable_count
 from ..model.parameters import PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
+from .parameter_ranges import ParameterRange, intersection_of_ranges, union_of_ranges
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 """Codes of the kinds of special points in a result file."""
 STOP_REASONS = ("no_cycle_found", "list_full")
 """Reasons for which the continuation of a branch stopped before the end of the branch."""
-RANGE_GAP_TOLERANCE = 1e-9
-"""Two ranges are joined if the relative gap between the ranges is at most this number."""
-ParameterRange = tuple[float, float]
-"""(smallest, largest) value of the followed parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +47,9 @@ class StoredSpecialPoint:
 class StoredBranch:
     """Branch of cycles: a curve through n vertices, which are stored cycles and special points.
 
-    at, y, period: followed parameter, largest y of the tip, and period at the vertices, (n,).
+    at, y, period: followed parameter, largest y of the tip, and period at the vertices, (n,). Between two
+    special points the parameter changes in one direction; a cycle beyond one of them, by less than twice its
+    error, has the parameter of this point.
     """
 
     at: Array
@@ -202,12 +201,27 @@ def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch
         for is_cycle, i in order
     ]
     at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
+    own = np.array([v[f"branch_{along}_error"][i] if is_cycle else 0.0 for is_cycle, i in order])
+    at = _within_special_points(at, own * np.abs(at), np.array([not is_cycle for is_cycle, _ in order]))
     crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
     outside = [min_unstable_count(int(count), float(m), float(error)) for count, m, error in crossing]
     counts = [outside[i] if is_cycle else None for is_cycle, i in order]
     is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
     points = tuple(_special_point(v, i) for i in special)
     return StoredBranch(at, y, period, stability_between_vertices(counts), is_cycle, points)
+
+
+def _within_special_points(at: Array, error: Array, special: NDArray[np.bool_]) -> Array:
+    """The parameter at the vertices of a branch, (n,); cycles are moved by at most twice their absolute error
+    into the range between the special points before and after them. special: mask of the special points,
+    (n,).
+    """
+    at = at.copy()
+    for start, end in pairwise(np.flatnonzero(special)):
+        part = slice(start + 1, end)
+        inside = np.clip(at[part], *sorted((at[start], at[end])))
+        at[part] = np.where(np.abs(inside - at[part]) <= 2 * error[part], inside, at[part])
+    return at
 
 
 def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
@@ -231,20 +245,3 @@ def stability_between_vertices(counts: list[int | None]) -> NDArray[np.integer]:
             if len({count == 0 for count in beside}) == 1:
                 stable[i] = int(beside[0] == 0)
     return np.array(stable, dtype=int)
-
-
-def union_of_ranges(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
-    """Union of ranges, in increasing order. Ranges that overlap or touch are joined."""
-    found: list[ParameterRange] = []
-    for low, high in sorted((float(a), float(b)) for a, b in ranges):
-        if found and low <= found[-1][1] * (1 + RANGE_GAP_TOLERANCE):
-            found[-1] = found[-1][0], max(high, found[-1][1])
-        else:
-            found.append((low, high))
-    return found
-
-
-def intersection_of_ranges(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
-    """Intersection of two unions of ranges; ranges of zero length are left out."""
-    common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
-    return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]

@@ -11,7 +11,8 @@ from ..config.document.reading import validated_config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
-from ..post.branch_curves import ParameterRange, RodBranches
+from ..post.branch_curves import RodBranches
+from ..post.parameter_ranges import ParameterRange
 from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS

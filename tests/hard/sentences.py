@@ -763,6 +763,10 @@ def diagram_sentences(view, page, keywords, fine):
         found += counts(page, rf"^of \d+ grid points on the rows:.*?NUMBER {word}", there.sum())
         found += counts(page, rf"where the rows begin.*: .*{word} on NUMBER", there[:, 0].sum())
     beats = (table == "flutter").any(axis=1)
+    # A window of flutter between two grid points begins with a Hopf point.
+    beats |= [any(c.kind.name == "hopf" for c in each) for each in every]
+    numbers = beats.sum(), len(rows), (~beats).sum()
+    found += counts(page, r"^flutter: on NUMBER of NUMBER rows?, .*; none on NUMBER", *numbers)
     found += ranges(
         page,
         rf"^flutter: on \d+ of \d+ rows?, {row} = RANGE; none on \d+, {row} = RANGE",

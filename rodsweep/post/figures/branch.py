@@ -13,14 +13,9 @@ from matplotlib.ticker import NullFormatter
 
 from ...results.layouts.variables import MISSING_STATUS
 from ...wording import count_of_total, counted, has_or_have
-from ..branch_curves import (
-    ParameterRange,
-    RodBranches,
-    StoredBranch,
-    followed_parameter,
-    stability_runs,
-)
+from ..branch_curves import RodBranches, StoredBranch, followed_parameter, stability_runs
 from ..crushing import uncrushed_ranges
+from ..parameter_ranges import ParameterRange
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest

@@ -153,7 +153,9 @@ def branch_derivatives(found: ConvergedOrbit, scale: ArcLengthScale, tangent: Ar
     """Scale and unit tangent of a branch at the cycle `found`. scale: scale at another cycle of the branch.
     tangent: tangent of any length, (N + 1,). In the result `parameter_curvature` and `multiplier_rate` are 0,
     to be set by the caller."""
-    own = ArcLengthScale.at_orbit(found.orbit, scale.parameter_name, scale.min_deflection_unit)
+    own = ArcLengthScale.at_orbit(
+        found.orbit, scale.parameter_name, scale.min_deflection_unit, scale.min_coordinate_unit
+    )
     ahead = own.directional_derivative(found.orbit, tangent)
     unit = float(np.linalg.norm(ahead))
     return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)

@@ -24,5 +24,7 @@ class BranchLimits:
     """Maximum number of cycles of one branch."""
     workspace: NewtonWorkspace
     """Memory of Newton's matrices."""
+    min_coordinate_unit: float = 0.0
+    """Smallest unit of the parameter coordinate, see `ArcLengthScale`."""
     breakings: Sequence[SymmetryBreaking] = ()
     """Symmetry breakings found so far on the branches of the rod."""

@@ -21,7 +21,7 @@ from .branch_request import BranchRequest
 from .computing_time import fractions_before_branches
 from .following import follow_asymmetric_branch, follow_branch
 from .special.special_point import SPECIAL_POINT_SETTINGS, EndReason
-from .start.hopf_point import hopf_branch_start
+from .start.hopf_point import accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
 from .symmetry import SymmetryBreaking, symmetry_breakings_in
 
@@ -33,6 +33,9 @@ class BranchSettings:
     crushing_margin: float = 1e-4
     """A branch ends where the relative distance of F from the crushing force is this number, because the rod
     at rest is then almost crushed. Branches along F, k1 or taper have this margin."""
+    min_coordinate_unit: float = 0.01
+    """Smallest unit of the parameter coordinate in arc lengths, divided by the length of the range. With the
+    coordinate itself as the unit, steps towards gamma3 = 0 become ever shorter and do not reach 0."""
     max_row_cycles: int = 500
     """Maximum number of cycles on all branches of one row of a phase diagram."""
 
@@ -95,11 +98,12 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
+    unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
     hopfs = []
     failures = []
     for crossing in found.thresholds:
         try:
-            hopfs.append(hopf_branch_start(path, crossing, keeps_omega))
+            hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
         except FAILURES as error:
             failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
     crushed = (low > request.start, high < request.stop)
@@ -107,7 +111,8 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
-    limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
+    accuracy = accuracy_beside_hopf_points(hopfs, request.accuracy)
+    limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), accuracy, request.cycles, workspace, unit)
     curves = _follow_all_branches(limits, request.along)
     status, message = _status_and_message(found, curves, failures, request)
     return BranchesOfRod(

@@ -16,7 +16,7 @@ from .branch_limits import BranchLimits
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .computing_time import fraction_done
 from .mesh_choice import is_measurement_due
-from .range_end import cycle_within_range, range_end_condition
+from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
 from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
@@ -47,7 +47,8 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
 
     def first() -> BranchCycle:
-        return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace)
+        unit = limits.min_coordinate_unit
+        return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace, unit)
 
     return _follow_to_end(curve, limits, first)
 
@@ -128,7 +129,8 @@ def _append_next_cycle(
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
     try:
-        end = next_cycle(start, limits.accuracy)
+        at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
+        end = at_zero or next_cycle(start, limits.accuracy)
         if passed_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return end_at_mirror_image(start, end, limits)

@@ -19,7 +19,8 @@ from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, 
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ArcLengthScale
-from .branch_errors import BranchCalibration, measured_branch_calibration, sensitivity_of
+from .branch_error_measurement import measured_branch_calibration, sensitivity_of
+from .branch_errors import BranchCalibration
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

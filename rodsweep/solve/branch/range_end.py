@@ -1,6 +1,5 @@
 """The last cycle of a branch, at an end of the parameter range."""
 
-import numpy as np
 from numpy.polynomial import Polynomial
 
 from ..continuation.follower import zero_along_step
@@ -14,13 +13,11 @@ from .arc_length_step import (
     cycle_at_length,
     tangent_at,
 )
-from .bordered.condition import BorderCondition
+from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import bordered_matrix_of
+from .bordered.scale import ALONG_PARAMETER
 from .special.segment import BranchSegment
 from .symmetry import BRANCH_END_SETTINGS
-
-ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
-"""Unit vector along the parameter, (3,), in components (deflection, log period, parameter)."""
 
 
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:
@@ -45,6 +42,20 @@ def cycle_at_range_end(
     return _solved_at_range_end(start, segment.predicted_orbit(length), length, range_end, accuracy)
 
 
+def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
+    """The cycle at the parameter coordinate 0, if the range begins there and the tangent at `start` reaches
+    it within the next step; else None. No rod has a negative coordinate, so that no step passes this end.
+    low: smallest coordinate of the range. Raises Unsolvable."""
+    rate = float(start.tangent[-1])
+    if low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:
+        return None
+    length = -start.parameter_coordinate / rate
+    change = length * start.tangent
+    change[-1] = -start.parameter_coordinate  # exactly to 0
+    predicted = moved_orbit(start.orbit, start.scale.parameter_name, change)
+    return _solved_at_range_end(start, predicted, length, range_end_condition(start, 0.0), accuracy)
+
+
 def cycle_within_range(
     start: BranchCycle, end: BranchCycle, ends: tuple[float, float], accuracy: float
 ) -> tuple[BranchCycle, int]:
@@ -56,7 +67,8 @@ def cycle_within_range(
     leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
     another part of the branch.
     """
-    for index, beyond in ((0, end.parameter_coordinate < ends[0]), (1, end.parameter_coordinate > ends[1])):
+    at = end.parameter_coordinate
+    for index, beyond in ((0, at <= ends[0]), (1, at >= ends[1])):
         if beyond:
             range_end = range_end_condition(start, ends[index])
             return cycle_at_range_end(start, end, range_end, accuracy), index

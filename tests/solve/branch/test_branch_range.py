@@ -3,6 +3,7 @@
 import pytest
 
 from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
@@ -70,3 +71,19 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     one, other = ends
     assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-6
     assert abs(one.tip_y_max - other.tip_y_max) <= one.size_error + other.size_error < 1e-5
+
+
+def test_a_branch_along_the_rotational_drag_ends_at_zero():
+    """No rod has a negative drag, so that no step passes this end of the range."""
+    rod = Rod(F=7.31, k1=23.9, k2=1.37, gamma3=0.0, gamma1=0.21, build=Build("neo_hookean", "swelling"))
+    ends = []
+    for accuracy in (1e-4, 1e-6):
+        found = solve_branches(rod, BranchRequest("gamma3", 0.0, 5.3, accuracy, False, 100, 10))
+        assert found.status == BranchStatus.ok
+        (curve,) = found.curves
+        assert curve.special_points[-1].reason == EndReason.range_end
+        assert curve.points[-1].at == 0.0
+        ends.append(curve.special_points[-1])
+    rough, fine = ends
+    assert abs(rough.period - fine.period) <= rough.period_error + fine.period_error < 1e-4
+    assert abs(rough.tip_y_max - fine.tip_y_max) <= rough.size_error + fine.size_error < 1e-4

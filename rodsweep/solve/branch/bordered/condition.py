@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....arrays import Array
+from ....determinant.exponents import ROUND_OFF
 from ....discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
 from ....solve_progress import report
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -104,7 +105,11 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     raises Unsolvable if the new parameter value is not allowed, if Omega becomes an unknown or is eliminated
     at this value, or if the new period is not positive."""
     try:
-        form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
+        before = orbit.form.rod.coordinate(name)
+        at = before + float(change[-1])
+        if at < 0 < at + ROUND_OFF * abs(before):  # 0 but for rounding
+            at = 0.0
+        form = orbit.form.with_coordinate(name, at)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     require_equal_unknowns(form, orbit)

@@ -2,7 +2,8 @@
 parameter.
 
 The components have the same meaning on every mesh: the deflection at t = 0, divided by about the largest
-deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus. Both
+deflection of the cycle; the logarithm of the period; the parameter coordinate, divided by its modulus, but at
+least by a fraction of the range of the branch, so that steps towards the coordinate 0 reach it. Both
 divisors belong to one cycle, for which an `ArcLengthScale` is made. At a Hopf point the deflection passes
 linearly through 0, so that arc length stays regular.
 
@@ -27,30 +28,38 @@ from ....discretization.state_layout import StateLayout
 from ....model.material.build import Build
 from ...orbit.orbit import Orbit
 
+ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
+"""Unit vector along the parameter, (3,), in components (deflection, log period, parameter)."""
+
 
 @dataclass(frozen=True, slots=True)
 class ArcLengthScale:
     """Units of arc length on a branch at one cycle. deflection_unit: unit of the deflection, in L, at least
     `min_deflection_unit`. coordinate_unit: unit of the coordinate of the continuation parameter
-    `parameter_name`."""
+    `parameter_name`, at least `min_coordinate_unit`."""
 
     parameter_name: str
     deflection_unit: float
     coordinate_unit: float
     min_deflection_unit: float
+    min_coordinate_unit: float = 0.0
 
     @classmethod
-    def at_orbit(cls, orbit: Orbit, name: str, min_deflection_unit: float) -> "ArcLengthScale":
+    def at_orbit(
+        cls, orbit: Orbit, name: str, min_deflection_unit: float, min_coordinate_unit: float = 0.0
+    ) -> "ArcLengthScale":
         """The scale of an orbit. The units are sqrt(d^2 + min_deflection_unit^2), d: largest deflection over
         the orbit, and the modulus of the parameter coordinate. name: continuation parameter.
-        min_deflection_unit: smallest unit of the deflection, in L."""
+        min_deflection_unit: smallest unit of the deflection, in L. min_coordinate_unit: smallest unit of the
+        parameter coordinate."""
         largest = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
         # `min_deflection_unit` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(
             name,
             float(np.hypot(largest, min_deflection_unit)),
-            abs(orbit.form.rod.coordinate(name)),
+            max(abs(orbit.form.rod.coordinate(name)), min_coordinate_unit),
             min_deflection_unit,
+            min_coordinate_unit,
         )
 
     def components(self, orbit: Orbit) -> Array:

@@ -51,14 +51,20 @@ ASYMMETRIC_START_SETTINGS = AsymmetricStartSettings()
 
 
 def first_asymmetric_cycle(
-    breaking: SymmetryBreaking, name: str, accuracy: float, workspace: NewtonWorkspace
+    breaking: SymmetryBreaking,
+    name: str,
+    accuracy: float,
+    workspace: NewtonWorkspace,
+    min_coordinate_unit: float = 0.0,
 ) -> BranchCycle:
     """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
-    relative accuracy; raises Unsolvable. The tip's y reaches a larger maximum than on the mirror image."""
+    relative accuracy; raises Unsolvable. The tip's y reaches a larger maximum than on the mirror image.
+    min_coordinate_unit: as in `ArcLengthScale`."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.special_point.orbit)
-    matrix = BorderedMatrix(whole, ArcLengthScale.at_orbit(whole, name, 0.0), workspace)
+    scale = ArcLengthScale.at_orbit(whole, name, 0.0, min_coordinate_unit)
+    matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     way = matrix.approximate_null_vector()
     way = way / relative_change(whole, way[:-1])

@@ -84,7 +84,7 @@ def _cycle_of_amplitude(
             start
         )
     least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least)
+    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least, hopf.min_coordinate_unit)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)

@@ -1,5 +1,6 @@
 """A Hopf point with its normal form, as the start of a branch of cycles."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +34,11 @@ class BranchStartSettings:
     min_amplitude_before_fold: float = 5e-4
     """Smallest amplitude (largest tip y, in L) to which the first cycle is moved towards the Hopf point if
     the branch has a fold before it, and the last cycle of a branch that ends at a Hopf point."""
+    max_amplitude_coefficient: float = 3.0
+    """Close to a generalised Hopf point, where the amplitude coefficient |a| of a Hopf point is larger than
+    this number, in L, a coarse mesh moves or invents folds."""
+    max_accuracy_if_degenerate: float = 1e-6
+    """Largest relative accuracy of the cycles of a rod that has such a Hopf point."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
@@ -60,6 +66,8 @@ class HopfBranchStart:
     """Coefficients of the normal form with error estimates, from a comparison of meshes."""
     keeps_omega: bool = False
     """Whether Omega is an unknown of all cycles of the branch, see `StressForm`."""
+    min_coordinate_unit: float = 0.0
+    """Smallest unit of the parameter coordinate on the branch, see `ArcLengthScale`."""
 
     @property
     def period(self) -> float:
@@ -120,9 +128,12 @@ class HopfBranchStart:
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_branch_start(path: Path, crossing: Threshold, keeps_omega: bool = False) -> HopfBranchStart:
+def hopf_branch_start(
+    path: Path, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0
+) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
-    `path`; raises Unsolvable. keeps_omega: whether Omega is an unknown of all cycles of the branch."""
+    `path`; raises Unsolvable. keeps_omega: whether Omega is an unknown of all cycles of the branch.
+    min_coordinate_unit: as in `ArcLengthScale`."""
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
@@ -136,7 +147,17 @@ def hopf_branch_start(path: Path, crossing: Threshold, keeps_omega: bool = False
         normal_form=normal,
         coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
         keeps_omega=keeps_omega,
+        min_coordinate_unit=min_coordinate_unit,
     )
+
+
+def accuracy_beside_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
+    """Relative accuracy of the cycles of a rod with the given Hopf points: `accuracy`, or a smaller one if a
+    Hopf point is close to a generalised Hopf point."""
+    largest = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
+    if not largest > BRANCH_START_SETTINGS.max_amplitude_coefficient:
+        return accuracy
+    return min(accuracy, BRANCH_START_SETTINGS.max_accuracy_if_degenerate)
 
 
 def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:

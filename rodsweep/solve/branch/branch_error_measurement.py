@@ -1,0 +1,102 @@
+"""Measurement of the errors of a cycle of a branch by cycles on two finer meshes.
+
+The principle is described in `rodsweep.solve.branch.branch_errors`.
+"""
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ...determinant.exponents import EXPONENT_SETTINGS
+from ..cycle.accuracy.calibration import Calibration, calibration_of
+from ..cycle.accuracy.cycle_errors import MULTIPLIER_INDEX
+from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
+from ..cycle.along_parameter import interpolated_change
+from ..orbit.measures import CyclePath
+from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import mesh_of
+from ..orbit.path_differences import path_differences
+from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.scale import ALONG_PARAMETER
+from .branch_errors import BRANCH_ERROR_SETTINGS, BranchCalibration, BranchDerivatives
+
+
+def measured_branch_calibration(
+    found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
+) -> BranchCalibration:
+    """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
+    Unsolvable. derivatives: derivatives of the branch at `found`. accuracy: relative accuracy of `found`.
+    before: calibration at a previous cycle, for the convergence rates; None if there is no such cycle."""
+    mesh = mesh_of(found.orbit)
+    orbit = found.orbit
+    finer, share = finer_meshes(mesh)
+    side = _side_of_condition(orbit, derivatives)
+    condition = BorderCondition.at_arc_length(derivatives.scale, side, orbit)
+    rough = CyclePath(orbit)
+    multipliers = multipliers_and_trivial_error(found)[0]
+    parts = np.empty((2, MULTIPLIER_INDEX + 2))
+    for part, target in zip(parts, finer, strict=True):
+        fine = condition.solve_on_mesh(
+            target,
+            found,
+            BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy,
+            FINER_MESH_SETTINGS.max_matrix_distance,
+        )
+        part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
+    # The mesh that is finer in time removes only the fraction `share` of the error in time.
+    parts[1] /= share
+    known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
+    return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, derivatives))
+
+
+def _side_of_condition(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
+    """Direction, (3,), in components (deflection, log period, parameter), along which the cycle on a finer
+    mesh does not move: along the branch. Close to the coordinate 0, along the parameter: at an equal arc
+    length the finer mesh might have a negative coordinate, which no rod has."""
+    scale = derivatives.scale
+    at = orbit.form.rod.coordinate(scale.parameter_name)
+    is_near_zero = abs(at) < scale.min_coordinate_unit
+    is_steep = abs(derivatives.parameter_rate) > BRANCH_ERROR_SETTINGS.min_rate_at_equal_parameter
+    return ALONG_PARAMETER if is_near_zero and is_steep else derivatives.unit_tangent
+
+
+def _differences_between_meshes(
+    rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
+) -> Array:
+    """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five,
+    at the parameter value of the rough cycle, are `path_differences` and the difference of the multipliers.
+    The last is the parameter difference at equal deflection. rough, multipliers: path and nontrivial
+    multipliers, (rank - 1,), of the rough cycle. derivatives: derivatives of the branch at this cycle."""
+    orbit = rough.orbit
+    scale = derivatives.scale
+    deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
+    length = derivatives.arc_length_for_parameter_change(off)
+    target = mesh_of(fine.orbit)
+    along = np.append(interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
+    # The fine cycle is moved along the branch to the parameter value of the rough cycle.
+    slid = moved_orbit(fine.orbit, scale.parameter_name, length * along)
+    change = largest_multiplier_difference(multipliers, multipliers_and_trivial_error(fine)[0]) + abs(
+        length * derivatives.multiplier_rate
+    )
+    by_deflection = abs(derivatives.unit_tangent[0])
+    by_parameter = abs(derivatives.parameter_rate)
+    # Distance of the two branches across their common tangent, in (deflection, parameter).
+    apart = abs(off * derivatives.unit_tangent[0] - deflection * derivatives.parameter_rate)
+    own = apart / max(by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * by_parameter)
+    return np.array([*path_differences(rough, CyclePath(slid)), change, own])
+
+
+def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
+    """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
+    derivatives: derivatives of the branch at this cycle."""
+    orbit: Orbit = path.orbit
+    name = derivatives.scale.parameter_name
+    step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
+    if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
+        step = -step
+    ahead = CyclePath(moved_orbit(orbit, name, step))
+    y = path.extrema["tip_y_max"]
+    other = ahead.extrema["tip_y_max"]
+    return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
+        abs(derivatives.parameter_rate), EXPONENT_SETTINGS.least_divisor
+    )
