@@ -442,7 +442,7 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
     """The variables of a job's file by name, each with its dimensions."""
     found = {v.name: (v, ["...", *v.extra]) for v in job.layout.variables}
-    beside = [v for v, _ in job.task.config_variables()]
+    beside = [v for v, _ in job.task.variables_from_config()]
     if job.config.task in ("spectrum", "modes"):
         beside += FORCE_CHANGES
     return found | {v.name: (v, list(v.extra)) for v in beside}

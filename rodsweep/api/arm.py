@@ -13,7 +13,8 @@ from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
 from ..model.units import GivenQuantity
 from .answers.answer import Answer
 from .keyword_arguments import config_tree, job_of_tree, with_load_in_si
-from .options import (
+from .solving_in_process import solve_in_process
+from .task_keywords import (
     BranchKeywords,
     CriticalityKeywords,
     LimitCycleKeywords,
@@ -21,7 +22,6 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving_in_process import solve_in_process
 
 if TYPE_CHECKING:
     from ..verdict.arm import ArmReport

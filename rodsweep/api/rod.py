@@ -11,8 +11,9 @@ from pydantic import ValidationError
 
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
-from ..config.material import MaterialSection, with_profile_read
+from ..config.material import MaterialSection
 from ..config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
+from ..config.profile_file import with_profile_read
 from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
 from ..errors import InputError
@@ -24,7 +25,8 @@ from ..sweep.points.grid import refuse_invalid_axes
 from ..wording import enumeration
 from .answers.answer import Answer
 from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
-from .options import (
+from .solving_in_process import solve_in_process
+from .task_keywords import (
     BranchKeywords,
     CriticalityKeywords,
     LimitCycleKeywords,
@@ -32,7 +34,6 @@ from .options import (
     SpectrumKeywords,
     ThresholdsKeywords,
 )
-from .solving_in_process import solve_in_process
 
 if TYPE_CHECKING:
     from .answers.rod_portrait import RodPortrait

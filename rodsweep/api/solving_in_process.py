@@ -70,7 +70,7 @@ def solve_in_process(
             raise
         finally:
             shown.close()
-        filled = (*plan.config_variables(), *sweep_wide, *plan.variables_from_points(values))
+        filled = (*plan.variables_from_config(), *sweep_wide, *plan.variables_from_points(values))
     return SolvedPoints(
         job=job,
         plan=plan,
@@ -102,8 +102,9 @@ def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
 def _solve_points(
     job: Job, solver: Solver, plan: Plan, shown: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
-    """Returns (variables, messages, reasons). variables: by name, with the dimensions of the points first.
-    messages: for each point. reasons: why points failed. shown: progress display.
+    """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
+    of the points first. messages: one message for each point. reasons: reasons why points failed. shown:
+    progress display.
     """
     reasons = FailureReasons(lambda index: parameters_text(job.points.values(index)))
     count = job.points.count

@@ -52,7 +52,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     stop = StopRequest(acknowledges=not launcher_rank_values())
     stop.listen()  # first: a launcher's warning signal may come before slow imports are done
     from ..sweep.points.ranges import parsed_shard
-    from .run.options import RunOptions
+    from .run.run_request import RunRequest
     from .run.running import run_config
 
     if options["fresh"] and options["extend"]:
@@ -63,7 +63,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     part = parsed_shard(shard)
     suffix = f"-{part.number}-of-{part.shard_count}.h5" if part.shard_count > 1 else ".h5"
     output = result_file_path(output or Path(config.stem + suffix))
-    code = run_config(config, output, RunOptions(overrides=overrides, shard=part, **options), stop)
+    code = run_config(config, output, RunRequest(overrides=overrides, shard=part, **options), stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
 

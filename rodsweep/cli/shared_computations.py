@@ -43,15 +43,15 @@ class _SharedWork:
         return any(self.team.gather_on_all_ranks(self.has_skipped_items))
 
 
-def with_config_variables(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
+def with_variables_from_config(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
     """The plan of a result file, with the variables that do not depend on points, computed by all ranks
     together.
 
     None if a stop signal came before the computation ended.
     """
     shared = _SharedWork(team, stop)
-    found = task.config_variables(shared.gather_in_order)
-    return None if shared.any_rank_stopped else replace(plan, config_variables=lambda: found)
+    found = task.variables_from_config(shared.gather_in_order)
+    return None if shared.any_rank_stopped else replace(plan, variables_from_config=lambda: found)
 
 
 def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:

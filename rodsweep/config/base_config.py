@@ -54,10 +54,10 @@ class Config(StrictSection):
         """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
         in the config.
         """
-        return (*self.rod_parameters_used({}), *self.optional_names)
+        return (*self.rod_parameters_used({}), *self.optional_parameters_in_use)
 
     @property
-    def optional_names(self) -> tuple[str, ...]:
+    def optional_parameters_in_use(self) -> tuple[str, ...]:
         """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
         made = () if arm is None else arm.cone_parameters

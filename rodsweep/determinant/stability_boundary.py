@@ -30,9 +30,11 @@ class BoundaryPointSettings:
     min_determinant: float = EXPONENT_SETTINGS.least_divisor
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
+    converging_step_ratio: float = 0.5
+    """A small step of more than this number times the previous step is rounding error."""
     stagnant_step: float = 1e-10
-    """Newton's method has also converged if |step| is below this number and more than half of the previous
-    |step|: such a step is rounding error."""
+    """Newton's method has also converged if |step| is below this number and more than `converging_step_ratio`
+    times the previous |step|."""
 
 
 BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
@@ -105,7 +107,8 @@ class Boundary:
             size = float(np.abs(step).max())
             v = v + step
             if size <= BOUNDARY_POINT_SETTINGS.converged_step * error or (
-                size < BOUNDARY_POINT_SETTINGS.stagnant_step and size > last / 2
+                size < BOUNDARY_POINT_SETTINGS.stagnant_step
+                and size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * last
             ):
                 return BoundarySolution(v, jacobian, max(error, size))
             if size > BOUNDARY_POINT_SETTINGS.max_step or not np.isfinite(v).all():

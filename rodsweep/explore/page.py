@@ -13,7 +13,7 @@ from .pause_timer import PauseTimer
 from .sharing import state_from_config_text
 from .slider_scales import SCALES
 from .solving import question_inputs as kinds
-from .solving.diagrams import has_uniform_rods
+from .solving.diagrams import has_uniform_linear_rods
 from .solving.question_inputs import AnswerInputs, answer_inputs, state_to_solve
 from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
@@ -167,7 +167,7 @@ class Page:
         for kind in kinds.IDLE_KINDS:
             if answer_inputs(Question(kind, self.state)) == self.latest_inputs.get(kind):
                 continue
-            if self.state.tab == "rod" and not has_uniform_rods(self.state):
+            if self.state.tab == "rod" and not has_uniform_linear_rods(self.state):
                 self.latest_inputs.pop(kind, None)
                 self.contents.show_message(
                     kind, "The solve takes a minute for such a rod; press the button below to start."

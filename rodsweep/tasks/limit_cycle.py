@@ -80,7 +80,7 @@ class LimitCycleTask(Task):
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Hopf points of the straight rod on the lines of points."""
         lines = hopf_lines_of(self.points)
         if lines:

@@ -145,7 +145,7 @@ class Task(ABC):
         """
         return {}
 
-    def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
         among the ranks. By default empty.
         """

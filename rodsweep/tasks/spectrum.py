@@ -69,7 +69,7 @@ class SpectrumTask(CertifiedTask):
         """
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def config_variables(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
+    def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Longitudinal growth rates, along the parameters on which these rates depend; for arms that are not
         uniform or not of linear material, also their relative errors. Empty if longitudinal modes are not
         requested.

@@ -7,12 +7,12 @@ from html import escape
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
+from .assessment import Assessment
 from .checks import Check, checks_of
 from .load import Load
 from .number_rows import NumberRow, number_rows
 from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
-from .validity import Assessment
 
 BRACKETS_NOTE = "In brackets: the range over drag, which is known only up to a factor."
 """Sentence below the table of numbers, which explains the values in brackets."""

@@ -9,7 +9,7 @@ from ..model.arm.neglected import SELF_BUCKLING_WEIGHT, Effect, Validity
 from ..model.material.laws import LINEAR
 
 if TYPE_CHECKING:
-    from .validity import Assessment  # for annotations only: the module imports solvers
+    from .assessment import Assessment  # for annotations only: the module imports solvers
 
 MIN_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""

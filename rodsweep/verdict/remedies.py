@@ -9,8 +9,8 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Effect, Validity
 from ..model.arm.quantities import UNITS
 from ..model.units import unit_of, value_in_unit
+from .assessment import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 from .load import Load
-from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
 FOUR_DIGIT_EXCESS = 1.1
 """Ratios of an effect to its limit below this number are printed with four digits; two digits could read

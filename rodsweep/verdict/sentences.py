@@ -6,12 +6,12 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 
 from ..model.arm.neglected import Validity
 from ..solve.changes.kinds import ChangeKind
+from .assessment import Assessment
 from .flutter import Span, ThresholdsOverDrags
 from .load import Load
 from .planes import PlaneOfMotion, Planes
 from .remedies import effect_kinds_in_words, not_applicable_sentences
 from .rounding import percent_range_text, range_text
-from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:

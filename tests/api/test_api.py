@@ -18,7 +18,7 @@ from ruamel.yaml import YAML
 from surveyed import only
 
 import rodsweep as rs
-from rodsweep.api import options
+from rodsweep.api import task_keywords
 from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
@@ -296,12 +296,12 @@ def test_parameters_that_are_not_given_have_the_defaults_of_the_table():
 
 def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
     kinds = {
-        "spectrum": options.SpectrumKeywords,
-        "thresholds": options.ThresholdsKeywords,
-        "modes": options.ModesKeywords,
-        "limit_cycle": options.LimitCycleKeywords,
-        "criticality": options.CriticalityKeywords,
-        "branch": options.BranchKeywords,
+        "spectrum": task_keywords.SpectrumKeywords,
+        "thresholds": task_keywords.ThresholdsKeywords,
+        "modes": task_keywords.ModesKeywords,
+        "limit_cycle": task_keywords.LimitCycleKeywords,
+        "criticality": task_keywords.CriticalityKeywords,
+        "branch": task_keywords.BranchKeywords,
     }
     for task, kind in kinds.items():
         section = CONFIGS[task].model_fields[task].annotation

@@ -224,7 +224,7 @@ REFUSED_BY_TASK = [
     ),
     (
         config("branch", "F: 9, k2: 9, gamma3: 0", "along: k1"),
-        "start = 0 is not allowed along k1; allowed: a number above 0",
+        "start = 0 is not allowed along k1; it should be a finite number above 0",
     ),
     (
         config("branch", "F: 9, k2: 9, gamma3: 0", "along: k1, start: 3, stop: .inf"),

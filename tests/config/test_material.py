@@ -210,7 +210,7 @@ def test_cycles_of_cones_are_stored_with_their_hopf_points(command):
             spectrum = rod.spectrum(modes=6)
             assert (abs(spectrum.growth_rate) < 1e-7 * spectrum.frequency).any()
     shown = command("show", "whole.h5").stdout
-    assert "is confirmed by counts of unstable modes on" in shown
+    assert "is confirmed by counts of unstable modes for" in shown
 
 
 def test_branches_are_followed_in_the_taper():

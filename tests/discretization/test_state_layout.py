@@ -84,4 +84,4 @@ def test_a_symmetry_is_a_matrix_and_is_undone(layout):
     symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknown_count)
     S = symmetry.matrix(layout)
     assert symmetry.apply(x, layout) == pytest.approx(x @ S.T)
-    assert symmetry.apply_inverse(P, layout) == pytest.approx(np.linalg.solve(S, P))
+    assert symmetry.apply_inverse_to_flow(P, layout) == pytest.approx(np.linalg.solve(S, P))

@@ -62,7 +62,7 @@ def branch_sentences(view, page, keywords, fine):
         [keywords["stop"]],
     )
     proved = (view.variables["certified"].sum(), len(rods))
-    return found + counts(page, r"list of Hopf points is proved complete at NUMBER of NUMBER rod", *proved)
+    return found + counts(page, r"list of Hopf points is proved complete for NUMBER of NUMBER rod", *proved)
 
 
 def _one_rod(view, page, fine, own, true):

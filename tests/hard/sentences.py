@@ -338,7 +338,9 @@ def spectrum_sentences(view, page, keywords, fine):
         found.append((line, "; ".join(why)))
     proved = (numbers.max(), int(v["certified"].sum()), len(rods))
     found += counts(
-        page, "^number of unstable modes: at most NUMBER, proved at NUMBER of NUMBER point", *proved
+        page,
+        "^largest number of unstable modes: NUMBER; the number is proved at NUMBER of NUMBER point",
+        *proved,
     )
     if len(rods) == 1:
         found += _eigenvalue_sentences(rods[0], page, numbers[0])
@@ -481,7 +483,7 @@ def _search_sentences(view, page, every, noun):
     v, rods = view.variables, len(every)
     proved = int(v["certified"].sum())
     found = counts(
-        page, rf"^the list of crossings is proved complete on NUMBER of NUMBER {noun}", proved, rods
+        page, rf"^the list of crossings is proved complete for NUMBER of NUMBER {noun}", proved, rods
     )
     stored = (v["crossing_kind"] > 0).reshape(rods, -1)
     name = "crossing_at" if "crossing_at" in v else "crossing_F"
@@ -519,7 +521,7 @@ def criticality_sentences(view, page, keywords, fine):
         page, "^no Hopf point up to F = RANGE", end
     )
     proved = (int(own["certified"].sum()), count)
-    found += counts(page, "list of Hopf points is proved complete at NUMBER of NUMBER rod", *proved)
+    found += counts(page, "list of Hopf points is proved complete for NUMBER of NUMBER rod", *proved)
     found += counts(page, HIDDEN, v["crossing_count"].sum() - (own["crossing_kind"] > 0).sum())
     if count == 1:
         return found + _normal_forms(page, {name: v[name].ravel() for name in v})
@@ -642,7 +644,7 @@ def cycle_sentences(view, page, keywords, fine):
         proved = int(own["hopf_lines_proved"]), int(own["hopf_lines"])
         found += counts(
             page,
-            "list of Hopf points between neighbouring points is proved complete on NUMBER of NUMBER line",
+            "list of Hopf points between neighbouring points is proved complete for NUMBER of NUMBER line",
             *proved,
         )
     found += _second_states(view, page, w, keywords)
@@ -761,6 +763,10 @@ def diagram_sentences(view, page, keywords, fine):
         found += counts(page, rf"^of \d+ grid points on the rows:.*?NUMBER {word}", there.sum())
         found += counts(page, rf"where the rows begin.*: .*{word} on NUMBER", there[:, 0].sum())
     beats = (table == "flutter").any(axis=1)
+    # A window of flutter between two grid points begins with a Hopf point.
+    beats |= [any(c.kind.name == "hopf" for c in each) for each in every]
+    numbers = beats.sum(), len(rows), (~beats).sum()
+    found += counts(page, r"^flutter: on NUMBER of NUMBER rows?, .*; none on NUMBER", *numbers)
     found += ranges(
         page,
         rf"^flutter: on \d+ of \d+ rows?, {row} = RANGE; none on \d+, {row} = RANGE",
@@ -777,10 +783,11 @@ def diagram_sentences(view, page, keywords, fine):
             found += ranges(
                 page, rf"^{kind}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", first, rows[having]
             )
-            found += ranges(page, rf"^{kind}: .*; again on \d+ of these rows, F = RANGE", again)
-            found += counts(
-                page, rf"^{kind}: .*; again on NUMBER of these rows", sum(len(each) > 1 for each in of_kind)
+            repeated = sum(len(each) > 1 for each in of_kind)
+            found += ranges(
+                page, rf"^{kind}: .*; a second time or more on \d+ of these rows, at F = RANGE", again
             )
+            found += counts(page, rf"^{kind}: .*; a second time or more on NUMBER of these rows", repeated)
     found += _curve_sentences(view, page, row)
     if "stable_states" in v:
         found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)

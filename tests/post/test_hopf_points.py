@@ -33,7 +33,7 @@ def searched(tmp_path, config, in_order=solve_on_one_rank):
     """The variables of the Hopf points of a config, by name."""
     path = tmp_path / "c.yaml"
     path.write_text(config)
-    return {v.name: values for v, values in job_of_file(path, ()).task.config_variables(in_order)}
+    return {v.name: values for v, values in job_of_file(path, ()).task.variables_from_config(in_order)}
 
 
 @pytest.mark.parametrize("F", ["[45, 55, 65, 75]", "[49, 50]", "{start: 1, stop: 150, num: 4}"])

@@ -175,7 +175,7 @@ def test_rows_tell_first_changes_apart_from_later_ones_and_what_was_before_them(
     )
     told = shown(command, config.format(start=0))
     first = "onset: on 2 of 2 rows, F = 22.471 to 24.0686, k1 = 140 to 200"
-    assert f"\n{first}; again on 1 of these rows, F = 137.568\n" in told
+    assert f"\n{first}; a second time or more on 1 of these rows, at F = 137.568\n" in told
     command.write("c.yaml", config.format(start=30))
     command("run", "c.yaml", "--fresh")
     told = command("show", "c.h5").stdout

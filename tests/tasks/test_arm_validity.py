@@ -18,7 +18,7 @@ from rodsweep.model.arm.neglected import (
 )
 from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
-from rodsweep.post.summary.arm.validity import validity_sentence
+from rodsweep.post.summary.arm.validity_sentences import validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import VALIDITY, VALIDITY_NOT_KNOWN
 from rodsweep.results.layouts.phase_diagram import CLASSES
@@ -85,7 +85,10 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
     assert (data.model_applies == VALIDITY_NOT_KNOWN).all()
     assert np.isnan(data.neglected_excess).all()
     validity = {v.name: data[v.name].values.ravel() for v in VALIDITY}
-    said = "whether the model applies is not known at all 2 points: a motion may have been missed"
+    said = (
+        "whether the model applies is not known at all 2 points: an unstable mode or a cycle may have been "
+        "missed, and the neglected effects depend on its frequency"
+    )
     assert validity_sentence(validity) == said
     mixed = {
         name: np.append(values, {"neglected_excess": np.nan}.get(name, 0))

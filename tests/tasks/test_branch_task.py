@@ -44,7 +44,7 @@ def test_show_tells_branches_special_points_and_where_two_states_coexist(command
     assert re.search(r"fold at F = 85\.605576\d* \(\+- \de-\d+\), period 0\.00638\d+ \(\+- \de-\d+\)", told)
     assert re.search(r"stable cycles at F = 67\.3869843 to 85\.605576", told)
     assert re.search(r"stable cycles beside a stable straight rod: F = 85\.5693169 to 85\.605576", told)
-    assert "list of Hopf points is proved complete at 1 of 1 rod" in told
+    assert "list of Hopf points is proved complete for 1 of 1 rod" in told
 
 
 def test_show_of_many_rods_names_those_with_two_stable_states(command):

@@ -68,7 +68,7 @@ def plan_of(job):
         job.points,
         job.layout,
         job.task.coordinates(),
-        job.task.config_variables,
+        job.task.variables_from_config,
         job.resolved,
         {"title": "t", "task": job.config.task},
         ((0, "ok"), (5, "failed")),
@@ -292,7 +292,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
             "at all 6 rods; growth rate -6 to -1 1/tau2",
             "stable again: F = 3 (",
             "searched up to F = 200 ",
-            "the list of crossings is proved complete on 6 of 6 rods",
+            "the list of crossings is proved complete for 6 of 6 rods",
         ],
         "phase_diagram": [
             "of 6 grid points on the rows: 2 monotone, 2 oscillatory, 2 flutter",

@@ -24,10 +24,10 @@ from rodsweep.solve.changes.kinds import ChangeKind, Threshold
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import Thresholds, empty_thresholds
 from rodsweep.verdict import flutter
+from rodsweep.verdict.assessment import Assessment
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.planes import PlaneOfMotion, Planes
 from rodsweep.verdict.sentences import verdict_sentences
-from rodsweep.verdict.validity import Assessment
 
 OK = ThresholdStatus.ok
 

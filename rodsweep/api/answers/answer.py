@@ -36,8 +36,8 @@ number of rows."""
 
 @dataclass(frozen=True, slots=True, repr=False)
 class WholeTable:
-    """All numbers of an answer, and the lists in LISTS_PRINTED_IN_FULL. text: for a terminal. html: for a
-    notebook."""
+    """All numbers of an answer, and the lists in LISTS_PRINTED_IN_FULL. text: the table for a
+    terminal. html: the table for a notebook."""
 
     text: str
     html: str

@@ -11,7 +11,7 @@ from html import escape
 from ...model.arm.neglected import Validity
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES, Headline
-from ...post.summary.arm.validity import validity_caveat
+from ...post.summary.arm.validity_sentences import validity_caveat
 from ...post.tables.alignment import (
     COLUMN_GAP,
     LINE_WIDTH,

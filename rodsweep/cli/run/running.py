@@ -21,26 +21,26 @@ from ...tasks.running.failures import parameters_text
 from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
-from ..shared_computations import report_stop, shared_flutter_forces, with_config_variables
-from .options import RunOptions
+from ..shared_computations import report_stop, shared_flutter_forces, with_variables_from_config
 from .point_work import PointWork
 from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
+from .run_request import RunRequest
 from .sweep_wide_work import PendingSweepWideWork, SweepWideWork
 
 
-def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
+def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest) -> int:
     """Runs the config file `path`, or a shard of it, on all ranks; returns the exit status of the command."""
     require_working_directory()
     team = Team()
     with team.abort_all_ranks_on_error():
-        config, text = team.call_on_first_rank(lambda: load_config(path, options.overrides))
+        config, text = team.call_on_first_rank(lambda: load_config(path, request.overrides))
         flutter = shared_flutter_forces(config, team, stop)
         if flutter is None:
             report_stop(team, stop)
             return STOPPED_STATUS
         job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
-        return _RankRun(team, job, output, options, stop).run()
+        return _RankRun(team, job, output, request, stop).run()
 
 
 class _RankRun:
@@ -49,19 +49,19 @@ class _RankRun:
     store: Store
     """The result file, on the first rank, after `_open_store`."""
 
-    def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
+    def __init__(self, team: Team, job: Job, output: Path, request: RunRequest, stop: StopRequest):
         from ...solve.backend.blas_kernel import blas_description
 
         self.team = team
         self.job = job
         self.output = output
         self.stop = stop
-        self.options = options
-        self.shard = options.shard
+        self.request = request
+        self.shard = request.shard
         self.clock_at_start = time.monotonic()
         self.date_at_start = provenance.utc_time()
         self.seconds = 0.0
-        self.log = TracebackLog(output, team.rank, self._point_text, options.strict)
+        self.log = TracebackLog(output, team.rank, self._point_text, request.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
         self.kernels = provenance.merged_blas_kernels(team.gather(blas_description()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
@@ -74,7 +74,7 @@ class _RankRun:
             shard=self.shard,
             output=output,
             stop=stop,
-            quiet=options.quiet,
+            quiet=request.quiet,
             point_text=self._point_text,
         )
         wide = self.solver.sweep_wide_solver
@@ -84,9 +84,9 @@ class _RankRun:
 
     def run(self) -> int:
         """Solves the missing points, writes the results into the file, and returns the exit status."""
-        replaces = self.options.fresh or self.options.extend
+        replaces = self.request.fresh or self.request.extend
         if self.team.call_on_first_rank(lambda: replaces or not self.output.exists()):
-            plan = with_config_variables(self.plan, self.job.task, self.team, self.stop)
+            plan = with_variables_from_config(self.plan, self.job.task, self.team, self.stop)
             if plan is None:
                 report_stop(self.team, self.stop)
                 return STOPPED_STATUS
@@ -107,7 +107,7 @@ class _RankRun:
         pending = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
         shares: list[RankWork] = []
         if self.sweep_wide and pending.work_items is not None:
-            title = None if self.options.quiet else self.job.name
+            title = None if self.request.quiet else self.job.name
             shares = self.team.gather(self.sweep_wide.solve(pending.work_items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.call_on_first_rank(
@@ -141,13 +141,13 @@ class _RankRun:
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
-        if amiss or not self.options.quiet:
+        if amiss or not self.request.quiet:
             click.echo(text)
 
     def _open_store(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
-        self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
-        if self.sweep_wide and (self.options.fresh or not self._lacks_sweep_wide_variables(0)):
+        self.store = Store(self.output, self.plan, self.request.fresh, self.request.extend)
+        if self.sweep_wide and (self.request.fresh or not self._lacks_sweep_wide_variables(0)):
             self.sweep_wide.item_results.drop()
         self._print_store_notes()
         return self.store.missing()

@@ -47,8 +47,8 @@ class SweepWideWork:
         note: ItemExceptionNote,
         stop: StopRequest,
     ):
-        """solver: computes the variables. output: the result file. fingerprint: of config and points. note:
-        function called with every unforeseen exception; the half curve then stays empty.
+        """solver: computes the variables. output: the result file. fingerprint: digest of config and points.
+        note: function called with every unforeseen exception; the half curve then stays empty.
         """
         self.team = team
         self.solver = solver

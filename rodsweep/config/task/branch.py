@@ -73,7 +73,10 @@ class BranchConfig(Config):
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
-        return (*parameter_names_except(self.branch.along, NONLINEAR_PARAMETERS), *self.optional_names)
+        return (
+            *parameter_names_except(self.branch.along, NONLINEAR_PARAMETERS),
+            *self.optional_parameters_in_use,
+        )
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

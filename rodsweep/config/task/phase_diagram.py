@@ -1,6 +1,7 @@
 """Config of the task phase_diagram: states of the rod over two parameters, and the boundaries between
 them."""
 
+from collections.abc import Sequence
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -188,12 +189,8 @@ class PhaseDiagramConfig(LinearConfig):
                 "addition to the arm"
             )
         long = self.plane_parameters
-        names = enumeration(TRANSVERSE_PARAMETERS, "and")
         if len(long) != 2:
-            raise ValueError(
-                f"parameters has {len(long)} {'axis' if len(long) == 1 else 'axes'} with more than one value "
-                f"({', '.join(long) or 'none'}); a phase diagram needs exactly two of {names}"
-            )
+            raise ValueError(_axis_count_refusal(long))
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
             stiff = enumeration(
@@ -220,3 +217,14 @@ class PhaseDiagramConfig(LinearConfig):
                 f"first value is {value[0]:g}"
             )
         return self
+
+
+def _axis_count_refusal(long: Sequence[str]) -> str:
+    """Message that refuses a config unless two parameters have several values. long: names of the parameters
+    with several values."""
+    number = f"{len(long)} {'axis' if len(long) == 1 else 'axes'}"
+    listed = f" ({', '.join(long)})" if long else ""
+    return (
+        f"parameters has {number} with more than one value{listed}; a phase diagram needs exactly two of "
+        f"{enumeration(TRANSVERSE_PARAMETERS, 'and')}"
+    )

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import Path
-from ..roots.newton import FAILED_ZERO, ROOT_NEWTON_SETTINGS, LocatedZero
-from ..roots.settings import ROOT_SETTINGS
+from ..roots.newton import FAILED_ZERO, LocatedZero
+from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .arm_family import ArmFamily
 from .determinant import ArmDeterminant, arm_determinant
@@ -68,7 +68,8 @@ class _DoubleEigenvalueStep(NamedTuple):
         """Whether the step is of the size of rounding errors. last: |change of x| in the previous step."""
         converged = ROOT_NEWTON_SETTINGS.converged_step
         return abs(self.in_p) <= converged * self.rounding_error_of_p and (
-            abs(self.in_x) <= converged * self.rounding_error_of_x or abs(self.in_x) > last / 2
+            abs(self.in_x) <= converged * self.rounding_error_of_x
+            or abs(self.in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
         )
 
 

@@ -78,11 +78,11 @@ class ArmDeterminant:
         propagators are made. highest: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`.
         """
         highest = ARM_ELEMENT_SETTINGS.max_reuse_ratio if highest is None else highest
-        size = max(size, ARM_ELEMENT_SETTINGS.min_largest_w)
+        size = max(size, ARM_ELEMENT_SETTINGS.min_W)
         for level in self._known_propagators:
             if size <= level[0] <= highest * size:
                 return level
-        W = ARM_ELEMENT_SETTINGS.largest_w_factor * size
+        W = ARM_ELEMENT_SETTINGS.W_reserve_factor * size
         made = W, self._propagators(W)
         self._known_propagators = sorted([*self._known_propagators, made], key=itemgetter(0))
         return made

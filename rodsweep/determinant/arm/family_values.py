@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
-from ..roots.newton import ROOT_NEWTON_SETTINGS
+from ..roots.settings import ROOT_NEWTON_SETTINGS
 from ..value import DeterminantValue
 from .arm_family import LINEAR_SCALE, ArmFamily
 from .newton import ARM_ROOT_SETTINGS
@@ -110,7 +110,7 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
             step = complex(step.real, 0.0)
-        if not abs(step) < last / 2 or abs(w) > family.largest_w:
+        if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last or abs(w) > family.largest_w:
             break
         last = abs(step)
         w -= step

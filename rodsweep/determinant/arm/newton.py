@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
-from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import roots_of_parabola
-from ..roots.settings import ROOT_SETTINGS
+from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, PropagatorsUpToW
 from .rounding import rounding_error_by_chain
@@ -70,7 +69,8 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     """Returns (w, error of w, length of the last step) after Newton's method from `guess`, with the
     propagators of `level`.
 
-    last: length of the previous step; the iteration ends at a step of at least half the previous step. The
+    last: length of the previous step; the iteration ends at a step that hardly decreases
+    (`ROOT_NEWTON_SETTINGS.converging_step_ratio`). The
     error is -1 if |w| exceeds the bound W of the level.
     """
     w = guess
@@ -79,7 +79,7 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
         if guess.imag == 0:
             step = complex(step.real, 0.0)
-        if not abs(step) < last / 2:
+        if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last:
             return w, _root_error_from_value(w, value, level), last
         last = abs(step)
         w -= step
@@ -91,8 +91,8 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
 
 
 @compiled
-def _two_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> tuple[complex, complex]:
-    """`two_roots` about `middle`, with the propagators of `level`."""
+def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> tuple[complex, complex]:
+    """`taylor_parabola_roots` about `middle`, with the propagators of `level`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     if middle.imag == 0:
         D = complex(D.real, 0.0)
@@ -131,9 +131,9 @@ def refine_eigenvalue_and_error(
     return w, error
 
 
-def two_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
+def taylor_parabola_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
     """The two roots of the quadratic Taylor polynomial of an arm's D about `middle`.
 
     For a real `middle` the roots are both real or complex conjugates.
     """
-    return _two_roots_by_propagators(middle, _propagators_at(middle, determinant))
+    return _parabola_roots_by_propagators(middle, _propagators_at(middle, determinant))

@@ -14,13 +14,18 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..exponents import EXPONENT_SETTINGS
-from ..roots.newton import ROOT_NEWTON_SETTINGS
 from ..roots.roots import Roots
-from ..roots.settings import ROOT_SETTINGS
+from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import EigenvalueHull
 from .local_waves import mean_wave_numbers_and_w_scales
-from .newton import ARM_ROOT_SETTINGS, refine_eigenvalue_and_error, root_error, second_derivative, two_roots
+from .newton import (
+    ARM_ROOT_SETTINGS,
+    refine_eigenvalue_and_error,
+    root_error,
+    second_derivative,
+    taylor_parabola_roots,
+)
 
 T = TypeVar("T")
 
@@ -123,7 +128,7 @@ def _separate_close_roots(
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
-                w[i], w[partner] = two_roots(middle, determinant)
+                w[i], w[partner] = taylor_parabola_roots(middle, determinant)
             reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
     return w, reach
 

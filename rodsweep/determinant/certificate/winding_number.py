@@ -66,8 +66,8 @@ NO_INTEGER_MESSAGE = "the winding number of D is not an integer within rounding 
 class EigenvalueCount:
     """Number of eigenvalues right of a vertical line.
 
-    number: None if the count failed. node_count: of nodes and discs on the contour. failure_reason: reason of
-    the failure.
+    number: None if the count failed. node_count: number of nodes and discs on the contour.
+    failure_reason: reason of the failure.
     """
 
     number: int | None

@@ -8,41 +8,14 @@ not.
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..parameter_path import coefficients_at, determinant_along_path
 from ..value import scaled_determinant
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RootNewtonSettings(CompiledSettings):
-    """Settings of Newton's method for eigenvalues, crossings and double eigenvalues."""
-
-    max_steps: int = 15
-    """Maximum number of Newton steps to a crossing, and half the maximum number to a double eigenvalue."""
-    max_refinements: int = 12
-    """Maximum number of Newton steps to an eigenvalue."""
-    max_relative_step: float = 20.0
-    """Newton's method for a crossing fails after a step larger than this number times the expected sizes of
-    eta and p."""
-    converged_step: float = 4.0
-    """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
-    jacobian_step: float = 1e-5
-    """Steps of the differences in the Jacobian of a double eigenvalue, divided by |x| for x and by the reach
-    for p. The Jacobian need not be accurate."""
-    stagnant_step: float = 1e-9
-    """Newton's method has also converged if |step| is below this number times |p| and more than half of the
-    previous |step|: such a step is rounding error."""
-    real_tolerance: float = 1e-14
-    """An eigenvalue w is set to Re w if |Im w| <= this number times |w|, the size of rounding errors."""
-
-
-ROOT_NEWTON_SETTINGS = RootNewtonSettings()
+from .settings import ROOT_NEWTON_SETTINGS
 
 
 class LocatedZero(NamedTuple):
@@ -96,7 +69,10 @@ def crossing_newton(
         if (
             abs(in_eta) <= ROOT_NEWTON_SETTINGS.converged_step * e_eta
             and abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
-        ) or (step > last / 2 and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)):
+        ) or (
+            step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
+            and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)
+        ):
             return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
     return FAILED_ZERO
@@ -141,7 +117,8 @@ def double_newton(
         if not abs(p - first) <= 2 * reach or not x * start > 0:
             return FAILED_ZERO
         if abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
-            abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x or abs(in_x) > last / 2
+            abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x
+            or abs(in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
         ):
             return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
@@ -175,8 +152,8 @@ def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = 
         step = value.D / value.D_w
         if real:
             step = complex(step.real, 0.0)
-        # Newton's method converges quadratically; a step that does not halve is rounding error.
-        if not abs(step) < last / 2:
+        # Newton's method converges quadratically; a step that hardly decreases is rounding error.
+        if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last:
             break
         last = abs(step)
         w -= step

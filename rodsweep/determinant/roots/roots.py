@@ -25,8 +25,8 @@ from ..value import (
     scaled_determinant,
     second_derivative,
 )
-from .newton import ROOT_NEWTON_SETTINGS, refine_eigenvalue
-from .settings import ROOT_SETTINGS
+from .newton import refine_eigenvalue
+from .settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 
 
 class Roots(NamedTuple):
@@ -70,7 +70,7 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
 
 
 @compiled
-def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
+def taylor_parabola_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
     """The two roots of the quadratic Taylor polynomial of D about `middle`, for a uniform rod.
 
     For a real `middle` the roots are both real or complex conjugates.
@@ -116,7 +116,7 @@ def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) 
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
-                w[i], w[partner] = two_roots(middle, coefficients)
+                w[i], w[partner] = taylor_parabola_roots(middle, coefficients)
             reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
     return reach
 

@@ -1,4 +1,4 @@
-"""Settings for the refinement of eigenvalues of a mesh to roots of D."""
+"""Settings for the refinement of eigenvalues of a mesh to roots of D, and for Newton's method on D."""
 
 from dataclasses import dataclass
 
@@ -39,3 +39,32 @@ class RootSettings(CompiledSettings):
 
 
 ROOT_SETTINGS = RootSettings()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RootNewtonSettings(CompiledSettings):
+    """Settings of Newton's method for eigenvalues, crossings and double eigenvalues."""
+
+    max_steps: int = 15
+    """Maximum number of Newton steps to a crossing, and half the maximum number to a double eigenvalue."""
+    max_refinements: int = 12
+    """Maximum number of Newton steps to an eigenvalue."""
+    max_relative_step: float = 20.0
+    """Newton's method for a crossing fails after a step larger than this number times the expected sizes of
+    eta and p."""
+    converged_step: float = 4.0
+    """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
+    jacobian_step: float = 1e-5
+    """Steps of the differences in the Jacobian of a double eigenvalue, divided by |x| for x and by the reach
+    for p. The Jacobian need not be accurate."""
+    converging_step_ratio: float = 0.5
+    """A Newton step of at least this number times the previous step is rounding error: the method has
+    converged as far as rounding allows."""
+    stagnant_step: float = 1e-9
+    """Newton's method for a crossing has also converged if |step| is below this number times |p| and above
+    `converging_step_ratio` times the previous |step|."""
+    real_tolerance: float = 1e-14
+    """An eigenvalue w is set to Re w if |Im w| <= this number times |w|, the size of rounding errors."""
+
+
+ROOT_NEWTON_SETTINGS = RootNewtonSettings()

@@ -32,7 +32,7 @@ from .arm_resolution import arm_elements
 class LongitudinalModeSettings:
     """Settings for the mesh of longitudinal modes, and for error estimates from two orders."""
 
-    mesh_accuracy: float = 1e-12
+    first_mesh_accuracy: float = 1e-12
     """Relative accuracy of the eigenvalues for which the first mesh is chosen."""
     order_increase: int = 4
     """Increase of the order of the elements in each refinement; eigenvalues of successive orders are
@@ -59,7 +59,7 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     """
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.mesh_accuracy)
+    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.first_mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.element_count))
     found = _leading_eigenvalues(rod, mesh, order, modes)
     while True:

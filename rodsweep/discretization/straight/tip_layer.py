@@ -41,7 +41,8 @@ would cause an error of 4e-11 in a numerical abscissa."""
 
 
 def tip_layer_ratio(rod: Rod) -> float:
-    """T = d(1)/m(1) of a rod without rotational drag; 0 for a rod with rotational drag or without shear."""
+    """T = d(1)/m(1) at the tip of a rod without rotational drag; 0 for a rod with rotational drag or without
+    shear. d: difference of the angle and the adjoint angle. m = d'/c3: bending moment of d."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     if rod.is_uniform_and_linear:
@@ -63,7 +64,7 @@ def tip_layer_ratio(rod: Rod) -> float:
 
 
 def _ratio_at_right_end(K: Array, before: float) -> float:
-    """The ratio d/m at the right end of an element. before: the ratio d/m at the left end.
+    """The ratio d/m of `tip_layer_ratio` at the right end of an element. before: d/m at the left end.
 
     K: stiffness matrix of the element, (nodes, nodes).
     """

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...post.summary.arm.validity import validity_caveat
+from ...post.summary.arm.validity_sentences import validity_caveat
 from ..texts import PageText
 
 ROW_LABELS_BY_KIND = {

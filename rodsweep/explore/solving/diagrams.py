@@ -59,7 +59,7 @@ def diagram_answer(state: PageState) -> dict[str, Any]:
     state.subject()
     if state.tab == "arm":
         return _diagram_of_arms(state)
-    return _diagram_of_rods(state) if has_uniform_rods(state) else _diagram_from_thresholds(state)
+    return _diagram_of_rods(state) if has_uniform_linear_rods(state) else _diagram_from_thresholds(state)
 
 
 def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
@@ -82,10 +82,10 @@ def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
 
 def can_follow_cycle_curves(state: PageState) -> bool:
     """Whether `cycle_diagram_answer` can follow folds and torus points of cycles for this state."""
-    return state.tab == "rod" and has_uniform_rods(state)
+    return state.tab == "rod" and has_uniform_linear_rods(state)
 
 
-def has_uniform_rods(state: PageState) -> bool:
+def has_uniform_linear_rods(state: PageState) -> bool:
     """Whether all rods of the diagram are uniform and of linear material."""
     return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
 

@@ -46,7 +46,8 @@ compiled code."""
 
 @dataclass(frozen=True, kw_only=True)
 class CancellationDelays:
-    """Delays before a superseded solve is cancelled and a deaf process is killed, in seconds.
+    """Times, in seconds, until a superseded solve is cancelled, and until a process that does not react is
+    killed.
 
     interrupt_seconds: a solve of at least this age is cancelled when a newer question with the same key
     waits. Younger solves finish, so that pictures follow a moving slider. kill_seconds: a process that has
@@ -59,7 +60,8 @@ class CancellationDelays:
 
 class SolverProcess:
     """One solver process, and the queue of its questions. A question starts the process if it is not running.
-    delays: before cancellation. niceness: Unix niceness.
+    delays: times until a superseded solve is cancelled, and until a process that does not react to the
+    cancellation is killed; None for the default times. niceness: Unix niceness of the process.
     """
 
     def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):

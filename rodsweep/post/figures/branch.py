@@ -181,8 +181,8 @@ def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequenc
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
     amplitude coefficient |a|; returns the legend entry of the prediction.
 
-    Each branch is drawn up to its first fold, beyond which the prediction is not valid. colours: of the
-    branches, in order. along: the parameter that varies along the branches.
+    Each branch is drawn up to its first fold, beyond which the prediction is not valid. colours:
+    colours of the branches, in order. along: the parameter that varies along the branches.
     """
     nearest = []
     farthest = []

@@ -40,8 +40,9 @@ from .style import number_in_tex as number_text
 
 @dataclass(frozen=True, slots=True)
 class ClassMap:
-    """What a map of classes shows. plane: the rectangle. classes: at the computed points, (rows, columns).
-    crushing_ratio: force divided by the force that crushes the rod, at every pixel, (pixels, pixels).
+    """What a map of classes shows. plane: the rectangle of the map. classes: class of the rod at each
+    computed point, (rows, columns). crushing_ratio: force divided by the force that crushes the rod, at every
+    pixel, (pixels, pixels).
     """
 
     plane: DrawnPlane

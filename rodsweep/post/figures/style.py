@@ -143,10 +143,15 @@ def varied_axes(view: View) -> list[str]:
     parameter, or more than two, have several values.
     """
     long = [name for name, values in view.parameter_values.items() if len(values) > 1]
-    if not 1 <= len(long) <= 2:
+    if not long:
         raise InputError(
-            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-            "figure needs one or two; --at, such as --at k1=150, selects one value of an axis"
+            f"{view.path}: every parameter has one value only; the figure needs one or two parameters with "
+            "several values"
+        )
+    if len(long) > 2:
+        raise InputError(
+            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long)}); a figure has "
+            "one or two; --at, such as --at k1=150, selects one value of an axis"
         )
     return long
 

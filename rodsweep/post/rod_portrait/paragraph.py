@@ -12,7 +12,7 @@ from ...results.layouts.limit_cycle import CYCLE_WORDS
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
-from ..summary.arm.validity import plane_lines, validity_sentence
+from ..summary.arm.validity_sentences import plane_lines, validity_sentence
 from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded_text

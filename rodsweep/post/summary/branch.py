@@ -224,5 +224,5 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     proved = count_of_total(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
         f"followed in {along} from {start:g} to {stop:g}{crushed}; the list of Hopf points "
-        f"{proof_clause(view)} at {proved}; cycles that lie on no branch from a Hopf point are not found"
+        f"{proof_clause(view)} for {proved}; cycles that lie on no branch from a Hopf point are not found"
     )

@@ -160,7 +160,7 @@ def _searched_range_line(view: View, done: np.ndarray) -> str:
     ends = v["F_end"][done]
     searched = f"searched up to F = {span_text(ends)}; " if np.isfinite(ends).any() else ""
     return (
-        f"{searched}the list of Hopf points {proof_clause(view)} at "
+        f"{searched}the list of Hopf points {proof_clause(view)} for "
         f"{count_of_total(certified, rods, 'rod')}{unstored_clause(hidden)}"
     )
 

@@ -71,7 +71,7 @@ def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarr
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE_ERROR * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
     if name in CYCLE_POWER_VARIABLES and "amplitude_error" in v:
-        return values * power_error(v, fluctuation=name.endswith("rms"))
+        return values * relative_power_error(v, fluctuation=name.endswith("rms"))
     if name in EXTREMA_VARIABLES and "extrema_error" in v:
         beside = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
         return v["extrema_error"] * v["tip_y_max"] + beside
@@ -84,7 +84,7 @@ def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarr
     return v[ABSOLUTE_ERRORS[name]] if ABSOLUTE_ERRORS.get(name, "") in v else np.zeros_like(values, float)
 
 
-def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
+def relative_power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
     """Relative error of the mean power of cycles, or of the rms fluctuation of the power if `fluctuation`. v:
     variables of the file, of equal shapes.
 

@@ -109,7 +109,7 @@ def _proof_lines(view: View) -> list[str]:
     if not lines:
         return []
     proved = count_of_total(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"the list of Hopf points between neighbouring points {proof_clause(view)} on {proved}"]
+    return [f"the list of Hopf points between neighbouring points {proof_clause(view)} for {proved}"]
 
 
 def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:

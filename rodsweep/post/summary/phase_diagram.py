@@ -143,7 +143,8 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
             text += f", {row} = {axis_values_text(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
-                text += f"; again on {least}{int(again.any(axis=-1).sum())} of these rows, {line} = {later}"
+                rows = f"{least}{int(again.any(axis=-1).sum())} of these rows"
+                text += f"; a second time or more on {rows}, at {line} = {later}"
             lines.append(text)
     flutter, unknown_class = (flag_number(word, CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & done[..., np.newaxis]

@@ -121,9 +121,10 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """Line on the largest number of unstable modes, and on the numbers of points at which the number is
-    proved (for arms that vary: counted by an estimate) or unknown. done: mask of the computed points, of the
-    shape of the points.
+    """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
+    the number of unstable modes is proved or, for rods that vary along their length, counted by an estimate;
+    the number of points at which it is unknown. done: mask of the computed points, of the shape of the
+    points.
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
@@ -131,7 +132,7 @@ def stability_line(view: View, done: np.ndarray) -> str:
         return "number of unstable modes: not known at any point"
     certified = int(view.variables["certified"][done].sum())
     how = "counted by an estimate" if estimates_counts(view.config) else "proved"
-    text = f"number of unstable modes: at most {int(unstable.max())}, {how} at "
+    text = f"largest number of unstable modes: {int(unstable.max())}; the number is {how} at "
     text += count_of_total(certified, points, "point")
     unknown = int((unstable < 0).sum())
     return text + (f", not known at {unknown}" if unknown else "")

@@ -193,10 +193,10 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
     proved = count_of_total(int(v["certified"][done].sum()), searches, noun)
-    window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
+    window = f"; a range stays undecided for {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"the list of crossings {proof_clause(view)} on {proved}{window}",
+        f"the list of crossings {proof_clause(view)} for {proved}{window}",
         f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
         f"{unstored_clause(hidden)}",
     ]

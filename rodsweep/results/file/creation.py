@@ -38,7 +38,7 @@ class Plan:
     coordinates: dict[str, Array]
     """Coordinates, (n,) each, of extra dimensions such as u, by name of the dimension. All other extra
     dimensions have the coordinates 1, 2, ..."""
-    config_variables: Callable[[], tuple[FilledVariable, ...]]
+    variables_from_config: Callable[[], tuple[FilledVariable, ...]]
     """Returns the variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
     """The resolved config."""
@@ -70,7 +70,7 @@ class Plan:
 def create_file(path: Path, plan: Plan) -> None:
     """Creates the file of a plan at `path`; all points are missing."""
     # Constants may need a solve: a process that MPI starts would inherit the open file with its lock.
-    constants = plan.config_variables()
+    constants = plan.variables_from_config()
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
         for name, extent in plan.layout.extents.items():

@@ -85,7 +85,7 @@ NEGLECTED_EFFECTS = (
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 VALIDITY_NOT_KNOWN = -1
-"""Value of the variable model_applies where the solver may have missed a motion."""
+"""Value of the variable model_applies where the solver may have missed an unstable mode or a cycle."""
 VALIDITY = (
     word(
         "model_applies",

@@ -77,8 +77,9 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables computed from all rows of a phase diagram together, including variables that the config does
-    not request. config: the resolved config. is_grid: not used.
+    """Variables computed from all rows of a phase diagram together: all variables of curves and of
+    criticality, requested by the config or not, and variables of Bautin curves along the parameters in
+    `phase_diagram.bautin_along` only. config: the resolved config. is_grid: not used.
     """
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)

@@ -14,7 +14,11 @@ import numpy as np
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, StepResult, advance
 from ..cycle.accuracy.cycle_verdict import RefinedCycle
-from ..cycle.accuracy.refinement import cycle_with_calibrated_errors, max_matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import (
+    allowed_matrix_distance,
+    cycle_with_calibrated_errors,
+    newton_tolerance,
+)
 from ..cycle.along_parameter import interpolated_change
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, relative_change
@@ -191,7 +195,7 @@ def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepR
     condition = start.arc_length_condition(length)
     predicted = start.predicted_orbit(length)
     tolerance = newton_tolerance(accuracy)
-    found = condition.solve_cycle(predicted, tolerance, start.workspace, max_matrix_distance(accuracy))
+    found = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
     if start.previous is None and off <= ARC_STEP_CONTROL.max_error:
         off = (

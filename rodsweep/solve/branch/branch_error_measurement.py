@@ -7,7 +7,8 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ..cycle.accuracy.calibration import MULTIPLIER_INDEX, Calibration, calibration_of
+from ..cycle.accuracy.calibration import Calibration, calibration_of
+from ..cycle.accuracy.cycle_errors import MULTIPLIER_INDEX
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.along_parameter import interpolated_change
 from ..orbit.measures import CyclePath

@@ -19,6 +19,7 @@ from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import Calibration
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
+from ..cycle.accuracy.mesh_choice import cheapest_mesh
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
@@ -121,11 +122,11 @@ class BranchCalibration:
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
         """The cheapest mesh for a `largest_weighted_error` within the accuracy, else the next finer mesh."""
-        return self._limiting_errors.cheapest_mesh(accuracy)
+        return cheapest_mesh(self._limiting_errors, accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
         """Like `cheapest_mesh`, for a relative accuracy of the parameter at equal deflection."""
-        return self._parameter_errors_only.cheapest_mesh(accuracy)
+        return cheapest_mesh(self._parameter_errors_only, accuracy)
 
     @cached_property
     def _limiting_errors(self) -> Calibration:

@@ -52,23 +52,23 @@ class CoexistenceRow:
 
 
 def solve_coexistence(
-    rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
+    rod: Rod, request: RowRequest, max_special_points: int, workspace: NewtonWorkspace | None = None
 ) -> CoexistenceRow:
     """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
     0 there is no cycle.
 
-    special: maximum number of stored special points. workspace: memory of Newton's matrices, as in
+    max_special_points: maximum number of stored special points. workspace: memory of Newton's matrices, as in
     `solve_branches`.
     """
     row = solve_row(rod, request)
-    branches = row_branches(rod, request, special, workspace)
+    branches = row_branches(rod, request, max_special_points, workspace)
     cycles = stable_cycles_at(request.values, branches, request.certify)
     forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
     states = stable_states(row.rod_class, cycles)
     undecided = request.values[(states == StableStates.undecided) & (row.rod_class != RodClass.undecided)]
-    status, message = _status_and_message_of_row(row, branches, special, undecided)
+    status, message = _status_and_message_of_row(row, branches, max_special_points, undecided)
     return CoexistenceRow(
         straight_rod_row=row,
         stable_states=states,
@@ -80,10 +80,10 @@ def solve_coexistence(
 
 
 def row_branches(
-    rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
+    rod: Rod, request: RowRequest, max_special_points: int, workspace: NewtonWorkspace | None = None
 ) -> BranchesOfRod:
-    """All branches of cycles that start at Hopf points of a row; special, workspace: as in
-    `solve_coexistence`."""
+    """All branches of cycles that start at Hopf points of a row. max_special_points: maximum number of stored
+    special points. workspace: memory of Newton's matrices, as in `solve_branches`."""
     asked = BranchRequest(
         along=request.parameter_name,
         start=float(request.values[0]),
@@ -91,7 +91,7 @@ def row_branches(
         accuracy=request.cycle_accuracy,
         certify=request.certify,
         cycles=BRANCH_SETTINGS.max_row_cycles,
-        special=special,
+        special=max_special_points,
     )
     return solve_branches(rod, asked, workspace)
 
@@ -111,16 +111,16 @@ def _undecided_values_text(name: str, values: Array) -> str:
 
 
 def _status_and_message_of_row(
-    row: DiagramRow, branches: BranchesOfRod, special: int, undecided: Array
+    row: DiagramRow, branches: BranchesOfRod, max_special_points: int, undecided: Array
 ) -> tuple[CoexistenceStatus, str]:
     """(status, message) of a row: status of the search for thresholds if this search has a problem,
-    otherwise status of the branches. special: maximum number of stored special points. undecided: parameter
-    values, (n,), at which the stable states are undecided because of the cycles."""
+    otherwise status of the branches. max_special_points: maximum number of stored special points. undecided:
+    parameter values, (n,), at which the stable states are undecided because of the cycles."""
     message = "; ".join(filter(None, [row.message, branches.message]))
     # The most serious problem first: without all thresholds of the straight rod, branches may be missing.
     if row.status is not ThresholdStatus.ok:
         return CoexistenceStatus[row.status.name], message
-    if len(special_points_of(branches)) > special:
+    if len(special_points_of(branches)) > max_special_points:
         return CoexistenceStatus.special_full, message
     if branches.status is BranchStatus.special_undecided:
         return CoexistenceStatus.special_undecided, message

@@ -7,7 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import cycle_with_calibrated_errors, max_matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import (
+    allowed_matrix_distance,
+    cycle_with_calibrated_errors,
+    newton_tolerance,
+)
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..unsolvable import Unsolvable
@@ -151,7 +155,7 @@ def solved_on_mesh(
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
     found = condition.solve_on_mesh(
-        mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), max_matrix_distance(accuracy)
+        mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
     )
     tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))
     known = point.derivatives

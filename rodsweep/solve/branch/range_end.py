@@ -3,7 +3,7 @@
 from numpy.polynomial import Polynomial
 
 from ..continuation.follower import zero_along_step
-from ..cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import (
@@ -117,7 +117,7 @@ def _solved_at_range_end(
     """The cycle near the orbit `predicted`, at about the arc length `length` from `start`, that fulfils the
     condition `range_end`; raises Unsolvable."""
     found = range_end.solve_cycle(
-        predicted, newton_tolerance(accuracy), start.workspace, max_matrix_distance(accuracy)
+        predicted, newton_tolerance(accuracy), start.workspace, allowed_matrix_distance(accuracy)
     )
     tangent = tangent_at(found.orbit, start.scale, start.unit_tangent, bordered_matrix_of(found))
     return branch_cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)

@@ -31,9 +31,9 @@ class Anchor:
     """A rod of a path, at path variable p, with its leading eigenvalues w and their slopes dw/dp,
     (ANCHOR_MODE_COUNT,) each.
 
-    relaxation_time: a relaxation time of the rod, smooth in p; the methods call it time.
-    relaxation_time_slope: d time/dp. The product w time is of order one; w alone grows without bound near
-    crushing for a rod that has neither shear nor rotational drag.
+    relaxation_time: a relaxation time tau of the rod, smooth in p. relaxation_time_slope: dtau/dp. The
+    product tau w is of order one; w alone grows without bound near crushing for a rod that has neither shear
+    nor rotational drag.
     """
 
     p: float
@@ -48,32 +48,32 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def squared_pair_difference(self) -> tuple[float, float] | None:
-        """Returns ((w1 - w2)^2 time^2, derivative of this product with respect to p) for the two leading
-        eigenvalues w1, w2; None if w1 is real and w2 is complex."""
+        """Returns (tau^2 (w1 - w2)^2, derivative of this product with respect to p), tau: `relaxation_time`,
+        for the two leading eigenvalues w1, w2; None if w1 is real and w2 is complex."""
         if self.oscillates:
-            gap, slope = self._in_units_of_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            gap, slope = self._times_relaxation_time(2 * self.w[0].imag, 2 * self.slope[0].imag)
             # (w1 - w2)^2 is negative for a pair, positive for two real eigenvalues, and smooth through 0.
             return -(gap**2), -2 * gap * slope
         if self.w[1].imag != 0:
             return None
-        gap, slope = self._in_units_of_time(
+        gap, slope = self._times_relaxation_time(
             (self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real
         )
         return gap**2, 2 * gap * slope
 
     def leading_growth_gap(self) -> tuple[float, float] | None:
-        """Returns (Re(w1 - w) time, derivative of this product with respect to p). w1: leading eigenvalue. w:
-        first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex; None if there is no
-        such w at this anchor."""
+        """Returns (tau Re(w1 - w), derivative of this product with respect to p), tau: `relaxation_time`. w1:
+        leading eigenvalue. w: first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex;
+        None if there is no such w at this anchor."""
         for i, w in enumerate(self.w[1:], 1):
             if (w.imag != 0) != self.oscillates:
                 return self.growth_gap(0, i)
         return None
 
     def gaps_to_next_two(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
-        """Returns ((r - (a + b)/2) time, ((r - a) (r - b)) time^2), each with its derivative with respect to
-        p. r: real part of the leading eigenvalue. a, b: the two eigenvalues after the leading eigenvalue or
-        pair; None unless a and b are both real or a complex pair.
+        """Returns (tau (r - (a + b)/2), tau^2 (r - a) (r - b)), each with its derivative with respect to p,
+        tau: `relaxation_time`. r: real part of the leading eigenvalue. a, b: the two eigenvalues after the
+        leading eigenvalue or pair; None unless a and b are both real or a complex pair.
 
         Both products are positive and smooth where a and b change between real and complex; r - a is not.
         """
@@ -87,29 +87,30 @@ class Anchor:
         product_slope = ((slope - slope_a) * (lead - b) + (lead - a) * (slope - slope_b)).real
         squared_time = self.relaxation_time**2, 2 * self.relaxation_time * self.relaxation_time_slope
         return (
-            self._in_units_of_time(lead - (a + b).real / 2, slope - (slope_a + slope_b).real / 2),
+            self._times_relaxation_time(lead - (a + b).real / 2, slope - (slope_a + slope_b).real / 2),
             (product * squared_time[0], product_slope * squared_time[0] + product * squared_time[1]),
         )
 
     def growth_gap(self, i: int, j: int) -> tuple[float, float]:
-        """Returns (Re(w - v) time, derivative of this product with respect to p) for the eigenvalues w and v
-        with the indices i and j."""
-        return self._in_units_of_time((self.w[i] - self.w[j]).real, (self.slope[i] - self.slope[j]).real)
+        """Returns (tau Re(w - v), derivative of this product with respect to p), tau: `relaxation_time`, for
+        the eigenvalues w and v with the indices i and j."""
+        return self._times_relaxation_time((self.w[i] - self.w[j]).real, (self.slope[i] - self.slope[j]).real)
 
     def growth_gap_of_mean(self) -> tuple[float, float]:
-        """Returns (Re((w1 + w2)/2 - w3) time, derivative of this product with respect to p) for the first
-        three eigenvalues w1, w2, w3."""
+        """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
+        `relaxation_time`, for the first three eigenvalues w1, w2, w3."""
         (first, first_slope), (second, second_slope) = self.growth_gap(0, 2), self.growth_gap(1, 2)
         return (first + second) / 2, (first_slope + second_slope) / 2
 
     def squared_frequency(self, i: int) -> tuple[float, float]:
-        """Returns ((Im w)^2 time^2, derivative of this product with respect to p) for w = `self.w[i]`."""
-        frequency, slope = self._in_units_of_time(self.w[i].imag, self.slope[i].imag)
+        """Returns (tau^2 (Im w)^2, derivative of this product with respect to p), tau: `relaxation_time`, for
+        w = `self.w[i]`."""
+        frequency, slope = self._times_relaxation_time(self.w[i].imag, self.slope[i].imag)
         return frequency**2, 2 * frequency * slope
 
-    def _in_units_of_time(self, value: float, slope: float) -> tuple[float, float]:
-        """Returns (value time, derivative of this product with respect to p) for a quantity `value` with
-        derivative `slope`; the factor `relaxation_time` preserves zeros and signs."""
+    def _times_relaxation_time(self, value: float, slope: float) -> tuple[float, float]:
+        """Returns (tau value, derivative of this product with respect to p) for a quantity `value` with the
+        derivative `slope`; the factor tau, the `relaxation_time`, preserves zeros and signs."""
         return float(value * self.relaxation_time), float(
             slope * self.relaxation_time + value * self.relaxation_time_slope
         )

@@ -29,10 +29,11 @@ from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.error_indicators import error_indicators
+from .accuracy.mesh_choice import cheapest_mesh
 from .accuracy.refinement import (
+    allowed_matrix_distance,
     cycle_with_calibrated_errors,
     cycle_with_measured_errors,
-    max_matrix_distance,
     newton_tolerance,
 )
 from .along_parameter import (
@@ -143,7 +144,7 @@ def _next_mesh_and_calibration(
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
         return present, known.with_outdated_errors
     share = inf if not fits else _max_cost_ratio(found, before, name)
-    planned = known.cheapest_mesh(accuracy) if share else present
+    planned = cheapest_mesh(known, accuracy) if share else present
     if share and planned.cost <= share * present.cost:
         return planned, known.with_outdated_errors
     return present, known
@@ -204,4 +205,4 @@ def _cycle_on_next_mesh(
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.predictor.on_mesh(target.coarser), form, name, tolerance, workspace)
         found = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
-    return with_matrix_within_distance(found, max_matrix_distance(accuracy), name)
+    return with_matrix_within_distance(found, allowed_matrix_distance(accuracy), name)

@@ -38,7 +38,7 @@ class Symmetry:
         must not change it."""
         return _cached_matrix(self, layout)
 
-    def apply_inverse(self, flow: Array, layout: StateLayout) -> Array:
+    def apply_inverse_to_flow(self, flow: Array, layout: StateLayout) -> Array:
         """S^-1 `flow`, (unknowns, unknowns). flow: derivative of x(T/p) with respect to x(0), (unknowns,
         unknowns)."""
         # S is orthogonal, so its transpose is its inverse.

@@ -63,7 +63,7 @@ class TransverseProblem(ABC):
         return finer_mesh(self.rod, mesh)
 
     @abstractmethod
-    def next_mesh_for(self, mesh: Any, waves: Array, accuracy: float) -> Any:
+    def finer_mesh_for_waves(self, mesh: Any, waves: Array, accuracy: float) -> Any:
         """The mesh to try after `mesh`. waves: wave numbers of the leading modes found, (modes,). accuracy:
         relative accuracy of the eigenvalues."""
 
@@ -113,7 +113,7 @@ class UniformProblem(TransverseProblem):
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave_number), accuracy)
 
-    def next_mesh_for(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
+    def finer_mesh_for_waves(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
         least the next finer mesh after `mesh`."""
         asked = resolution_for(float(waves.max()), accuracy)
@@ -150,7 +150,7 @@ class ArmProblem(TransverseProblem):
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
 
-    def next_mesh_for(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
+    def finer_mesh_for_waves(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
         """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 

@@ -111,7 +111,7 @@ class Search:
             ):
                 break
             waves = found.roots.wave_number[: self.modes]
-            self.mesh = self.problem.next_mesh_for(found.mesh, waves, self.accuracy)
+            self.mesh = self.problem.finer_mesh_for_waves(found.mesh, waves, self.accuracy)
         return self.best_spectrum()
 
     def check_candidates(self, found: Candidates) -> CheckedCandidates | None:
@@ -126,8 +126,8 @@ class Search:
                 self.requested_count += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
-        if self.needs_eigenvalues_beyond_axis(found):
-            self.request_beyond_axis(len(found.roots.w))
+        if self.count_needs_decaying_modes(found):
+            self.request_decaying_modes(len(found.roots.w))
             return None
         certify = self.request.certify
         comparison = compare_with_count(self.problem, found.roots, self.modes) if certify else None
@@ -165,14 +165,14 @@ class Search:
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_eigenvalues(more)
 
-    def needs_eigenvalues_beyond_axis(self, found: Candidates) -> bool:
+    def count_needs_decaying_modes(self, found: Candidates) -> bool:
         """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `found` grow. False
         if no count can succeed and `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
         if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
             return False
         return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
-    def request_beyond_axis(self, number: int) -> None:
+    def request_decaying_modes(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
         decaying modes; refines the mesh if fewer eigenvalues were found than requested."""
         self.is_leader_unresolved = True

@@ -3,8 +3,8 @@ neglects.
 
 The effects depend on the rate of the motion. Depending on the task, the rate is the frequency of the first
 Hopf point, of the leading oscillating mode, of the cycle, or of the mode that decays to no cycle. If nothing
-oscillates, only compression and weight are tested. If the solver may have missed a motion, the validity is
-not known, unless compression or weight exceeds its limit.
+oscillates, only compression and weight are tested. If the solver may have missed an unstable mode
+or a cycle, the validity is not known, unless compression or weight exceeds its limit.
 """
 
 from collections.abc import Callable, Iterable, Mapping

@@ -63,8 +63,8 @@ def criticality_record(
     criticalities: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
 ) -> list[FilledVariable]:
     """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
-    criticalities: in the order of the boundary curves. plane: (parameter along a row, parameter that differs
-    between rows). gamma1: axial drag of all rods.
+    criticalities: criticality of each boundary curve, in order. plane: (parameter along a row, parameter that
+    differs between rows). gamma1: axial drag of all rods.
     """
     rows = []
     start = 0
@@ -137,7 +137,7 @@ def _values_along_dimension(
     """Values of the variables in `declared` that have the dimension `dimension` and whose names begin with
     `prefix`.
 
-    rows: for each item along the dimension, the objects whose attributes are the values.
+    rows: one row for each item along the dimension, with the objects whose attributes are the values.
     """
     along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
     return value_lists(along, [outcome_values(along, *row, prefix=prefix) for row in rows])

@@ -170,7 +170,7 @@ def _plan(task: Task, resolved: dict[str, Any], layout: Layout) -> Plan:
         points=task.points,
         layout=layout,
         coordinates=task.coordinates(),
-        config_variables=task.config_variables,
+        variables_from_config=task.variables_from_config,
         variables_from_points=task.variables_from_points,
         config=resolved,
         attributes={},

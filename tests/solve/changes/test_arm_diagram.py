@@ -171,7 +171,7 @@ def test_a_diagram_of_rubber_says_that_counts_confirm_it(command):
     )
     assert command("run", "rubber.yaml").returncode == 0
     said = command("show", "rubber.h5").stdout
-    assert "is confirmed by counts of unstable modes on 2 of 2 rows" in said
+    assert "is confirmed by counts of unstable modes for 2 of 2 rows" in said
     assert "fold of the curve of Hopf points, where k1 is extremal: k1 = 366.4520346" in said
     assert "partial beam" not in said
     assert "crushed" not in said

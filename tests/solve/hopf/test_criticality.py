@@ -302,7 +302,7 @@ def test_numbers_of_one_rod_come_out_of_show(command):
     assert re.search(r"Im c, 1/\(tau2 L\^2\) +-387\.9588634", told)
     assert re.search(r"a, L +0\.5811406522\d* +\de-1\d", told)
     assert re.search(r"^k1 +200 +k3/L\^2", told, re.MULTILINE)  # a single value is printed once
-    assert "is proved complete at 1 of 1 rod" in told
+    assert "is proved complete for 1 of 1 rod" in told
 
 
 def test_show_counts_the_signs_of_many_rods_and_names_the_subcritical(command):

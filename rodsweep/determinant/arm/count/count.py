@@ -159,7 +159,8 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 
     box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
-    samples: of the arm, for the lengths over which D changes and for the dominant wave.
+    samples: samples of the arm's coefficients, which give the lengths over which D changes and the dominant
+    wave.
     """
     corners, largest = box
     side, t, total, nodes, here, growth, ahead, _ = walk
@@ -198,7 +199,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 @compiled
 def _serves_efficiently(W: float, needed: float) -> bool:
     """Whether propagators for |w| <= W are valid at |w| = `needed`, with W not much larger than necessary."""
-    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_largest_w)
+    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_W)
 
 
 @compiled

@@ -101,7 +101,7 @@ def proves_no_crossing(
     if height < top and radius > 0:
         try:
             arms = _arms_with_larger_w(
-                arms, rods, NO_CROSSING_SETTINGS.largest_w_factor * abs(complex(line, top))
+                arms, rods, NO_CROSSING_SETTINGS.W_reserve_factor * abs(complex(line, top))
             )
         except FloatingPointError:
             return False

@@ -107,8 +107,8 @@ class NoCrossingSettings(CompiledSettings):
     min_fitting_fraction: float = 0.25
     """If the largest |w| of the propagators allows only a disc below this fraction of the radius, propagators
     for larger |w| are made."""
-    largest_w_factor: float = 2.0
-    """Propagators are made for |w| up to this number times the largest |w| on the line inside the hull."""
+    W_reserve_factor: float = 2.0
+    """Propagators are made valid up to W, this number times the largest |w| on the line inside the hull."""
     radius_growth: float = 2.0
     """Radius of the first disc tried at a node, divided by the radius of the previous disc."""
     radius_divisor: float = 1.5

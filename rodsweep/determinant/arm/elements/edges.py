@@ -19,9 +19,10 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
     """Boundaries of elements for |w| <= W, increasing from 0 to 1. The elements between two breaks have equal
     integrals of `_elements_per_length`.
 
-    squares: of n arms as in `ArmSamples`, (4, n, points). tapers: (n,). points: midpoints of equal parts of
-    the intervals between breaks, (points,). breaks: of the profile, (pieces + 1,). If an interval needs more
-    than `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
+    squares: products of coefficients of n arms as in `ArmSamples`, (4, n, points). tapers: tapers of the
+    arms, (n,). points: midpoints of equal parts of the intervals between breaks, (points,). breaks: breaks of
+    the profile, (pieces + 1,). If an interval needs more than `max_elements` elements, or W is not finite,
+    max_elements + 1 boundaries are returned, all 0.
     """
     density = _elements_per_length(W, squares, tapers, points)
     pieces = len(breaks) - 1

@@ -27,12 +27,12 @@ class ArmElementSettings(CompiledSettings):
     max_halvings: int = 28
     """Maximum number of halvings of an element, down to 4e-9 of the first length. A factor that grows a
     million times between two rows has its pole a millionth of their distance away."""
-    min_largest_w: float = 16.0
-    """Smallest bound W of |w|; for smaller |w| the load and the taper, not w, determine the length of
-    elements."""
-    largest_w_factor: float = 1.1
-    """New elements are made for W = largest_w_factor |w|, so that they can be reused for slightly larger
-    |w|."""
+    min_W: float = 16.0
+    """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
+    not w, determine the length of elements."""
+    W_reserve_factor: float = 1.1
+    """New elements are valid up to W = W_reserve_factor |w|: the reserve allows their reuse for slightly
+    larger |w|."""
     max_reuse_ratio: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
@@ -53,7 +53,7 @@ class ArmElementSettings(CompiledSettings):
     max_cached_arms: int = 16
     """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
 
-    ranges: ClassVar = {"largest_w_factor": (1.0, math.inf)}
+    ranges: ClassVar = {"W_reserve_factor": (1.0, math.inf)}
 
     @property
     def width(self) -> int:

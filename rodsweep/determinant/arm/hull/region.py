@@ -28,7 +28,7 @@ class HullSettings(CompiledSettings):
     c_doubling_measure: float = 0.15
     """The smallest hull is chosen by the measure a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this
     c."""
-    constant_weights: int = 41
+    constant_weight_count: int = 41
     """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm, in
     addition to 1."""
     min_weight: float = 1e-3

@@ -36,17 +36,17 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
 
 @compiled
 def constant_weights(local: Array) -> Array:
-    """Constant weights alpha to try, (HULL_SETTINGS.constant_weights + 1,): from the smallest to the largest
-    |g/nu| along the arms, and 1.
+    """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): from the smallest to the
+    largest |g/nu| along the arms, and 1.
 
     local: coefficients, (6, n, pieces, points).
     """
     ratio = np.abs(local[5] / local[0])
     start = log(max(ratio.min(), HULL_SETTINGS.min_weight))
     stop = log(max(ratio.max(), 2 * HULL_SETTINGS.min_weight))
-    alphas = np.ones(HULL_SETTINGS.constant_weights + 1)
-    for k in range(HULL_SETTINGS.constant_weights):
-        alphas[k] = exp(start + (stop - start) * k / (HULL_SETTINGS.constant_weights - 1))
+    alphas = np.ones(HULL_SETTINGS.constant_weight_count + 1)
+    for k in range(HULL_SETTINGS.constant_weight_count):
+        alphas[k] = exp(start + (stop - start) * k / (HULL_SETTINGS.constant_weight_count - 1))
     return alphas
 
 

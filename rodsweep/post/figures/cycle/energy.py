@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ....results.file.view import View
-from ...summary.errors import power_error
+from ...summary.errors import relative_power_error
 from ...summary.ranges import rounded_text
 from ..arm.quantities import NO_BREAK
 from ..style import BLUE, GREEN, VERMILION, legend_below
@@ -49,7 +49,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     panels, rounded according to its error.
     """
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
-    error = power_error(cycle.values)
+    error = relative_power_error(cycle.values)
     mean = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
     unit = cycle.units.names[3]
     power = f"mean power ${mean}$" + (f"{NO_BREAK}{unit}" if unit else "")

@@ -64,8 +64,8 @@ def label_tip_axes(upper: Axes, lower: Axes, units: CycleUnits) -> None:
 
 
 def label_time_axes(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """Labels the lower time axis in the unit of the cycle, and adds an upper time axis in tau1 if the rod has
-    this time scale.
+    """Labels the time at the bottom of the panel `lower`, in the unit of the cycle. If the rod has the time
+    scale tau1, adds an axis with the time in tau1 at the top of the panel `upper`.
     """
     tau1 = cycle.tau1
     upper.tick_params(labelbottom=False)

@@ -12,7 +12,9 @@ EDGE_TOLERANCE = 1e-9
 
 
 def thin_ticks(figure: Figure) -> bool:
-    """Removes tick labels from all axes with overlapping labels; returns whether any label was removed."""
+    """Removes some tick labels, such as every second, from each axis whose labels overlap; returns whether
+    any label was removed.
+    """
     every = [*figure.axes, *(child for axes in figure.axes for child in axes.child_axes)]
     return any(
         [
@@ -35,8 +37,8 @@ def visible_labels(axis: Axis) -> list[Text]:
 
 
 def _remove_overlapping_labels(axis: Axis, way: int) -> bool:
-    """Removes tick labels of an axis if labels overlap; returns whether any label was removed. way: 0 for a
-    horizontal axis, 1 for a vertical axis.
+    """Removes some tick labels of an axis, such as every second, if its labels overlap; returns whether any
+    label was removed. way: 0 for a horizontal axis, 1 for a vertical axis.
     """
     shown = visible_labels(axis)
     boxes = [label.get_window_extent() for label in shown]

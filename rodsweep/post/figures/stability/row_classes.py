@@ -63,8 +63,8 @@ def classes_between_crossings(view: View, line: str, row: str) -> tuple[Array, A
 
 
 def _uncrushed_row(view: View, build: Build, line: str, index: int) -> tuple[float, float]:
-    """First and last value of `line` on a row at which the force does not crush the rod. build: of the rods.
-    index: index of the row."""
+    """First and last value of `line` on a row at which the force does not crush the rod. build: constitutive
+    law and profile of the rods. index: index of the row."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
     first, last = view.variables[line][[0, -1]].tolist()
     return uncrushed_interval(build, rod, (line, first, last))

@@ -14,7 +14,7 @@ from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
-from .validity import plane_lines, validity_sentence
+from .validity_sentences import plane_lines, validity_sentence
 
 Lines = list[str]
 """Lines of text."""

@@ -152,12 +152,13 @@ class BorderedMatrix:
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._stage_columns[:, :, 1], 0.0)
 
     def closing_right_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
-        """Right-hand sides, (m n,), of the closing conditions: the end of a shooting interval is the start of
-        the next shooting interval.
+        """Right-hand sides, (m n,), of the m closing conditions. A shooting interval must end where the next
+        interval starts, the last interval at the symmetric image of the first start.
 
-        jump: right-hand side of the last shooting interval, (n,). columns: eliminated right-hand sides of the
-        stages, (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a
-        fixed start, (1, n).
+        jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
+        other intervals have no jump, because the orbit has one state for the end of an interval and the start
+        of the next. columns: eliminated right-hand sides of the stages, (K, s, 1, n). ends: change of the end
+        of the last interval caused by `columns` for a fixed start, (1, n).
         """
         p = self.orbit.semidiscrete_equations
         sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]

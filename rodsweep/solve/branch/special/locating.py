@@ -223,10 +223,12 @@ def _zero_by_secants(
         step = -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
-        # A short step that is longer than half of the last step is rounding error.
+        # A short step that hardly decreased is rounding error.
         if (
             abs(step) <= enough
-            or last / 2 < abs(step) <= SPECIAL_POINT_SETTINGS.max_stalled_step * segment.length
+            or SPECIAL_POINT_SETTINGS.converging_step_ratio * last
+            < abs(step)
+            <= SPECIAL_POINT_SETTINGS.max_stalled_step * segment.length
         ):
             _, orbit, tangent = segment.last_solved_cycle
             change = step * tangent

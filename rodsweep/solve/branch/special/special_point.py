@@ -26,9 +26,12 @@ class SpecialPointSettings:
     gains two digits, and at a fold the error of the parameter is of second order in the test function."""
     max_secant_steps: int = 12
     """Maximum number of secant steps."""
+    converging_step_ratio: float = 0.5
+    """A small secant step, or a small change of a test function, of more than this number times its
+    predecessor is rounding error."""
     max_stalled_step: float = 1e-6
-    """The secant method stops if its step, divided by the step of the branch, is at most this number and has
-    not halved: the step is then rounding error."""
+    """The secant method stops if its step, divided by the step of the branch, is at most this number and more
+    than `converging_step_ratio` times the previous step."""
     max_linear_step: float = 1e-6
     """Longest last secant step, divided by the step of the branch. After the last step the cycle is moved
     along its tangent, not solved again. The relative error 1e-3 of the slope causes the error `secant_error`.

@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 
 from ....arrays import Array
-from ...cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
+from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath
@@ -142,7 +142,7 @@ class _WayFromSymmetry:
         mesh_accuracy = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
         mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(self.accuracy))
         first = condition.solve_on_mesh(
-            mesh, rough, newton_tolerance(self.accuracy), max_matrix_distance(self.accuracy)
+            mesh, rough, newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
         )
         scale = self.matrix.scale
         arc_from_start = abs(self._deflection_change(distance)) / scale.deflection_unit

@@ -8,7 +8,7 @@ parameter is unknown; this system is regular at the Hopf point too.
 import numpy as np
 
 from ....discretization.stress.form import StressForm
-from ...cycle.accuracy.refinement import max_matrix_distance, newton_tolerance
+from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...cycle.hopf_start import orbit_of_amplitude
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -96,7 +96,9 @@ def _cycle_of_amplitude(
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(accuracy))
-    first = condition.solve_on_mesh(mesh, rough, newton_tolerance(accuracy), max_matrix_distance(accuracy))
+    first = condition.solve_on_mesh(
+        mesh, rough, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
+    )
     arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, arc_from_start, accuracy)
 

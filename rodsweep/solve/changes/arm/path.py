@@ -46,8 +46,8 @@ class ArmPathSettings:
     max_growing_modes: float = 16.0
     """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
     followed."""
-    largest_w_factor: float = 4.0
-    """Largest |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
+    W_reserve_factor: float = 4.0
+    """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
     max_count_offset: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
@@ -89,7 +89,7 @@ class ArmPath(PathProblem):
     def ensure_family(self, low: float, high: float, largest_modulus: float) -> None:
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `largest_modulus`, if
         possible and if no stored family suffices."""
-        W = ARM_PATH_SETTINGS.largest_w_factor * largest_modulus
+        W = ARM_PATH_SETTINGS.W_reserve_factor * largest_modulus
         if any(
             one.p_low <= low and high <= one.p_high and largest_modulus * 2 <= one.largest_w
             for one in self._families

@@ -1,30 +1,26 @@
 """Calibration of a mesh: measured errors, reused for later cycles on the same mesh, and convergence rates.
 
 The convergence rate in space is estimated from the decay of the orbit's coefficients, the order in time from
-the number of stages; errors measured on two meshes give more accurate rates, from which the cheapest
-sufficient mesh follows. Along a chain of cycles the errors are measured at the first cycle on a mesh, and
-scaled up at later cycles as the coefficient tails of the orbits grow.
+the number of stages; errors measured on two meshes give more accurate rates. The cheapest sufficient mesh
+follows from the rates (`mesh_choice`). Along a chain of cycles the errors are measured at the first cycle on
+a mesh, and scaled up at later cycles as the coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace
-from math import ceil, inf
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from ....arrays import Array
 from ....determinant.exponents import EXPONENT_SETTINGS
-from ....discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
-from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
+from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.tails import tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
-from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors, largest_weighted_error
+from .cycle_errors import CycleErrors, errors_with_safety_factors
 from .error_growth import error_growth_factors, indicator_growth, squared_tail_growth, tails_and_size
 
-MULTIPLIER_INDEX = 4
-"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
 ERROR_COUNT = 5
 """Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""
 
@@ -126,67 +122,16 @@ class Calibration:
         in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
         times as much as its tail."""
         in_space, in_time = self.error_growth
-        stated = _errors_with_safety_factors(
+        stated = errors_with_safety_factors(
             self.space_errors * in_space, self.time_errors * in_time, accuracy
         )
         larger = float(self.error_growth.max())
-        stated[2:] = _errors_with_safety_factors(
+        stated[2:] = errors_with_safety_factors(
             self.space_errors * larger, self.time_errors * larger, accuracy
         )[2:]
         # Extrema other than the largest y lie between time nodes.
         stated[2] *= max(self.extrema_growth / larger, 1.0)
         return CycleErrors(*stated.tolist())
-
-    def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh with the present elements and stages for which the convergence rates predict
-        errors within a fraction of the relative accuracy; the next finer mesh if no such mesh is allowed."""
-        present = self.mesh
-        allowed = ORBIT_MESH_SETTINGS
-        lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_order_decrease)
-        highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION_SETTINGS.max_order_increase)
-        orders = np.arange(lowest, highest + 1)
-        fewest = max(
-            allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * present.interval_count)
-        )
-        most = min(CALIBRATION_SETTINGS.max_interval_ratio * present.interval_count, allowed.max_intervals)
-        intervals = np.arange(fewest, most + 1)
-        # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
-        # than the distance of the tip's paths, and errors in time with the smallest order.
-        least = np.minimum(self.space_decay, self.space_decay[PATH_INDEX])
-        fall = np.where(orders < present.order, self.space_decay[:, None], least[:, None])
-        space = self.space_errors[:, None] * np.exp(fall * (present.order - orders))
-        power = np.where(
-            intervals < present.interval_count, self.time_order[:, None], present.stage_count + 1
-        )
-        time = self.time_errors[:, None] * (present.full_intervals / (intervals - 1)) ** power
-        errors = _errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-        enough = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error_ratio * accuracy
-        meshes = [
-            replace(present, order=int(orders[i]), interval_count=int(intervals[np.argmax(enough[i])]))
-            for i in np.flatnonzero(enough.any(axis=1))
-        ]
-        return min(meshes, key=lambda mesh: mesh.cost, default=present.finer)
-
-
-def _errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
-    """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
-    safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
-    whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
-    apart = space[PATH_INDEX] + time[PATH_INDEX]
-    in_time = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
-    parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
-    either = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
-    of_period = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + in_time
-    of_height = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + in_time
-    stated = [
-        np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
-        np.maximum(np.maximum(whole[Y_INDEX], of_height), either),
-        np.maximum(whole[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * apart),
-        whole[MULTIPLIER_INDEX],
-    ]
-    least = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
-    errors: Array = np.maximum(np.array(stated), least)
-    return errors
 
 
 def calibration_of(

@@ -2,9 +2,9 @@
 largest nontrivial Floquet multiplier.
 
 Errors are measured in `finer_meshes`, as differences between the cycles on the mesh and on two finer meshes,
-or predicted in `coarser_meshes`. `calibration` scales them to later cycles and applies safety factors and
-lower limits; the factors are in `calibration_settings`. The errors of integrated cycles come from
-`integration_errors`.
+or predicted in `coarser_meshes`, and `calibration` scales them to later cycles. Then
+`errors_with_safety_factors` applies safety factors and lower limits, with the factors of
+`calibration_settings`. The errors of integrated cycles come from `integration_errors`.
 """
 
 from dataclasses import dataclass
@@ -13,12 +13,17 @@ from math import nan
 import numpy as np
 
 from ....arrays import Array
+from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
+from .calibration_settings import CALIBRATION_SETTINGS
+
+MULTIPLIER_INDEX = 4
+"""Index of the error of the largest nontrivial multiplier in the error arrays of a calibration."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleErrorSettings:
-    """Settings for the smallest error estimates of a cycle (applied in `calibration`), and for the error that
-    is compared with the accuracy."""
+    """Settings for the smallest error estimates of a cycle (applied in `errors_with_safety_factors`), and for
+    the error that is compared with the accuracy."""
 
     rounding_error: float = 2e-14
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
@@ -60,6 +65,27 @@ def largest_weighted_error(period: Array | float, amplitude: Array | float, extr
         np.maximum(period, amplitude), np.asarray(extrema) / CYCLE_ERROR_SETTINGS.extrema_tolerance_ratio
     )
     return largest
+
+
+def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
+    """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
+    safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
+    whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
+    apart = space[PATH_INDEX] + time[PATH_INDEX]
+    in_time = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
+    parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
+    either = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
+    of_period = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + in_time
+    of_height = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + in_time
+    stated = [
+        np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
+        np.maximum(np.maximum(whole[Y_INDEX], of_height), either),
+        np.maximum(whole[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * apart),
+        whole[MULTIPLIER_INDEX],
+    ]
+    least = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
+    errors: Array = np.maximum(np.array(stated), least)
+    return errors
 
 
 UNKNOWN_ERRORS = CycleErrors(nan, nan, nan, nan)

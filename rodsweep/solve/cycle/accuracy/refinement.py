@@ -28,6 +28,7 @@ from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
 from .finer_meshes import measured_calibration
+from .mesh_choice import cheapest_mesh
 from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refinement_settings import REFINEMENT_SETTINGS
 
@@ -131,7 +132,7 @@ def _predicted_cycle(
         # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh = finer_mesh(mesh, known.cheapest_mesh(accuracy))
+        mesh = finer_mesh(mesh, cheapest_mesh(known, accuracy))
         last = REFINEMENT_SETTINGS.max_error_increase * error
         if not mesh.is_allowed:
             break
@@ -171,7 +172,7 @@ def cycle_with_measured_errors(
         if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > last:
             break
         last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
-        finer = finer_mesh(before.mesh, before.cheapest_mesh(accuracy))
+        finer = finer_mesh(before.mesh, cheapest_mesh(before, accuracy))
         if not finer.is_allowed:
             break
         found = _solve_on_mesh(finer, found, accuracy, parameter)
@@ -239,10 +240,10 @@ def newton_tolerance(accuracy: float) -> float:
     )
 
 
-def max_matrix_distance(accuracy: float) -> float:
+def allowed_matrix_distance(accuracy: float) -> float:
     """Largest relative distance between a cycle and the orbit at which the matrix of the cycle was assembled,
     for multipliers and tangent of the relative accuracy `accuracy`; between `min_matrix_distance` and
-    `max_matrix_distance`."""
+    `max_matrix_distance` of `REFINEMENT_SETTINGS`."""
     return min(
         max(REFINEMENT_SETTINGS.matrix_distance_ratio * accuracy, REFINEMENT_SETTINGS.min_matrix_distance),
         REFINEMENT_SETTINGS.max_matrix_distance,

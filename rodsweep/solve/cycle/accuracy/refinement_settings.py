@@ -18,10 +18,10 @@ class RefinementSettings:
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers, divided by
     the accuracy."""
     min_matrix_distance: float = 1e-7
-    """Lower limit of the relative distance that `max_matrix_distance` of `refinement` returns: multipliers
-    need no more digits."""
+    """Lower limit of the relative distance that `allowed_matrix_distance` returns: multipliers need no more
+    digits."""
     max_matrix_distance: float = 1e-5
-    """Upper limit of the relative distance that `max_matrix_distance` of `refinement` returns."""
+    """Upper limit of the relative distance that `allowed_matrix_distance` returns."""
     multiplier_error_factor: float = 10.0
     """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
     cycle and the orbit at which the matrix was assembled, and the error of the trivial multiplier."""

@@ -93,7 +93,7 @@ class ShootingIntervals:
             )
             start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
             triangle = np.eye(start.shape[1])
-            for A in (*others, orbit.symmetry.apply_inverse(last, orbit.form.layout)):
+            for A in (*others, orbit.symmetry.apply_inverse_to_flow(last, orbit.form.layout)):
                 ahead, R = np.linalg.qr(A @ ahead)
                 triangle = R @ triangle
         # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.

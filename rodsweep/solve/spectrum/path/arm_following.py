@@ -74,7 +74,7 @@ def _converged_step_and_error(
 
 
 @compiled
-def two_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
+def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     h = DETERMINANT_SETTINGS.second_difference_step * abs(middle)
@@ -175,7 +175,7 @@ def follow_eigenvalues_of_arms(
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    set_two_guesses(track.w[i - 1], two, two_roots_of_arm(guess[k], level), guess)
+                    set_two_guesses(track.w[i - 1], two, taylor_parabola_roots_of_arm(guess[k], level), guess)
             track.descending_order[i] = track.descending_order[i - 1]
         if not _refine_all_eigenvalues(track, i, guess, modes, level):
             return i

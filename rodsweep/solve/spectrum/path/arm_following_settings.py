@@ -18,13 +18,13 @@ class ArmFollowingSettings:
     counts follow, and more modes would prove a further point."""
     min_unproved_points: int = 64
     """Minimum number of points without a proof for which hulls are computed at more arms."""
-    hull_arms_for_unproved: int = 49
-    """Number of arms at which hulls are computed again, if at least `min_unproved_points` points have no
-    proof."""
-    largest_w_factor: float = 2.0
-    """The propagators of a new family are valid at least up to W = `largest_w_factor` * (largest |w| at the
+    computed_hulls_for_unproved: int = 49
+    """Number of hulls computed in an interval, instead of `computed_hulls_per_interval`, if at least
+    `min_unproved_points` points have no proof."""
+    W_reserve_factor: float = 2.0
+    """The propagators of a new family are valid at least up to W = `W_reserve_factor` * (largest |w| at the
     first point)."""
-    min_reused_w_factor: float = 1.25
+    min_reused_W_factor: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""
     max_points_growth: int = 2
@@ -39,9 +39,9 @@ class ArmFollowingSettings:
     steps_from_nearest: tuple[int, ...] = (1, 4)
     """Eigenvalues at a path variable p are followed from the nearest solved point in this number of equal
     steps; the numbers are tried in turn."""
-    hull_arms: int = 13
-    """Number of arms of an interval at which hulls are computed; the hulls of all other arms are
-    interpolated."""
+    computed_hulls_per_interval: int = 13
+    """Number of hulls computed in an interval of the path, at equally spaced arms; the hulls of all other
+    arms are interpolated."""
 
 
 ARM_FOLLOWING_SETTINGS = ArmFollowingSettings()

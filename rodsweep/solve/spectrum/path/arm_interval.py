@@ -148,7 +148,7 @@ def _follow_with_further_modes(
         inside = int(((p >= before.family.p_low) & (p <= before.family.p_high)).sum())
         if (
             inside >= ARM_FOLLOWING_SETTINGS.min_points
-            and ARM_FOLLOWING_SETTINGS.min_reused_w_factor * np.abs(first).max() <= before.family.largest_w
+            and ARM_FOLLOWING_SETTINGS.min_reused_W_factor * np.abs(first).max() <= before.family.largest_w
         ):
             made = (before.family, before.hulls)
             n = inside
@@ -191,17 +191,17 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     try:
         if not has_smooth_coefficients(path, low, high):
             return None
-        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hull_arms)
+        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.computed_hulls_per_interval)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
-        W = ARM_FOLLOWING_SETTINGS.largest_w_factor * float(np.abs(first).max())
-        line = min(ARM_FOLLOWING_SETTINGS.largest_w_factor * float(first[modes - 1].real), 0.0)
+        W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first).max())
+        line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
             for k in COMPLETENESS_SETTINGS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
-        near = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.largest_w_factor * W]
+        near = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.W_reserve_factor * W]
         family = interpolated_family(path, low, high, max([W, *near]))
     except (ValueError, FloatingPointError):
         return None

@@ -14,9 +14,8 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.exponents import ROUND_OFF
 from ....determinant.parameter_path import PathDeterminantValue, determinant_along_path
-from ....determinant.roots.newton import ROOT_NEWTON_SETTINGS
-from ....determinant.roots.roots import sort_descending, two_roots
-from ....determinant.roots.settings import ROOT_SETTINGS
+from ....determinant.roots.roots import sort_descending, taylor_parabola_roots
+from ....determinant.roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ....determinant.value import DETERMINANT_SETTINGS
 from ....model.compiled.compilation import compiled
 from ....model.compiled.settings import CompiledSettings
@@ -233,7 +232,7 @@ def follow_eigenvalues(
             for k in range(len(guess)):
                 if decided[k] >= 0:
                     two = (k, decided[k])
-                    set_two_guesses(track.w[i - 1], two, two_roots(guess[k], rod), guess)
+                    set_two_guesses(track.w[i - 1], two, taylor_parabola_roots(guess[k], rod), guess)
             track.descending_order[i] = track.descending_order[i - 1]
         if not _refine_all_eigenvalues(track, i, guess, modes, rod, direction):
             return i

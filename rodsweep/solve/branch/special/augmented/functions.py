@@ -41,8 +41,8 @@ class AugmentedSettings:
     """A new matrix is assembled if the ratio of the sizes of successive corrections exceeds this number."""
     rounding_correction: float = 1e-8
     """The iteration stops if a correction has at most this relative size but is not much smaller than the
-    previous correction (ratio above `max_correction_ratio`; above 1/2 for a test function at a fixed cycle):
-    the correction is then rounding error."""
+    previous correction (ratio above `max_correction_ratio`; for a test function at a fixed cycle, above
+    `converging_step_ratio` of `SPECIAL_POINT_SETTINGS`): the correction is then rounding error."""
     max_corrections: int = 30
     """Maximum number of corrections of one cycle."""
     inverse_iteration_shift: float = 1e-9
@@ -172,7 +172,8 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
         value = function.value(orbit)
         change = abs(value - before)
         if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
-            change > last / 2 and change <= AUGMENTED_SETTINGS.rounding_correction
+            change > SPECIAL_POINT_SETTINGS.converging_step_ratio * last
+            and change <= AUGMENTED_SETTINGS.rounding_correction
         ):
             return
         if change > last:

@@ -1,4 +1,4 @@
-"""Options of the command `run`."""
+"""Request for a run: part of the points, overrides of the config, and options of `rodsweep run`."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,9 @@ from ...sweep.points.ranges import Shard
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """Options of the command `rodsweep run`, as given on the command line."""
+class RunRequest:
+    """Request for a run, as given by the options of `rodsweep run`; defaults of the command are set in
+    `rodsweep.cli.command_line`."""
 
     overrides: tuple[str, ...] = ()
     """Texts KEY=VALUE of the options --set, which override keys of the config."""

@@ -14,6 +14,11 @@ OTHER_PLANE = (
 )
 """Warning for a rectangular section whose height exceeds its width."""
 
+MISSED_MOTION = (
+    "an unstable mode or a cycle may have been missed, and the neglected effects depend on its frequency"
+)
+"""Reason why it is not known whether the model applies."""
+
 
 def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
     """List with the warning OTHER_PLANE if some arm is higher than wide, and flutters first in the plane that
@@ -44,7 +49,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     unknown = applies == VALIDITY_NOT_KNOWN
     if unknown.all():
         where = f" at all {len(applies)} points" if len(applies) > 1 else ""
-        return f"whether the model applies is not known{where}{when}: a motion may have been missed"
+        return f"whether the model applies is not known{where}{when}: {MISSED_MOTION}"
     rest = (
         f"; not known at {count_of_total(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
     )
