@@ -64,8 +64,11 @@ class BranchConfig(Config):
     task: Literal["branch"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
-    """Relative error of each cycle's period and largest y. Special points are located to the smaller of
-    `accuracy` and 1e-9. The file has error estimates of all these numbers."""
+    """Relative error of the parameter of each cycle at a given deflection, and of its period and largest y at
+    the stored parameter p. Where the largest y is steep, |(p/y) dy/dp| > 100 as near Hopf points and folds,
+    the errors of period and largest y are larger in proportion. Special points are located to the smaller of
+    `accuracy` and 1e-9. The file has error estimates of all these numbers. Cycles without mirror symmetry are
+    solved to 1e-4 at least, cycles of rods close to a generalised Hopf point to 1e-6."""
     branch: BranchOptions = BranchOptions()
 
     parameters_depend_on_options: ClassVar[bool] = True
