@@ -1,4 +1,4 @@
-"""The first cycle of a branch without mirror symmetry."""
+"""First cycles of branches: folds close to the point where a branch begins or ends."""
 
 from dataclasses import replace
 
@@ -10,8 +10,9 @@ from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.following import follow_asymmetric_branch, follow_branch
-from rodsweep.solve.branch.special.special_point import EndReason
+from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
+from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.branch.symmetry import symmetry_breakings_in
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -44,3 +45,23 @@ def test_cycles_of_low_accuracy_are_not_the_symmetric_cycles_nearby(accuracy):
     fold = curve.special_points[1]
     assert abs(fold.at - 7.9124780687) <= fold.error + 1e-9 < 1e-6
     assert all(abs(p.measures.tip_y_max / p.measures.tip_y_min + 1) > 1e-2 for p in curve.points)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-6])
+@pytest.mark.parametrize(
+    "rod, stop, F",
+    [
+        (Rod(F=0.0, k1=104.055, k2=1e4, gamma3=0.1), 45.0, 41.25649642772),
+        (Rod(F=0.0, k1=149.618, k2=1e4, gamma3=1e-4), 149.0, 84.48191505790),
+    ],
+    ids=["begins", "ends"],
+)
+def test_a_fold_close_to_a_hopf_point_is_found_beside_a_generalised_hopf_point(rod, stop, F, accuracy):
+    """Close to the generalised Hopf points at k1 = 104.05793 and 149.61689. Folds by branches at 1e-8; an own
+    collocation code finds one fold of the first rod near its largest y of 0.0054."""
+    found = solve_branches(rod, BranchRequest("F", 0.0, stop, accuracy, True, 500, 50))
+    folds = [point for point in found.curves[0].special_points if point.kind == SpecialKind.fold]
+    assert found.status == BranchStatus.ok
+    assert len(folds) == 1
+    assert abs(folds[0].at - F) <= folds[0].error + 1e-10 < 1e-8

@@ -37,8 +37,12 @@ class BranchStartSettings:
     max_amplitude_coefficient: float = 3.0
     """Close to a generalised Hopf point, where the amplitude coefficient |a| of a Hopf point is larger than
     this number, in L, a coarse mesh moves or invents folds."""
-    max_accuracy_if_degenerate: float = 1e-6
-    """Largest relative accuracy of the cycles of a rod that has such a Hopf point."""
+    max_accuracy_if_degenerate: float = 5e-7
+    """Largest relative accuracy of the cycles of a rod with such a Hopf point, at |a| =
+    `max_amplitude_coefficient`. It falls with 1/a^2, as the depth of the fold beside the Hopf point does."""
+    min_accuracy_if_degenerate: float = 1e-8
+    """The accuracy that a large |a| asks for is at least this number. For ten rods at distances of 1e-7 to
+    1e-3 from a generalised Hopf point no fold is invented, and folds deeper than 1e-11 of F are found."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
@@ -157,7 +161,9 @@ def accuracy_beside_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: floa
     largest = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
     if not largest > BRANCH_START_SETTINGS.max_amplitude_coefficient:
         return accuracy
-    return min(accuracy, BRANCH_START_SETTINGS.max_accuracy_if_degenerate)
+    ratio = (BRANCH_START_SETTINGS.max_amplitude_coefficient / largest) ** 2
+    needed = BRANCH_START_SETTINGS.max_accuracy_if_degenerate * ratio
+    return min(accuracy, max(needed, BRANCH_START_SETTINGS.min_accuracy_if_degenerate))
 
 
 def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
