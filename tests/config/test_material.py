@@ -163,7 +163,10 @@ def test_show_and_files_say_what_rests_on_an_estimate(command):
             with h5py.File(command.directory / f"{name}.h5") as file:
                 meaning = file["certified"].attrs["long_name"]
             said[name, task] = command("show", f"{name}.h5").stdout + meaning
-    assert "at most 2, counted by an estimate at 2 of 2 points" in said["cone", "spectrum"]
+    assert (
+        "largest number of unstable modes: 2; the number is counted by an estimate at 2 of 2 points"
+        in said["cone", "spectrum"]
+    )
     assert "not located between the forces of the file" in said["cone", "spectrum"]
     assert "the proof is partly an estimate" in said["cone", "spectrum"]
     for name in ("rubber", "plain"):
