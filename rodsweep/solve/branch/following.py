@@ -34,7 +34,9 @@ def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
     hopf = limits.hopfs[number]
     curve = BranchCurve(start_hopf=number)
     curve.add_special_point(hopf_as_special_point(hopf))
-    return _follow_to_end(curve, limits, lambda: first_cycle(hopf, limits.accuracy, limits.workspace))
+    return _follow_to_end(
+        curve, lambda: (first_cycle(hopf, limits.accuracy, limits.workspace), limits), limits
+    )
 
 
 def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
@@ -46,21 +48,24 @@ def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> Bra
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
 
-    def first() -> BranchCycle:
+    def first() -> tuple[BranchCycle, BranchLimits]:
         unit = limits.min_coordinate_unit
-        return first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace, unit)
+        start, accuracy = first_asymmetric_cycle(breaking, name, limits.accuracy, limits.workspace, unit)
+        return start, replace(limits, accuracy=accuracy)
 
-    return _follow_to_end(curve, limits, first)
+    return _follow_to_end(curve, first, limits)
 
 
-def _follow_to_end(curve: BranchCurve, limits: BranchLimits, first: Callable[[], BranchCycle]) -> BranchCurve:
+def _follow_to_end(
+    curve: BranchCurve, first: Callable[[], tuple[BranchCycle, BranchLimits]], limits: BranchLimits
+) -> BranchCurve:
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
-    solves the first cycle."""
+    solves the first cycle and returns it with the limits of the branch."""
     if limits.max_cycles < 1:
         curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
         return curve
     try:
-        start = first()
+        start, limits = first()
     except Unsolvable as why:
         curve.end(BranchEnd(_end_without_cycle(curve, reason_of_failure(why), str(why)), complete=False))
         return curve

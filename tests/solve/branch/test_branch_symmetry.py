@@ -111,7 +111,7 @@ def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmet
 
 def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
-    here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
+    here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_cycle(here, ROUGH).orbit
     p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.node_count
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknown_count)
@@ -137,7 +137,7 @@ def turned_back(here):
 
 
 def test_followed_back_the_branch_ends_where_it_was_born(known):
-    here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
+    here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
         here = next_cycle(here, ROUGH)
     curve = follow_from_cycle(
@@ -161,7 +161,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
-    here = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
+    here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
     assert curve.special_points[-1].reason == EndReason.no_cycle_found

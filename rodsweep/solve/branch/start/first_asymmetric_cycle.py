@@ -5,7 +5,7 @@ parameter is an even function of t, p0 + A t^2 + B t^4. If A and B have opposite
 at t^2 = -A/(2B). The first cycle lies before such a fold, so that the fold is found on a later step.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
@@ -42,6 +42,9 @@ class AsymmetricStartSettings:
     rate_tolerance: float = 1e-9
     """Tolerance of Newton's method for the cycles whose parameter rates show a fold before the first
     cycle."""
+    max_accuracy_beside_fold: float = 1e-6
+    """Largest relative accuracy of the cycles of a branch with a fold before the first cycle. On a coarser
+    mesh the fold may be missing: at 1e-5 one that is 7e-7 below the symmetry breaking."""
     share_of_fold: float = 0.5
     """If the branch has a fold before the first cycle, the asymmetry of the first cycle is reduced to this
     fraction of the asymmetry at the fold."""
@@ -56,10 +59,11 @@ def first_asymmetric_cycle(
     accuracy: float,
     workspace: NewtonWorkspace,
     min_coordinate_unit: float = 0.0,
-) -> BranchCycle:
-    """The first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`, to a
-    relative accuracy; raises Unsolvable. The tip's y reaches a larger maximum than on the mirror image.
-    min_coordinate_unit: as in `ArcLengthScale`."""
+) -> tuple[BranchCycle, float]:
+    """Returns (the first asymmetric cycle of the branch from a symmetry breaking along the parameter `name`,
+    its relative accuracy): `accuracy`, or a smaller one if a fold lies close to the symmetry breaking. Raises
+    Unsolvable. The tip's y reaches a larger maximum than on the mirror image. min_coordinate_unit: as in
+    `ArcLengthScale`."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = extended_to_whole_period(breaking.special_point.orbit)
@@ -75,7 +79,11 @@ def first_asymmetric_cycle(
     chosen = max(ways, key=lambda one: CyclePath(one.predicted_orbit(near)).extrema["tip_y_max"])
     for distance in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
         try:
-            return chosen.first_cycle(chosen.distance_before_fold(distance))
+            before_fold = chosen.distance_before_fold(distance)
+            if before_fold < distance:
+                finer = min(accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy_beside_fold)
+                chosen = replace(chosen, accuracy=finer)
+            return chosen.first_cycle(before_fold), chosen.accuracy
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
