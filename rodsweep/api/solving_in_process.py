@@ -89,7 +89,7 @@ def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
     from ..solve.backend import petsc
 
     return {
-        "petsc_options": petsc.options_text(),
+        "petsc_options": petsc.user_options_text(),
         "ranks": 1,
         "hosts": socket.gethostname(),
         "started": started,

@@ -112,7 +112,8 @@ class Axes(LinearAxes):
 
     @property
     def single_parameter_sizes(self) -> dict[str, int]:
-        """Number of values on each axis along which a single parameter changes, by name of the parameter."""
+        """Number of values on each axis along which a single parameter changes, by name of the parameter. An
+        axis of an arm that changes several parameters, such as its length, is left out."""
         if self.arm is None or not self.arm_axes:
             return {name: axis.size for name, axis in self.axes.items()}
         given = self.arm.quantity_axes | self.given_axes

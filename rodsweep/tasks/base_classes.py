@@ -1,4 +1,4 @@
-"""Base classes of tasks: `CertifiedTask` of tasks with a certificate, `NonlinearTask` of tasks on cycles."""
+"""Base classes of tasks: `CertifiedTask` of tasks with a certificate, `HopfPointTask` of tasks on cycles."""
 
 from abc import abstractmethod
 from dataclasses import dataclass
@@ -98,8 +98,8 @@ class CertifiedTask(Task):
 
 
 @dataclass(frozen=True, slots=True)
-class NonlinearTask(CertifiedTask):
-    """Base class of tasks on cycles: near Hopf points, or on branches from Hopf points."""
+class HopfPointTask(CertifiedTask):
+    """Base class of the tasks criticality and branch, which start from the Hopf points of a rod."""
 
     uncertified_risk: ClassVar[str] = "Hopf points may be missed"
     never_modelled: ClassVar[tuple[str, str]] = (

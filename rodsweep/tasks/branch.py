@@ -11,7 +11,7 @@ from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate
-from .base_classes import NonlinearTask
+from .base_classes import HopfPointTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class BranchTask(NonlinearTask):
+class BranchTask(HopfPointTask):
     """The task branch: branches of cycles of every rod, with their special points."""
 
     config: BranchConfig

@@ -9,7 +9,7 @@ from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate, criticality_cost
-from .base_classes import NonlinearTask
+from .base_classes import HopfPointTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class CriticalityTask(NonlinearTask):
+class CriticalityTask(HopfPointTask):
     """The task criticality: Hopf points of every rod and their normal forms."""
 
     config: CriticalityConfig

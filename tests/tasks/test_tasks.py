@@ -29,7 +29,7 @@ from rodsweep.solve.continuation.boundaries import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
-from rodsweep.tasks.diagram.curve_variables import cycle_curve_record
+from rodsweep.tasks.diagram.curve_variables import cycle_curve_values
 from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
 
@@ -335,7 +335,7 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     curve = SpecialPointCurve(
         SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
     )
-    filled = cycle_curve_record(
+    filled = cycle_curve_values(
         Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
@@ -353,7 +353,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEnd.edge,) * 2, (None, None))
-    filled = cycle_curve_record(
+    filled = cycle_curve_values(
         Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
     nan = float("nan")

@@ -33,7 +33,7 @@ class Circle:
 
     @property
     def face_area(self) -> float:
-        """Area A on which a pressure acts, in m^2."""
+        """Area A of the face of the tip, on which a pressure acts, in m^2."""
         return self.area
 
     @property
@@ -81,7 +81,7 @@ class Tube:
 
     @property
     def face_area(self) -> float:
-        """Area on which a pressure acts, pi a^2, in m^2, because the tip is closed."""
+        """Area of the face of the tip, on which a pressure acts: pi a^2, in m^2, as the tip is closed."""
         return pi * self.radius**2
 
     @property
@@ -131,7 +131,7 @@ class Rectangle:
 
     @property
     def face_area(self) -> float:
-        """Area A on which a pressure acts, in m^2."""
+        """Area A of the face of the tip, on which a pressure acts, in m^2."""
         return self.area
 
     @property

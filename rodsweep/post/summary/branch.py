@@ -15,7 +15,7 @@ from .ranges import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
 
-FULL_LIST_REASON = "the list of special points is full; raise branch.special"
+LIST_IS_FULL_REASON = "the list of special points is full; raise branch.special"
 """Reason for which branches are not shown, and remedy."""
 COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
@@ -67,9 +67,9 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     v = rod.view.variables
     if rod.hidden_count:
         part = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
-        yield f"{part} {is_or_are(rod.hidden_count)} not shown: {FULL_LIST_REASON}"
+        yield f"{part} {is_or_are(rod.hidden_count)} not shown: {LIST_IS_FULL_REASON}"
     elif v["branch_count"].max() < 0:
-        yield "the branches of this rod are not known"
+        yield "the branches of this rod are not known: its solve failed"
     elif not rod.curves:
         [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
         if not low < high:
@@ -185,7 +185,7 @@ def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]
     """
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
-        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {FULL_LIST_REASON}"
+        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_IS_FULL_REASON}"
     if complete:
         yield from _lines_on_rods_with(
             complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete]

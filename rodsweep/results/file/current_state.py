@@ -72,7 +72,7 @@ def journalled_reasons(header: ResultHeader) -> dict[str, str]:
 
 def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
     """Copies the variable `name` of records, (n,), into `values`, the array of this variable at all points,
-    in place.
+    in place, at the flat indices in the field `index` of the records.
     """
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 

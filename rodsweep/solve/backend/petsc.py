@@ -19,7 +19,7 @@ try:
 except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
     raise import_refusal("petsc4py and slepc4py", error) from error
 
-__all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options_text", "sparse_package", "versions"]
+__all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "user_options_text", "sparse_package", "versions"]
 
 PETSC_ERRORS = (PETSc.Error, SystemError)
 """Exceptions that a failure inside PETSc raises; some releases of petsc4py wrap a PETSc.Error in a
@@ -49,7 +49,7 @@ def versions() -> dict[str, str]:
     }
 
 
-def options_text(prefix: str = "") -> str:
+def user_options_text(prefix: str = "") -> str:
     """One line with the user's PETSc options whose names begin with `prefix`, as set in PETSC_OPTIONS or a
     resource file."""
     given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")

@@ -104,7 +104,7 @@ def has_only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
     h = right.p - left.p
     # The mean of the two leading eigenvalues is smooth where they become a pair.
     return _changes_sign_once(squares[0], squares[1], h) and _stays_positive(
-        left.growth_gap_of_mean(), right.growth_gap_of_mean(), h
+        left.growth_gap_of_leading_pair(), right.growth_gap_of_leading_pair(), h
     )
 
 

@@ -96,7 +96,7 @@ class Anchor:
         the eigenvalues w and v with the indices i and j."""
         return self._times_relaxation_time((self.w[i] - self.w[j]).real, (self.slope[i] - self.slope[j]).real)
 
-    def growth_gap_of_mean(self) -> tuple[float, float]:
+    def growth_gap_of_leading_pair(self) -> tuple[float, float]:
         """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
         `relaxation_time`, for the first three eigenvalues w1, w2, w3."""
         (first, first_slope), (second, second_slope) = self.growth_gap(0, 2), self.growth_gap(1, 2)

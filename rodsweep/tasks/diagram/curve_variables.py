@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ...solve.hopf.generalised import CurveCriticality
 
 
-def curve_record(
+def boundary_curve_values(
     found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
@@ -83,7 +83,7 @@ def criticality_record(
     return _filled_variables(declared, values)
 
 
-def bautin_curve_record(
+def bautin_curve_values(
     curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str
 ) -> list[FilledVariable]:
     """Variables of the curves of generalised Hopf points along the third parameter `third`. plane: (parameter
@@ -102,7 +102,7 @@ def bautin_curve_record(
     )
 
 
-def cycle_curve_record(
+def cycle_curve_values(
     found: "Boundaries[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:

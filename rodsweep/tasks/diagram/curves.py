@@ -13,10 +13,10 @@ from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ...results.layouts.variables import FilledVariable
 from .curve_variables import (
-    bautin_curve_record,
+    bautin_curve_values,
+    boundary_curve_values,
     criticality_record,
-    curve_record,
-    cycle_curve_record,
+    cycle_curve_values,
     special_points_of_rows,
     unstored_special_count,
     with_hopf_ends,
@@ -119,7 +119,7 @@ class DiagramCurves:
 
             Fc = filament_flutter_force()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
-        variables = curve_record(found, names, **limit)
+        variables = boundary_curve_values(found, names, **limit)
         criticalities = self._criticality(plane, found) if options.criticality or options.cycles else []
         if options.criticality:
             variables += criticality_record(criticalities, names, self.task.config.gamma1)
@@ -129,7 +129,7 @@ class DiagramCurves:
             curves = with_hopf_ends(
                 items.curves(results), plane, criticalities, unstored_special_count(view, self._is_row_finite)
             )
-            variables += cycle_curve_record(curves, names)
+            variables += cycle_curve_values(curves, names)
         return variables
 
     @property
@@ -231,4 +231,4 @@ class DiagramCurves:
             # A curve may return to the plane: its further points need no curve of their own.
             if not any(lies_on_curve(space, start, curve) for curve in curves):
                 curves.append(bautin_curve(space, start))
-        return bautin_curve_record(curves, (line, row), name)
+        return bautin_curve_values(curves, (line, row), name)

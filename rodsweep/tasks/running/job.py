@@ -212,7 +212,7 @@ def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> 
         "task": job.config.task,
         "time_unit": "tau2 = gamma2 L^4/k3",
         "config": job.config_text,
-        "petsc_options": petsc.options_text(),
+        "petsc_options": petsc.user_options_text(),
         "shard": "",
         "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in statuses),
         provenance.KERNELS_ATTRIBUTE: kernels,

@@ -35,7 +35,7 @@ from ....model.material.build import Build
 from ....model.rod import Rod
 from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
 from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
-from .weights import clamp_integrals, constant_weights, least_squared_norm, varying_weight_norms
+from .weights import clamp_integrals, least_squared_norm, trial_constant_weights, varying_weight_norms
 
 
 def hull_of(rod: Rod) -> EigenvalueHull:
@@ -156,7 +156,7 @@ def _smallest_region(
     push = 0.0
     for arm in range(len(F)):
         push = max(push, (F[arm] * F[arm] * c3[arm] / gamma2[arm]).max())
-    alphas = constant_weights(local)
+    alphas = trial_constant_weights(local)
     best = (inf, 0.0)
     if not (c2 > 0).any():  # then g = nu
         best = (sqrt(push), 0.0)

@@ -35,7 +35,7 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
 
 
 @compiled
-def constant_weights(local: Array) -> Array:
+def trial_constant_weights(local: Array) -> Array:
     """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): from the smallest to the
     largest |g/nu| along the arms, and 1.
 

@@ -96,7 +96,7 @@ def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
     found = float(asymmetry(other) @ expected) / float(expected @ expected)
     least, largest = BRANCH_END_SETTINGS.asymmetry_ratios
     if not least < found < largest:
-        raise Unsolvable("Newton's method converged to a cycle without the predicted asymmetry")
+        raise Unsolvable("Newton's method converged to a cycle whose asymmetry is not the predicted one")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
