@@ -240,8 +240,7 @@ def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
     resolved = resolved_config(config)
     if max(len(text), len(str(resolved))) > MAX_ATTRIBUTE_LENGTH:
         raise InputError(
-            "the axes of the merged grid are too long to be listed in the file; compute the grid with `run` "
-            "from ranges"
+            "the axes of the merged grid are too long to be listed; compute the grid with `run` from ranges"
         )
     with h5py.File(first.path, "r") as file:
         described = file["status"].attrs
