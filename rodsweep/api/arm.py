@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..config.document.call_arguments import refusing_wrong_arguments
+from ..config.parameters_section import DEFAULT_F_MAX
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
@@ -147,7 +148,7 @@ class Arm(SlenderArm):
 
     @refusing_wrong_arguments("arm.portrait(F_max=100)")
     def portrait(
-        self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
+        self, *, F_max: float = DEFAULT_F_MAX, accuracy: float | None = None, progress: bool | None = None
     ) -> "RodPortrait":
         """All results for the arm up to `F_max`, in a picture and a paragraph, in SI units.
 

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
 from ..config.material import MaterialSection
-from ..config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
+from ..config.parameters_section import DEFAULT_F_MAX, DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
 from ..config.profile_file import with_profile_read
 from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
@@ -147,7 +147,7 @@ class SoftRod:
 
     @refusing_wrong_arguments("rod.portrait(F_max=100)")
     def portrait(
-        self, *, F_max: float = 200.0, accuracy: float | None = None, progress: bool | None = None
+        self, *, F_max: float = DEFAULT_F_MAX, accuracy: float | None = None, progress: bool | None = None
     ) -> "RodPortrait":
         """All results for the rod up to `F_max`, in a picture and a paragraph.
 

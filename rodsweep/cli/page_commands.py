@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from ..config.parameters_section import DEFAULT_F_MAX
 from ..config.values import printable
 from ..errors import InputError
 from ..model.arm.quantities import UNITS
@@ -143,7 +144,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 @arm_options(QUANTITIES_WITHOUT_OPTION, is_needed=False)
 @click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
-@click.option("--F-max", "F_max", type=float, default=200.0, show_default=True, help="Largest force.")
+@click.option("--F-max", "F_max", type=float, default=DEFAULT_F_MAX, show_default=True, help="Largest force.")
 @click.option(
     "--accuracy",
     type=float,

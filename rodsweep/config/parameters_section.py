@@ -28,6 +28,9 @@ DEFAULT_VALUES_OF_PARAMETERS = {
 }
 """Default value, by name, of each parameter with a default, without the optional parameters."""
 
+DEFAULT_F_MAX = 200.0
+"""Default of the largest force of a search for thresholds, in k3/L^2: option F_max."""
+
 
 def _section_with_keys(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
     """Subclass of `base` with an additional optional key of the type `kind` for each name in `names`."""

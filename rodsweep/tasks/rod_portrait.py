@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..config.document.reading import validated_config
+from ..config.parameters_section import DEFAULT_F_MAX
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
@@ -28,8 +29,6 @@ LARGE_DEFLECTION = 0.5
 stable."""
 MODE_THRESHOLD_KINDS = ("onset", "hopf")
 """Kinds of thresholds; the leading mode is solved at the first threshold of each kind."""
-F_MAX = 200.0
-"""Default of the largest force, equal to the default of the task thresholds."""
 BRANCH_ACCURACY = 1e-5
 """Relative accuracy of the cycles on the branches of a portrait without a requested accuracy, far below a
 line width of the picture. Special points are located to 1e-9 at every accuracy, as far as BRANCH_WORK
@@ -50,7 +49,7 @@ class PortraitRequest:
     """
 
     rod: DescribedRod
-    F_max: float = F_MAX
+    F_max: float = DEFAULT_F_MAX
     accuracy: float | None = None
 
     @property

@@ -8,14 +8,14 @@ from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..base_config import Config, CrossingCount
-from ..parameters_section import NonlinearParameters
+from ..parameters_section import DEFAULT_F_MAX, NonlinearParameters
 from ..values import Number, StrictSection
 
 
 class CriticalityOptions(StrictSection):
     """Options of the task criticality: range of the search for Hopf points, and number of stored points."""
 
-    F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
+    F_max: Annotated[Number, Field(gt=0, lt=inf)] = DEFAULT_F_MAX
     """Largest force of the search for Hopf points. If a smaller force crushes the rod, the search ends just
     below that crushing force."""
     crossings: CrossingCount = 16

@@ -8,13 +8,14 @@ from pydantic import Field, model_validator
 
 from ...model.parameters import parameter_names_except
 from ..base_config import CrossingCount, LinearConfig
+from ..parameters_section import DEFAULT_F_MAX
 from ..values import Number, StrictSection
 
 
 class ThresholdsOptions(StrictSection):
     """Options of the task thresholds: range of the search for crossings, and number of stored crossings."""
 
-    F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
+    F_max: Annotated[Number, Field(gt=0, lt=inf)] = DEFAULT_F_MAX
     """Largest force of the search. If the arm is crushed at a smaller force (k1 for a uniform rod of linear
     material), the search ends just below the crushing force."""
     crossings: CrossingCount = 16
