@@ -26,6 +26,8 @@ COMPLETE_STATUSES = (0, 1)
 """Exit statuses of a complete run: 0 if all points succeeded, 1 if some points failed."""
 REFUSAL_OF_STATUS: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentIncomplete}
 """Class of the exception for each exit status of a run that was refused."""
+ALWAYS_ALLOWED_RANKS = 64
+"""A sweep may have this number of ranks whatever the number of its points."""
 MAX_QUOTED_LENGTH = 2000
 """Maximum number of quoted characters of a run's standard error, enough for the last traceback."""
 
@@ -81,9 +83,9 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
 
 
 def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
-    """Raises InputError if there are more ranks than both processors of this machine and points; points: None
-    if not known."""
-    useful = max(os.cpu_count() or 1, points or 0)
+    """Raises InputError if there are more than ALWAYS_ALLOWED_RANKS ranks and most of them would be idle,
+    because both the points and the processors of this machine are fewer. points: None if not known."""
+    useful = max(os.cpu_count() or 1, points or 0, ALWAYS_ALLOWED_RANKS)
     if points is not None and ranks > useful:
         raise InputError(
             f"ranks = {ranks} is not allowed for {counted(points, 'point')}; ranks would be idle; it should "
