@@ -979,9 +979,9 @@ def _state_sentences(view, page, fine, row):
         why = (_special_on_branch(view, row, match[1], *place) for place in places)
         found.append((line, "; ".join(filter(None, why))))
     for line, match in read(
-        page, rf"^this curve meets the row {row} = NUMBER at F = NUMBER, which no branch from a Hopf point"
+        page, rf"^this curve meets the row {row} = NUMBER between F = NUMBER and NUMBER, where no branch"
     ):
-        found.append((line, _special_on_row(view, row, float(match[1]), float(match[2]))))
+        found.append((line, _special_on_row(view, row, *map(float, match.groups()))))
     for line, match in read(
         page,
         "^curves of cycles: NUMBER; folds and torus points on a curve lie within NUMBER "
@@ -995,14 +995,15 @@ def _state_sentences(view, page, fine, row):
     return found
 
 
-def _special_on_row(view, row, value, F):
-    """Why a row has a fold or a torus point where it is said to have none."""
+def _special_on_row(view, row, value, low, high):
+    """Why a row has a fold or a torus point between two forces where it is said to have none."""
     rod = {name: float(view.parameter_values[name][0]) for name in view.parameters} | {row: value}
     rod["gamma1"] = float(view.attributes.get("gamma1", 1.0))
-    data = rs.sweep("branch", **rod, stop=min(1.05 * F, 0.9998 * rod["k1"]), accuracy=1e-7, progress=False)
+    data = rs.sweep("branch", **rod, stop=min(1.05 * high, 0.9998 * rod["k1"]), accuracy=1e-7, progress=False)
     kinds, at = data.special_kind.values.ravel(), data.special_at.values.ravel()
     there = at[np.isin(kinds, (2, 3))]
-    return "" if (np.abs(there - F) > 1e-3 * F).all() else f"the branch of {row} = {value} has one at {there}"
+    found = there[(there >= low) & (there <= high)]
+    return f"the branch of {row} = {value} has one at {found}" if len(found) else ""
 
 
 def _special_on_branch(view, row, kind, value, F, error):

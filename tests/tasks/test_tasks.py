@@ -358,8 +358,8 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     )
     nan = float("nan")
     rows = {
-        "cycle_special_kind": np.array([[0, 0], [1, 2], [3, 0], [2, 0]]),
-        "cycle_special_F": np.array([[nan, nan], [55.0, 60.0], [65.0, nan], [70.0, nan]]),
+        "cycle_special_kind": np.array([[0, 0], [1, 2], [2, 3], [2, 0]]),
+        "cycle_special_F": np.array([[nan, nan], [55.0, 60.0], [75.0, 65.0], [70.0, nan]]),
     }
     view = SimpleNamespace(
         variables={variable.name: values for variable, values in filled} | {"F": np.array([0.0, 100.0])},
@@ -367,7 +367,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         by_point=rows.__getitem__,
     )
     _, line = cycle_curve_lines(view, "F", "k1")
-    assert line.startswith("this curve meets the row k1 = 175 at F = 65, which no branch from a Hopf point")
+    assert line.startswith("this curve meets the row k1 = 175 between F = 60 and 70, where no branch from")
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):

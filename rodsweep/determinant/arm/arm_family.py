@@ -55,9 +55,10 @@ class ArmFamily(NamedTuple):
     """Propagators of all arms with p from `p_low` to `p_high`, for |w| <= W, as Chebyshev series in p.
 
     largest_w: W. scale: the series are in log(1 + (p - low)/scale), or in p if scale is `LINEAR_SCALE`.
-    coefficients: Chebyshev coefficients, (nodes, elements, terms, PADDED). entry_sizes: largest modulus on
-    the interval of every propagator entry at w = 0, and the sum of these over the positive powers of w/W,
-    (elements, 2, PADDED); interpolation errors are relative to these sizes.
+    coefficients: Chebyshev coefficients, (nodes, elements, terms, PADDED). entry_sizes: sizes to which the
+    interpolation errors of propagator entries are relative, at w = 0, and summed over the positive powers of
+    w/W, (elements, 2, PADDED). A size is the largest modulus on the interval, plus the last two Chebyshev
+    coefficients in units of the rounding error.
     """
 
     p_low: float

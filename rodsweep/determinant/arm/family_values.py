@@ -1,6 +1,6 @@
 """Propagators, D and eigenvalues of the arms of a family, by summation of its Chebyshev series.
 
-`rodsweep.determinant.arm.family` makes families.
+`rodsweep.determinant.arm.arm_family` makes families.
 """
 
 import math

@@ -67,7 +67,7 @@ def error_of_interpolated_chain(
     """Bound of the rounding and interpolation error of D exp(-S) at w, to first order.
 
     polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED). S: scale of the
-    result. entry_sizes: as in `rodsweep.determinant.arm.family.ArmFamily`; no elements if nothing is
+    result. entry_sizes: as in `rodsweep.determinant.arm.arm_family.ArmFamily`; no elements if nothing is
     interpolated.
     """
     elements, terms, _ = polynomials.shape

@@ -24,8 +24,8 @@ CURVE_END_WORDS = {
 }
 """Phrase for the reason for which a curve of folds or torus points of cycles ends."""
 MAX_ROW_DISTANCE = 0.01
-"""Largest distance of a special point of a row from a curve that meets the row, divided by the length of the
-row: between two points a curve is interpolated linearly."""
+"""Largest distance of a special point of a row from the two points of a curve between which the curve meets
+the row, divided by the length of the row."""
 END_SUFFIXES = ("start", "end")
 """Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
@@ -80,15 +80,18 @@ def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[n
     near = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
     along = zip(v[f"cycle_curve_{row}"][on], v[f"cycle_curve_{line}"][on], strict=True)
     lines = []
-    for (x, y), (next_x, next_y) in pairwise(along):
+    for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(along)):
         for index, value in enumerate(view.point_columns[row]):
-            if x == next_x or not min(x, next_x) <= value <= max(x, next_x):
+            # A row through a point of the curve belongs to the piece before this point.
+            if (value == x and number > 0) or (x - value) * (next_x - value) > 0:
                 continue
-            at = y + (value - x) / (next_x - x) * (next_y - y)
-            if not (np.abs(specials[index][kinds[index] == kind] - at) <= near).any():
+            low, high = sorted((y, next_y))
+            own = specials[index][kinds[index] == kind]
+            if not ((own >= low - near) & (own <= high + near)).any():
                 lines.append(
-                    f"this curve meets the row {row} = {value:g} at {line} = {at:.6g}, which no branch from "
-                    "a Hopf point of the row reaches: the stable states of the row leave out the cycles there"
+                    f"this curve meets the row {row} = {value:g} between {line} = {low:.6g} and {high:.6g}, "
+                    "where no branch from a Hopf point of the row leads: the stable states of the row leave "
+                    "out the cycles there"
                 )
     return list(dict.fromkeys(lines))
 

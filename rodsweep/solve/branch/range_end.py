@@ -2,6 +2,7 @@
 
 from numpy.polynomial import Polynomial
 
+from ...model.parameters import PARAMETERS
 from ..continuation.follower import zero_along_step
 from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ..orbit.orbit import Orbit
@@ -43,17 +44,23 @@ def cycle_at_range_end(
 
 
 def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
-    """The cycle at the parameter coordinate 0, if the range begins there and the tangent at `start` reaches
-    it within the next step; else None. No rod has a negative coordinate, so that no step passes this end.
-    low: smallest coordinate of the range. Raises Unsolvable."""
+    """The cycle at the coordinate 0 of a parameter that is never negative, if the range begins there and the
+    tangent at `start` reaches it within the next step: no step passes this end. Else None, also if no cycle
+    is found there, as behind a fold. low: smallest coordinate of the range. Raises WorkLimitReached."""
     rate = float(start.tangent[-1])
-    if low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:
+    may_be_negative = PARAMETERS[start.scale.parameter_name].allowed.contains(-1.0)
+    if may_be_negative or low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:
         return None
     length = -start.parameter_coordinate / rate
     change = length * start.tangent
     change[-1] = -start.parameter_coordinate  # exactly to 0
-    predicted = moved_orbit(start.orbit, start.scale.parameter_name, change)
-    return _solved_at_range_end(start, predicted, length, range_end_condition(start, 0.0), accuracy)
+    try:
+        predicted = moved_orbit(start.orbit, start.scale.parameter_name, change)
+        return _solved_at_range_end(start, predicted, length, range_end_condition(start, 0.0), accuracy)
+    except WorkLimitReached:
+        raise
+    except Unsolvable:
+        return None
 
 
 def cycle_within_range(
