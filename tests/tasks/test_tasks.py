@@ -358,12 +358,13 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     )
     nan = float("nan")
     rows = {
-        "cycle_special_kind": np.array([[0, 0], [1, 2], [2, 3], [2, 0]]),
-        "cycle_special_F": np.array([[nan, nan], [55.0, 60.0], [75.0, 65.0], [70.0, nan]]),
+        "cycle_special_kind": np.array([[0, 0], [1, 2], [0, 0], [2, 3], [2, 0]]),
+        "cycle_special_F": np.array([[nan, nan], [55.0, 60.0], [nan, nan], [75.0, 65.0], [70.0, nan]]),
     }
     view = SimpleNamespace(
         variables={variable.name: values for variable, values in filled} | {"F": np.array([0.0, 100.0])},
-        point_columns={"k1": np.array([100.0, 150.0, 175.0, 200.0])},
+        point_columns={"k1": np.array([100.0, 150.0, 160.0, 175.0, 200.0])},
+        status_names=np.array(["ok", "ok", "failed", "ok", "ok"]),
         by_point=rows.__getitem__,
     )
     _, line = cycle_curve_lines(view, "F", "k1")

@@ -69,8 +69,9 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[np.intp]) -> list[str]:
-    """Lines about rows that a curve of folds or torus points crosses although no branch from a Hopf point of
-    the row has this special point. line, row: as in `curve_lines`. on: indices of the points of the curve.
+    """Lines about completed rows that a curve of folds or torus points crosses although no branch from a Hopf
+    point of the row has this special point. line, row: as in `curve_lines`. on: indices of the points of the
+    curve.
     """
     v = view.variables
     if len(on) < 2:
@@ -82,6 +83,8 @@ def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[n
     lines = []
     for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(along)):
         for index, value in enumerate(view.point_columns[row]):
+            if view.status_names[index] != "ok":
+                continue
             # A row through a point of the curve belongs to the piece before this point.
             if (value == x and number > 0) or (x - value) * (next_x - value) > 0:
                 continue
