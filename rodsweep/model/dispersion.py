@@ -4,7 +4,7 @@ A wave exp(i kappa u) with K = kappa^2 grows at the root w(K) of
 
     gamma3 c2 w^2 + [(c2 + gamma3) K + g nu] w + K^2 - F g K = 0.
 
-The largest growth rate is used as a start of the search for eigenvalues of the finite rod, its wave number
+Its largest growth rate is used as a start of the search for eigenvalues of the finite rod, its wave number
 for the choice of the mesh. Both numbers are estimates only.
 """
 
@@ -18,17 +18,10 @@ from ..arrays import Array
 from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
-SAMPLE_COUNT = 64
-"""Number of samples of K = kappa^2, with equal ratios of successive samples. A ratio of 1.15 suffices for an
-estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
 CACHED_ARM_COUNT = 16
 """Maximum number of arms, and of builds, in the caches of this module."""
-MIN_K_FRACTION = 1e-4
-"""Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
-K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
-"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (SAMPLE_COUNT,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -39,12 +32,10 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     compiled, so that `rodsweep check` need not load numba.
     """
     F, nu, c2, gamma3 = rod.coefficients
-    top = F * rod.g
-    if top <= 0:
+    if not F * rod.g > 0:
         return 0.0, 0.0
-    K, rates = _growth_rates(top, rod.g * nu, c2, gamma3)
-    best = int(np.argmax(rates))
-    return (float(rates[best]), float(np.sqrt(K[best]))) if rates[best] > 0 else (0.0, 0.0)
+    rate, wave_number = _largest_growth(F * rod.g, rod.g * nu, c2, gamma3)
+    return float(rate), float(wave_number)
 
 
 class SampledArm(NamedTuple):
@@ -87,10 +78,8 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
     """
     nu, c2, c3, gamma2, gamma3, g = sampled_arm(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
-    _, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
-    largest = rates.max(axis=-1)
-    wave = np.where(largest > 0, np.sqrt(top * K_FRACTIONS[rates.argmax(axis=-1)]), 0.0)
-    return largest / (gamma2 * c3), wave
+    rate, wave_number = _largest_growth(top, g * nu, c2 / c3, gamma3 / gamma2)
+    return rate / (gamma2 * c3), wave_number
 
 
 def expected_unstable_count(rod: Rod) -> float:
@@ -103,23 +92,28 @@ def expected_unstable_count(rod: Rod) -> float:
     return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
 
 
-def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
-    """Returns (K, growth rates) of the sampled waves, (..., SAMPLE_COUNT) each, for k3 = gamma2 = 1.
+def _largest_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
+    """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; both are 0 if top is
+    0, or if there is no largest growth rate.
 
-    A decaying wave has the growth rate 0. top: F g. relaxation: g nu. c2, gamma3: shear compliance and
-    rotational drag. All arguments are numbers, or arrays (n, 1) for n rods.
+    top: F g >= 0. relaxation: g nu, negative only for a pulled rod (F < 0). c2, gamma3: shear compliance and
+    rotational drag. All arguments are numbers or arrays of one shape; the results have this shape.
     """
-    square = c2 * gamma3
-    K = top * K_FRACTIONS
-    with np.errstate(all="ignore"):
-        # Waves with K < F g grow.
-        drive = K * (top - K)
-        linear = (c2 + gamma3) * K + relaxation
-        spread = np.sqrt(linear**2 + 4 * square * drive)
-        # The positive root r of square r^2 + linear r = drive. Each of the two formulas is free of
-        # cancellation for one sign of `linear`.
-        rates = 2 * drive / (linear + spread)
-        if not (linear > 0).all():
-            slow = np.where(square > 0, (spread - linear) / (2 * square), 0.0)
-            rates = np.where(linear > 0, rates, slow)
-    return K, np.where(rates > 0, rates, 0.0)
+    # At the largest w the derivative of the dispersion relation with respect to K is 0:
+    # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w.
+    total = c2 + gamma3
+    product = c2 * gamma3
+    with np.errstate(invalid="ignore", divide="ignore"):
+        root = np.sqrt(product * top**2 + total * relaxation * top + relaxation**2)
+        rate = top**2 / (total * top + 2 * relaxation + 2 * root)
+        wave_number = np.sqrt(np.sqrt(rate * (product * rate + relaxation)))
+        if np.min(relaxation) > 0:
+            return rate, wave_number
+        # Without a maximum at K > 0, the longest wave grows fastest: on the rod, a quarter of a wave.
+        inside = (relaxation > 0) | (product * top + total * relaxation > 0)
+        K = np.minimum((np.pi / 2) ** 2, top)
+        linear = total * K + relaxation
+        spread = np.sqrt(linear**2 + 4 * product * K * (top - K))
+        longest = np.where((product > 0) & (linear < 0), (spread - linear) / (2 * product), 0.0)
+    rate = np.where(inside, rate, longest)
+    return rate, np.where(rate > 0, np.where(inside, wave_number, np.sqrt(K)), 0.0)

@@ -1,0 +1,53 @@
+"""The most amplified wave of the dispersion relation, against a search over wave numbers."""
+
+import numpy as np
+import pytest
+
+from rodsweep.model.dispersion import most_amplified_local_waves, most_amplified_wave
+from rodsweep.model.rod import Rod
+
+
+def growth_rate(rod: Rod, K: np.ndarray) -> np.ndarray:
+    """Largest real part of the two roots w of the dispersion relation of the paper, Sec. VI, at every K."""
+    F, nu, c2, gamma3 = rod.coefficients
+    linear = (c2 + gamma3) * K + rod.g * nu
+    coefficients = np.stack([np.full_like(K, gamma3 * c2), linear, K**2 - F * rod.g * K], axis=-1)
+    return np.array([np.roots(each).real.max() for each in coefficients])
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_no_wave_grows_faster_than_the_most_amplified_wave(seed: int) -> None:
+    """For random rods with F > 0 no other wave number has a larger growth rate, and the wave has its rate."""
+    random = np.random.default_rng(seed)
+    k1 = 10 ** random.uniform(0, 6)
+    F = k1 * 10 ** random.uniform(-3, -0.01)
+    rod = Rod(F=F, k1=k1, k2=10 ** random.uniform(-2, 6), gamma3=10 ** random.uniform(-8, 2))
+    rate, wave_number = most_amplified_wave(rod)
+    others = F * rod.g * np.linspace(1e-3, 1, 400)
+    assert growth_rate(rod, np.array([wave_number**2]))[0] == pytest.approx(rate, rel=1e-6)
+    assert np.all(growth_rate(rod, others) <= rate * (1 + 1e-6))
+
+
+@pytest.mark.parametrize("gamma3", [1e-6, 1e-2])
+def test_longest_wave_on_a_strongly_pulled_soft_rod_grows_fastest(gamma3: float) -> None:
+    """A pulled rod with F < -k2, soft in shear, is unstable by shear; its rate is that of a quarter wave."""
+    rod = Rod(F=-30.0, k1=1e4, k2=1.0, gamma3=gamma3)
+    rate, wave_number = most_amplified_wave(rod)
+    assert wave_number == pytest.approx(np.pi / 2)
+    assert rate == pytest.approx(growth_rate(rod, np.array([wave_number**2]))[0], rel=1e-9)
+    assert np.all(growth_rate(rod, np.geomspace(3.0, 30 * abs(rod.g), 50)) <= rate)
+
+
+def test_rod_without_load_or_with_small_pull_has_no_growing_wave() -> None:
+    for F in (0.0, -5.0):
+        assert most_amplified_wave(Rod(F=F, k1=1e4, k2=1e4, gamma3=1e-4)) == (0.0, 0.0)
+
+
+def test_local_waves_of_a_slightly_tapered_arm_are_those_of_the_uniform_rod() -> None:
+    uniform = Rod(F=50.0, k1=200.0, k2=1e4, gamma3=1e-4)
+    rates, wave_numbers = most_amplified_local_waves(
+        Rod(F=50.0, k1=200.0, k2=1e4, gamma3=1e-4, taper=1 - 1e-9)
+    )
+    rate, wave_number = most_amplified_wave(uniform)
+    np.testing.assert_allclose(rates, rate, rtol=1e-7)
+    np.testing.assert_allclose(wave_numbers, wave_number, rtol=1e-7)
