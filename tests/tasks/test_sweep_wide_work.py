@@ -13,7 +13,7 @@ from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
-from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
+from rodsweep.solve.branch.special.special_curve_tracer import SpecialBoundaries
 from rodsweep.solve.branch.special.special_curves import (
     CurveEnd,
     CurvePoint,

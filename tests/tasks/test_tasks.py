@@ -25,7 +25,7 @@ from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.changes.status import ThresholdStatus
-from rodsweep.solve.continuation.boundaries import Boundaries
+from rodsweep.solve.continuation.curve_search import Boundaries
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds

@@ -12,7 +12,7 @@ from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
 from .arc_length_step import BranchCycle
 from .special.special_point import SpecialPoint
-from .symmetry import SymmetryBreaking
+from .symmetry_breaking import SymmetryBreaking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

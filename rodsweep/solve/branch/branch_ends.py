@@ -14,7 +14,7 @@ from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
 from .special.special_point import EndReason
 from .start.hopf_point import BRANCH_START_SETTINGS, HopfBranchStart, hopf_as_special_point
-from .symmetry import BRANCH_END_SETTINGS, reaches_symmetric_cycle, symmetry_breaking_between
+from .symmetry_breaking import BRANCH_END_SETTINGS, reaches_symmetric_cycle, symmetry_breaking_between
 
 
 def passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:

@@ -18,8 +18,8 @@ from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import Calibration
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
+from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
-from ..cycle.accuracy.mesh_choice import cheapest_mesh
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ..orbit.matrix.workspace import NewtonWorkspace
 from .special.special_point import EndReason
 from .start.hopf_point import HopfBranchStart
-from .symmetry import SymmetryBreaking
+from .symmetry_breaking import SymmetryBreaking
 
 
 @dataclass(frozen=True, slots=True)

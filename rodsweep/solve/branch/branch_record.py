@@ -10,7 +10,7 @@ from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .mesh_choice import with_errors_within_accuracy
+from .branch_mesh_choice import with_errors_within_accuracy
 from .special.special_point import EndReason, SpecialKind, SpecialPoint
 
 

@@ -18,7 +18,7 @@ from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ALONG_PARAMETER
 from .special.segment import BranchSegment
-from .symmetry import BRANCH_END_SETTINGS
+from .symmetry_breaking import BRANCH_END_SETTINGS
 
 
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:

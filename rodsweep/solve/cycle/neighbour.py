@@ -27,9 +27,9 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
+from .accuracy.cheapest_mesh import cheapest_mesh
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.error_indicators import error_indicators
-from .accuracy.mesh_choice import cheapest_mesh
 from .accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.branch.special.special_point import RowSpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.boundaries import Boundaries
+    from ...solve.continuation.curve_search import Boundaries
     from ...solve.hopf.bautin_curves import BautinCurve
     from ...solve.hopf.generalised import CurveCriticality
 
@@ -178,7 +178,7 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
-    from ...solve.branch.special.boundaries import FOLLOWED_KINDS
+    from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
     from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))

@@ -25,10 +25,10 @@ from .curve_variables import (
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.boundaries import SpecialBoundaries
+    from ...solve.branch.special.special_curve_tracer import SpecialBoundaries
     from ...solve.branch.special.special_point import SpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.boundaries import Boundaries
+    from ...solve.continuation.curve_search import Boundaries
     from ...solve.hopf.generalised import CurveCriticality
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
     from ..phase_diagram import PhaseDiagramTask
@@ -80,7 +80,7 @@ class DiagramCurves:
 
         view: the result file with all rows.
         """
-        from ...solve.branch.special.boundaries import SpecialBoundaries
+        from ...solve.branch.special.special_curve_tracer import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:

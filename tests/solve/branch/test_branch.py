@@ -16,11 +16,11 @@ from rodsweep.solve import seldom_used_kernels
 from rodsweep.solve.branch import branches, following
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.branch_continuation import follow_branch
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import follow_branch
-from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
+from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import CurveEnd
 from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind

@@ -14,22 +14,22 @@ from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
 from rodsweep.solve.branch import following
 from rodsweep.solve.branch.arc_length_step import next_cycle
-from rodsweep.solve.branch.branch_curve import BranchCurve
-from rodsweep.solve.branch.branch_limits import BranchLimits
-from rodsweep.solve.branch.branches import BranchesOfRod
-from rodsweep.solve.branch.following import (
+from rodsweep.solve.branch.branch_continuation import (
     follow_asymmetric_branch,
     follow_branch,
     follow_from_cycle,
 )
-from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
+from rodsweep.solve.branch.branch_curve import BranchCurve
+from rodsweep.solve.branch.branch_limits import BranchLimits
+from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
+from rodsweep.solve.branch.branches import BranchesOfRod
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.detection import special_kinds_between
 from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
 from rodsweep.solve.branch.start.first_asymmetric_cycle import first_asymmetric_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.branch.symmetry import (
+from rodsweep.solve.branch.symmetry_breaking import (
     asymmetry,
     extended_to_whole_period,
     symmetry_breakings_in,

@@ -9,8 +9,8 @@ from rodsweep.solve.branch.branch_errors import BranchCalibration
 from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.located_meshes import first_mesh
 from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point_meshes import first_mesh
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

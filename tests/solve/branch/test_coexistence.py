@@ -21,7 +21,7 @@ from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
-from rodsweep.solve.branch.special.augmented.functions import FoldFunction
+from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import (
     CurveEnd,

@@ -15,7 +15,7 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..bordered.matrix import BorderedMatrix
-from .augmented.functions import pair_nearest_unit_circle
+from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
 from .cycle_family import CycleFamily
 from .least_stretch import least_stretch_of_orbit

@@ -22,11 +22,11 @@ from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
-from .augmented.functions import TorusFunction, correct_until_converged
+from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
-from .located_meshes import first_mesh, next_mesh
 from .segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+from .special_point_meshes import first_mesh, next_mesh
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:

@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ....determinant.stability_boundary import Boundary
-from ...continuation.boundaries import Boundaries, trace_boundaries
+from ...continuation.curve_search import Boundaries, trace_boundaries
 from ..kinds import ChangeKind
 from .boundary_curves import BoundaryCurve, trace_boundary
 

@@ -2,8 +2,8 @@
 
 The convergence rate in space is estimated from the decay of the orbit's coefficients, the order in time from
 the number of stages; errors measured on two meshes give more accurate rates. The cheapest sufficient mesh
-follows from the rates (`mesh_choice`). Along a chain of cycles the errors are measured at the first cycle on
-a mesh, and scaled up at later cycles as the coefficient tails of the orbits grow.
+follows from the rates (`cheapest_mesh`). Along a chain of cycles the errors are measured at the first cycle
+on a mesh, and scaled up at later cycles as the coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace

@@ -25,10 +25,10 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails
 from ...unsolvable import Unsolvable
 from .calibration import Calibration
+from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
 from .finer_meshes import measured_calibration
-from .mesh_choice import cheapest_mesh
 from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refinement_settings import REFINEMENT_SETTINGS
 

@@ -33,7 +33,7 @@ from .motion_mesh import integrable_rod
 from .returns import RETURN_SETTINGS, early_end, repetition, section_crossings, tip_angle_row, until_returns
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
-from .trace import TipTrace
+from .tip_trace import TipTrace
 from .transient_outcome import TransientOutcome
 from .transient_settings import TRANSIENT_SETTINGS
 

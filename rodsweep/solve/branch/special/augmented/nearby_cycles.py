@@ -1,5 +1,5 @@
 """Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function from the
-module `functions`. A new matrix is assembled only if the corrections converge slowly."""
+module `fold_and_torus_functions`. A new matrix is assembled only if the corrections converge slowly."""
 
 from typing import Protocol
 
@@ -12,7 +12,7 @@ from ....unsolvable import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import ArcLengthScale
-from .functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
+from .fold_and_torus_functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 
 
 class CycleFamilyInterface(Protocol):

@@ -13,9 +13,9 @@ from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, n
 from .branch_curve import BranchCurve, BranchEnd
 from .branch_ends import end_at_mirror_image, passed_mirror_image
 from .branch_limits import BranchLimits
+from .branch_mesh_choice import is_measurement_due
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .computing_time import fraction_done
-from .mesh_choice import is_measurement_due
 from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
 from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
@@ -24,7 +24,7 @@ from .special.special_point import EndReason, SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point
-from .symmetry import (
+from .symmetry_breaking import (
     BRANCH_END_SETTINGS,
 )
 

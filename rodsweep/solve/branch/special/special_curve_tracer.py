@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ....determinant.parameter_plane import PlaneAxis
-from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
+from ...continuation.curve_search import Boundaries, BoundarySearch, trace_boundaries
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point_outcome import FAILURES
 from ...unsolvable import Unsolvable
