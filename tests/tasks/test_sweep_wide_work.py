@@ -13,7 +13,7 @@ from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
-from rodsweep.solve.branch.special.special_curve_tracer import SpecialBoundaries
+from rodsweep.solve.branch.special.special_curve_tracer import SpecialCurveTracer
 from rodsweep.solve.branch.special.special_curves import (
     CurveEnd,
     CurvePoint,
@@ -180,7 +180,7 @@ def boundaries():
         for row in range(1, 6)
         for at in (0.2, 0.6)
     ]
-    return SpecialBoundaries(LINE, ROWS, special)
+    return SpecialCurveTracer(LINE, ROWS, special)
 
 
 def half(items, item):

@@ -25,7 +25,7 @@ from rodsweep.results.run.journal import Journal
 from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.changes.status import ThresholdStatus
-from rodsweep.solve.continuation.curve_search import Boundaries
+from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
@@ -336,7 +336,7 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
     )
     filled = cycle_curve_values(
-        Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, "F", "k1")
@@ -354,7 +354,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEnd.edge,) * 2, (None, None))
     filled = cycle_curve_values(
-        Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
     nan = float("nan")
     rows = {

@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.branch.special.special_point import RowSpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.curve_search import Boundaries
+    from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.bautin_curves import BautinCurve
     from ...solve.hopf.generalised import CurveCriticality
 
 
 def boundary_curve_values(
-    found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any
+    found: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **more: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
     differs between rows). more: values of the variables on the partial beam limit, by name.
@@ -103,7 +103,7 @@ def bautin_curve_values(
 
 
 def cycle_curve_values(
-    found: "Boundaries[SpecialPointCurve]", plane: tuple[str, str]
+    found: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
     (parameter along a row, parameter that differs between rows).
@@ -209,11 +209,11 @@ def unstored_special_count(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "Boundaries[SpecialPointCurve]",
+    found: "TracedCurves[SpecialPointCurve]",
     plane: "Plane",
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
-) -> "Boundaries[SpecialPointCurve]":
+) -> "TracedCurves[SpecialPointCurve]":
     """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced_count`.
