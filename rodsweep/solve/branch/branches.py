@@ -11,7 +11,7 @@ from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ...solve_progress import solve_part
-from ..changes.along_path import ThresholdList, find_axis_crossings
+from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
@@ -162,7 +162,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
 
 
 def _status_and_message(
-    found: ThresholdList, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+    found: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
     and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on
