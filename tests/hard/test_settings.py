@@ -101,7 +101,7 @@ def branch_answer(rod: Rod, start: float, stop: float, accuracy: float) -> Answe
             name = f"branch {number}, special point {place}, {point.kind.name}: "
             answer[name + "at"] = point.at, point.error
             answer[name + "period"] = point.period, point.period_error * point.period
-            answer[name + "size"] = point.tip_y_max, point.size_error * abs(point.tip_y_max)
+            answer[name + "size"] = point.tip_y_max, point.tip_y_max_error * abs(point.tip_y_max)
     return answer
 
 

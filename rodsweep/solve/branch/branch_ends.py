@@ -17,14 +17,14 @@ from .start.hopf_point import BRANCH_START_SETTINGS, HopfBranchStart, hopf_as_sp
 from .symmetry_breaking import BRANCH_END_SETTINGS, reaches_symmetric_cycle, symmetry_breaking_between
 
 
-def passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
+def reaches_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
     """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
     if start.orbit.is_symmetric:
-        return passed_hopf_point(start, end)
+        return passes_hopf_point(start, end)
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
-def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
+def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
@@ -48,7 +48,10 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if shorter < ARC_STEP_CONTROL.min_length:
-            raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
+            raise Unsolvable(
+                "the bending moments change sign within the shortest step, but the cycle is too large for a "
+                "Hopf point there"
+            )
         return replace(start, next_arc_length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
@@ -89,5 +92,5 @@ def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits)
         breaking = limits.breakings[which]
         special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric, but no known symmetry breaking is near"
+    why = "the cycles become symmetric, but no symmetry breaking is known there"
     return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)

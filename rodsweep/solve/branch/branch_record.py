@@ -88,5 +88,7 @@ class BranchRecord:
             special = replace(special, error=last.at_error * abs(special.at))
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
-            special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
+            special = replace(
+                special, period_error=errors.period_error, tip_y_max_error=errors.amplitude_error
+            )
         curve.end(replace(end, special_point=special))

@@ -91,7 +91,7 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         BRANCH_SETTINGS.crushing_margin,
     )
     if not low < high:
-        why = "the force crushes the rod everywhere in the range"
+        why = f"the force crushes the rod everywhere in the range of {request.along}"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
     path = Path(rod.with_values(**{request.along: low}), request.along)
     found = find_axis_crossings(path, low, high, request.certify)
@@ -105,7 +105,8 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         try:
             hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
         except FAILURES as error:
-            failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
+            where = f"{request.along} = {crossing.value:.12g}"
+            failures.append(f"no branch is followed from the Hopf point at {where}: {cause_of(error)}")
     crushed = (low > request.start, high < request.stop)
     reasons = [EndReason.crushed if end else EndReason.range_end for end in crushed]
     if path.is_compliance_path:
@@ -177,14 +178,14 @@ def _status_and_message(
     special = [point for curve in curves for point in curve.special_points]
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
-    if any(not curve.multipliers_explained for curve in curves):
+    if any(not curve.unit_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.list_full for curve in curves),
         BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
         BranchStatus.special_undecided: inaccurate
-        or any(not curve.multipliers_explained for curve in curves),
+        or any(not curve.unit_circle_crossings_explained for curve in curves),
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)

@@ -187,16 +187,16 @@ def _end_error_sign(point: SpecialPoint) -> int:
     return -1 if point.reason is EndReason.range_end else 1
 
 
-def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
+def stable_states(rod_classes: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
     """`StableStates` at each parameter value, (values,).
 
-    motion: `RodClass` of the straight rod, (values,). cycles: existence of a stable cycle as in
-    `stable_cycles_at`, (values,).
+    rod_classes: `RodClass` of the straight rod at each parameter value, (values,). cycles: existence of a
+    stable cycle as in `stable_cycles_at`, (values,).
     """
-    straight = (motion == RodClass.monotone) | (motion == RodClass.oscillatory)
+    straight = (rod_classes == RodClass.monotone) | (rod_classes == RodClass.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.
     states[cycles > 0] += StableStates.cycle
-    states[(cycles < 0) | (motion == RodClass.undecided)] = StableStates.undecided
-    states[motion == RodClass.crushed] = StableStates.crushed
+    states[(cycles < 0) | (rod_classes == RodClass.undecided)] = StableStates.undecided
+    states[rod_classes == RodClass.crushed] = StableStates.crushed
     return states

@@ -149,7 +149,9 @@ def symmetry_breaking_between(
     if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
         return which
     if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
-        raise Unsolvable("the cycle turns into its mirror image within the shortest step along the branch")
+        raise Unsolvable(
+            "the cycles pass a symmetric cycle within the shortest step along the branch, far from symmetry"
+        )
     return None
 
 

@@ -110,7 +110,7 @@ def cycle_curve_values(
     """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
-        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing_points)
+        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
         for (further, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
             named = dict(zip(plane, (point.at, point.row_value), strict=True)) | further | reasons
@@ -164,7 +164,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     line: parameter that varies along the row.
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
-    own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
+    own = {f"cycle_special_{line}": "at"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=own)
         for point in result.special_points

@@ -70,7 +70,7 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
         ends.append(last)
     one, other = ends
     assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-6
-    assert abs(one.tip_y_max - other.tip_y_max) <= one.size_error + other.size_error < 1e-5
+    assert abs(one.tip_y_max - other.tip_y_max) <= one.tip_y_max_error + other.tip_y_max_error < 1e-5
 
 
 def test_a_branch_along_the_rotational_drag_ends_at_zero():
@@ -86,4 +86,4 @@ def test_a_branch_along_the_rotational_drag_ends_at_zero():
         ends.append(curve.special_points[-1])
     rough, fine = ends
     assert abs(rough.period - fine.period) <= rough.period_error + fine.period_error < 1e-4
-    assert abs(rough.tip_y_max - fine.tip_y_max) <= rough.size_error + fine.size_error < 1e-4
+    assert abs(rough.tip_y_max - fine.tip_y_max) <= rough.tip_y_max_error + fine.tip_y_max_error < 1e-4

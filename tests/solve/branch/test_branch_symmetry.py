@@ -165,7 +165,7 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
     assert curve.special_points[-1].reason == EndReason.no_cycle_found
-    assert "no known symmetry breaking is near" in curve.special_points[-1].message
+    assert "no symmetry breaking is known there" in curve.special_points[-1].message
 
 
 @pytest.mark.parametrize(("has", "kind"), [(True, "symmetry_breaking"), (False, "period_doubling")])

@@ -148,10 +148,10 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.at
-    end = curve.vanishing_points[0]
+    end = curve.hopf_ends[0]
     assert abs(end.at - BAUTIN_F) <= end.error
     assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
-    assert curve.vanishing_points[1] is None
+    assert curve.hopf_ends[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
 

@@ -176,7 +176,7 @@ class _CurvesOfKind:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
-        for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
+        for end, last in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
             x = self.line_axis.coordinate(end.at)

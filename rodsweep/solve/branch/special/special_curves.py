@@ -75,7 +75,7 @@ class CurveEnd(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class VanishingPoint:
+class HopfEnd:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
     at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
@@ -159,13 +159,13 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 @dataclass(frozen=True, slots=True)
 class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
-    vanishing_points: for each end the Hopf point at which the cycles vanish; None for an end with another
+    hopf_ends: for each end the Hopf point at which the cycles vanish; None for an end with another
     reason, or on a curve with too few points for the extrapolation."""
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]
     ends: tuple[CurveEnd, CurveEnd]
-    vanishing_points: tuple[VanishingPoint | None, VanishingPoint | None]
+    hopf_ends: tuple[HopfEnd | None, HopfEnd | None]
 
     @classmethod
     def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
@@ -174,7 +174,7 @@ class SpecialPointCurve:
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
         points = (*before.points[:0:-1], *ahead.points)
         vanishing = [
-            vanishing_point(side) if end is CurveEnd.hopf else None
+            extrapolated_hopf_end(side) if end is CurveEnd.hopf else None
             for end, side in ((before.end, points[::-1]), (ahead.end, points))
         ]
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
@@ -188,7 +188,7 @@ def with_located_ends(
     identical point, are unchanged.
     """
 
-    def located(end: VanishingPoint | None) -> VanishingPoint | None:
+    def located(end: HopfEnd | None) -> HopfEnd | None:
         if end is None or curve.kind != SpecialKind.fold:
             return end
         for point in known:
@@ -197,11 +197,11 @@ def with_located_ends(
                 abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
                 for axis, a, b in pairs
             ):
-                return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
+                return HopfEnd(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
-    first, last = map(located, curve.vanishing_points)
-    return replace(curve, vanishing_points=(first, last))
+    first, last = map(located, curve.hopf_ends)
+    return replace(curve, hopf_ends=(first, last))
 
 
 def lagrange_weights(places: Array, at: float) -> Array:
@@ -212,7 +212,7 @@ def lagrange_weights(places: Array, at: float) -> Array:
     return np.append(weights, 1 - weights.sum())
 
 
-def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
+def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None if there are too few points."""
     known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
@@ -224,4 +224,4 @@ def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)
     error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
-    return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))
+    return HopfEnd(float(best[0]), float(best[1]), float(error), float(best[2]))

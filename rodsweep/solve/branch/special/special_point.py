@@ -124,7 +124,7 @@ class SpecialPoint:
     """Absolute error of the parameter value `at`."""
     period_error: float = nan
     """Relative difference of the period from the period at the exact special point."""
-    size_error: float = nan
+    tip_y_max_error: float = nan
     """Relative difference of the largest tip y from its value at the exact special point."""
     index_of_cycle_before: int = -1
     """Index of the last cycle of the branch before the special point; -1 if no cycle precedes the point."""

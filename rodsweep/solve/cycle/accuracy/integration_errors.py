@@ -8,9 +8,9 @@ from .cycle_errors import CycleErrors
 
 
 def errors_of_two_integrations(one: CyclePath, other: CyclePath, distance: float) -> CycleErrors:
-    """Error estimates of the cycle `other` of a time integration, from the cycle `one` of a less accurate
-    integration; NaN for the multiplier. distance: relative distance of the settled motions from the cycle,
-    which is added to the error estimates."""
+    """Error estimates from the differences between the cycles `one` and `other` of two time integrations,
+    relative to the largest y and the period of `other`; NaN for the multiplier. distance: relative distance
+    of the settled motions from the cycle, which is added to the error estimates."""
     a = one.extrema
     b = other.extrema
     size = abs(b["tip_y_max"])

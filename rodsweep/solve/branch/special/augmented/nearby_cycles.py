@@ -71,8 +71,8 @@ class NearbyCycleSolver:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. tolerance:
-        relative tolerance of cycle and test function; far from the curve `AUGMENTED_SETTINGS.tolerance_share`
-        allows more."""
+        relative tolerance of cycle and test function; far from the curve
+        `AUGMENTED_SETTINGS.tolerance_to_distance_ratio` allows more."""
         last = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
             report()
@@ -89,7 +89,7 @@ class NearbyCycleSolver:
                 measured = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
                 self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, measured)
             if off * min(rate, 1.0) <= max(
-                tolerance, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope
+                tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
             if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
