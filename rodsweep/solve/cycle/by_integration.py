@@ -38,9 +38,9 @@ from .transient.from_motion import collocation_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURN_SETTINGS,
-    early_end,
     not_settled_text,
     repetition,
+    run_failure,
     section_crossings,
     tip_angle_row,
     until_returns,
@@ -151,7 +151,7 @@ class _MarchedMotion:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
-        if end := early_end(self.beam, run, self.return_count):
+        if end := run_failure(self.beam, run, self.return_count):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
             raise NoCycleFound(status, end.message)
         return run

@@ -66,6 +66,7 @@ NEXT_MESH_SETTINGS = NextMeshSettings()
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
 """Value of `Neighbour.eigenvalues` if the eigenvalues are not known."""
 CheckpointArrays = dict[str, Array]
+"""Data of a neighbour in a checkpoint: arrays by name, as `Neighbour.arrays` returns them."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,10 +50,10 @@ class AmplitudeEquation:
     rate of the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may add.
     Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns)."""
 
-    def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
+    def __init__(self, period: float, linear_growth_rate: float, growth_excess: float, noise: float) -> None:
         self.period = period
-        self.linear_growth_rate = linear_rate
-        self.growth_excess = excess
+        self.linear_growth_rate = linear_growth_rate
+        self.growth_excess = growth_excess
         self.growth_noise = noise
         self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
