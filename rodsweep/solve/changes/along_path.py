@@ -1,9 +1,8 @@
 """Search for all thresholds along a path of rods (`kinds`): pairs that cross the imaginary axis, and
 exchanges of the leading eigenvalue.
 
-The crossings come from `determinant.certificate.covering`, which proves that the list is complete, or for
-nonuniform arms from `arm.crossings`; the exchanges come from `leading_eigenvalue`. The winding number
-confirms the number of unstable modes at both ends and between the crossings.
+The crossings come from `determinant.certificate.covering`, or for nonuniform arms from `arm.crossings`; the
+exchanges come from `leading_eigenvalue`. Winding numbers confirm the numbers of unstable modes.
 """
 
 import math
@@ -124,7 +123,9 @@ def find_thresholds(
         near = [p + side * THRESHOLD_SETTINGS.sample_shift * (high - low) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
-        counts.doubts.append("the leading eigenvalue at an imaginary-axis crossing is not the crossing pair")
+        counts.doubts.append(
+            "a pair crosses the imaginary axis although another eigenvalue has a larger growth rate"
+        )
     if certify and not tracer.leading_eigenvalues_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _with_counts(counts, unstable, crossings, at_end)
@@ -233,8 +234,7 @@ def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     """Crossing at a zero of D on the axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
-    # dw/dp = -D_p/D_w.
-    kind = crossing_kind(path, (-there.D_p / there.D_w).real > 0)
+    kind = crossing_kind(path, (-there.D_p / there.D_w).real > 0)  # dw/dp = -D_p/D_w
     at, error = path.value(zero.p, zero.error_of_p)
     return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 

@@ -71,7 +71,4 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     share = abs(normal.landau.real) * amplitude**2 / -w.real
     if share >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
         return ""
-    return (
-        "the motion decays to the straight rod: the leading mode decays, and at the start the cubic term of "
-        f"the normal form is only {share:.0e} times the linear decay rate"
-    )
+    return f"the motion decays: at its start the cubic term is only {share:.0e} of the linear decay rate"

@@ -82,7 +82,7 @@ class RefinedCycle:
         if self.stable is None:
             return (
                 CycleStatus.not_settled,
-                "the cycle's stability is undecided: its largest nontrivial multiplier has modulus 1 within "
-                f"its error {self.largest_modulus_error:.0e}",
+                "the stability is undecided: the largest modulus of a Floquet multiplier is 1 within its "
+                f"error, {self.largest_modulus_error:.0e}",
             )
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
