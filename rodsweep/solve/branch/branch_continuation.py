@@ -11,6 +11,7 @@ from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
+from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_ends import end_at_mirror_image, reaches_mirror_image
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import is_measurement_due
@@ -24,9 +25,6 @@ from .special.special_point import EndReason, SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point
-from .symmetry_breaking import (
-    BRANCH_END_SETTINGS,
-)
 
 
 def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:

@@ -30,7 +30,7 @@ class ThresholdSettings:
     """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
     merge_distance: float = 1e-5
-    """Undecided boxes of the covering are merged if gap/(parameter at its start) is at most this."""
+    """Undecided boxes of the covering are merged if gap/(parameter at its start) is at most this number."""
 
 
 THRESHOLD_SETTINGS = ThresholdSettings()

@@ -47,9 +47,9 @@ class LeadingEigenvalueSettings:
     Between close samples, `excludes_exchange` too may exclude an exchange."""
     smallest_interval: float = 1e-8
     """A sample is added between two samples only if their distance, as a fraction of the path's length,
-    exceeds this. Three real eigenvalues of cones meet within 4e-7 of the path."""
+    exceeds this number. Three real eigenvalues of cones meet within 4e-7 of the path."""
     max_samples: int = 1000
-    """With more samples than this, a sample is added only between samples farther apart than
+    """With more samples than this number, a sample is added only between samples farther apart than
     `close_sample_distance`."""
     distance_to_exchange: float = 1e-3
     """Where further exchanges may lie between two samples, samples are added on both sides of the exchange

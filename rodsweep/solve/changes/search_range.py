@@ -31,8 +31,8 @@ class CrushingEndSettings:
     crushing_margin: float = 1e-6
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
     crushing_tolerance: float = 1e-12
-    """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
-    of F and k1 the two forces may differ by rounding alone."""
+    """F and the crushing force are treated as equal if their relative difference is at most this number: on a
+    grid of F and k1 the two forces may differ by rounding alone."""
 
 
 CRUSHING_END_SETTINGS = CrushingEndSettings()

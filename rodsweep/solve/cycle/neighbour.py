@@ -54,7 +54,7 @@ class NextMeshSettings:
     the accuracy."""
     max_new_mesh_cost_ratio: float = 0.8
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
-    at most this."""
+    at most this number."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
     """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the present cycle:
     measuring the errors of a new mesh costs as much as three cycles."""

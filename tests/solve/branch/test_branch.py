@@ -13,7 +13,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve import seldom_used_kernels
-from rodsweep.solve.branch import branches, following
+from rodsweep.solve.branch import branch_continuation, branches
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branch_continuation import follow_branch
@@ -250,14 +250,14 @@ def test_rod_without_a_hopf_point_has_no_branch():
 
 
 def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
-    made = following.next_cycle
+    made = branch_continuation.next_cycle
 
     def lost(here, accuracy):
         if here.parameter_coordinate > 75:
             raise Unsolvable("there is no cycle near on the branch")
         return made(here, accuracy)
 
-    monkeypatch.setattr(following, "next_cycle", lost)
+    monkeypatch.setattr(branch_continuation, "next_cycle", lost)
     solved.cache_clear()
     found = solved(SHORT)
     solved.cache_clear()

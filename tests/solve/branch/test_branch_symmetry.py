@@ -12,7 +12,7 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
-from rodsweep.solve.branch import following
+from rodsweep.solve.branch import branch_continuation
 from rodsweep.solve.branch.arc_length_step import next_cycle
 from rodsweep.solve.branch.branch_continuation import (
     follow_asymmetric_branch,
@@ -63,7 +63,7 @@ def symmetric(limits):
 def known(limits, symmetric):
     """The limits with the one symmetry breaking."""
     (breaking,) = symmetry_breakings_in([symmetric.special_points])
-    return following.replace(limits, breakings=[breaking])
+    return branch_continuation.replace(limits, breakings=[breaking])
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,9 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
     born, fold, end = asymmetric.special_points
     # NaN does not equal NaN, but has the same text.
-    assert repr(born) == repr(following.replace(symmetric.special_points[1], index_of_cycle_before=-1))
+    assert repr(born) == repr(
+        branch_continuation.replace(symmetric.special_points[1], index_of_cycle_before=-1)
+    )
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5

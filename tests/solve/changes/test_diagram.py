@@ -92,7 +92,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     assert curves.largest_seed_distance < 1e-11
     assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
     for curve in curves.curves:
-        inside = (np.diff(curve.scaled[:, :2], axis=0) ** 2).sum(axis=1)
+        inside = (np.diff(curve.scaled_points[:, :2], axis=0) ** 2).sum(axis=1)
         assert np.sqrt(inside).max() < 0.05
 
 
@@ -134,7 +134,7 @@ def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     assert {curve.end_reasons for curve in curves} == ends
     for curve in curves:
         for (x, y, _), (F, other), end in zip(
-            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
+            curve.scaled_points[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
         ):
             beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
             assert beside_an_edge if end == BoundaryEnd.edge else pytest.approx(other, rel=1e-7) == F

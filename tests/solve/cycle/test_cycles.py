@@ -486,7 +486,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     points = np.concatenate([half.all_states[:1], np.tile(half.all_states[1:], (repeats, 1))])
     orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stage_count)
     with pytest.raises(Unsolvable):
-        refinement.refined_cycle_at_given_period(orbit, 1e-6, NewtonWorkspace())
+        refinement.refined_cycle_of_any_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes
 
 

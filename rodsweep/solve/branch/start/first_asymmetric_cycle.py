@@ -23,8 +23,9 @@ from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale, deflection_of
+from ..branch_end_settings import BRANCH_END_SETTINGS
 from ..branch_mesh_choice import first_measured_cycle
-from ..symmetry_breaking import BRANCH_END_SETTINGS, SymmetryBreaking, asymmetry, extended_to_whole_period
+from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
 from .first_cycle import ALONG_DEFLECTION
 
 

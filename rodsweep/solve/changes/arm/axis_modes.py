@@ -19,9 +19,9 @@ from .path import ArmPath
 class AxisModeSettings:
     """Settings of the eigenvalues that are computed for selected arms during a search for crossings."""
 
-    many_modes: float = 16.0
-    """If a certificate is requested and more modes of an arm than this are expected to grow, only the modes
-    near the imaginary axis are computed."""
+    max_growing_for_leading_modes: float = 16.0
+    """If a certificate is requested and more modes of an arm than this number are expected to grow, only the
+    modes near the imaginary axis are computed."""
     max_computed_modes: int = 200
     """Maximum number of leading eigenvalues computed for one arm."""
 
@@ -78,7 +78,10 @@ class AxisModesOfPath:
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
         expected to grow, and `certify` is set."""
-        return self.certify and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.many_modes
+        return (
+            self.certify
+            and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.max_growing_for_leading_modes
+        )
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
         """The modes at path variable p, or just outside an end p of the path where the count fails; raises

@@ -37,12 +37,12 @@ class ArmCrossingSettings:
     their errors."""
     frequency_tolerance: float = 1e-6
     """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
-    their frequencies is at most this."""
+    their frequencies is at most this number."""
     smallest_interval: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
     smallest_step: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
-    of its ends, is at most this: some thousand rounding errors."""
+    of its ends, is at most this number: some thousand rounding errors."""
     count_distance: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20

@@ -23,20 +23,20 @@ class BoundaryAssignmentSettings:
     """Settings for the assignment of the thresholds found on rows to boundary curves."""
 
     coordinate_tolerance: float = 1e-12
-    """Two scaled coordinates are equal if their difference is smaller than this."""
+    """Two scaled coordinates are equal if their difference is smaller than this number."""
     eigenvalue_tolerance: float = 1e-3
     """A threshold lies on a curve only if its eigenvalue and the eigenvalue of the curve at the same value of
-    the second parameter differ by less than this, relatively."""
+    the second parameter differ by less than this number, relatively."""
     max_secant_steps: int = 20
     """Maximum number of secant steps to the point of a curve at a given value of the second parameter."""
     max_end_distance: float = 1e-6
     """Two curves are identical if an end of the first and an end of the second (coordinates and log
-    |eigenvalue|) are closer than this, because curves do not cross."""
+    |eigenvalue|) are closer than this number, because curves do not cross."""
     max_threshold_distance: float = 1e-7
     """A threshold closer to a curve than this lies on the curve; both axes have length 1."""
     max_distance_beyond_chord: float = 0.1
     """A chord of a curve is searched for a threshold only if the threshold lies at most this far beyond the
-    chord's ends along the first axis, which has length 1; continuation steps are shorter than this."""
+    chord's ends along the first axis, which has length 1; continuation steps are shorter than this number."""
 
 
 BOUNDARY_ASSIGNMENT_SETTINGS = BoundaryAssignmentSettings()
@@ -95,7 +95,7 @@ class _StabilityBoundaries:
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
         """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
         is needed near a crushed rod, where a threshold may not be found on its own curve."""
-        ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
+        ends = one.scaled_points[[0, -1], None] - other.scaled_points[None, [0, -1]]
         return (
             one.eigenvalue_sign == other.eigenvalue_sign
             and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.max_end_distance
@@ -117,7 +117,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
-    points = curve.scaled
+    points = curve.scaled_points
     side = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
     side[np.abs(side) < BOUNDARY_ASSIGNMENT_SETTINGS.coordinate_tolerance] = 0.0

@@ -53,7 +53,7 @@ class BoundaryCurve:
     growth_rate: Array
     folds: tuple[Fold, ...]
     end_reasons: tuple[BoundaryEnd, BoundaryEnd]
-    scaled: Array
+    scaled_points: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
@@ -88,7 +88,9 @@ def trace_boundary(
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
-    return _curve_with_folds(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
+    return _curve_with_folds(
+        curve, points[np.append(apart, True)], (curve.end_reason_of(back), curve.end_reason_of(ahead))
+    )
 
 
 def _curve_with_folds(

@@ -36,8 +36,8 @@ class BoundaryCurveSettings:
     edge_tolerance: float = 1e-9
     """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
     max_merged_distance: float = 1e-9
-    """Two neighbouring points of a curve are merged if their distance is at most this, as at a start on an
-    edge of the plane."""
+    """Two neighbouring points of a curve are merged if their distance is at most this number, as at a start
+    on an edge of the plane."""
     fold_accuracy: float = 1e-13
     """Convergence tolerance at a fold: largest component of the tangent, and smallest bracket as a fraction
     of the step."""
@@ -146,7 +146,7 @@ class BoundaryCurveProblem:
             and float(there.tangent @ first.tangent) > 0
         )
 
-    def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
+    def end_reason_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
         """The reason for the end of a followed curve.
 
         If no further solution was found, the reason is `edge` if the last point lies on an edge, such as

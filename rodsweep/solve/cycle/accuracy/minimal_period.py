@@ -23,7 +23,7 @@ class MinimalPeriodSettings:
 
     min_harmonic_ratio: float = 1e-3
     """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
-    size of the largest harmonic exceeds this."""
+    size of the largest harmonic exceeds this number."""
     certain_harmonic_in_errors: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""

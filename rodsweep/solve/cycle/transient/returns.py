@@ -24,10 +24,11 @@ class ReturnSettings:
 
     straight_norm: float = 1e-6
     """A motion with |z| < straight_norm has decayed to the straight state, if this state is stable; z: state.
-    If the norm of the bending and shear components of z is smaller than this, the rod no longer oscillates.
-    Numerical damping governs smaller motions."""
+    If the norm of the bending and shear components of z is smaller than this number, the rod no longer
+    oscillates. Numerical damping governs smaller motions."""
     max_equal_return_distance: float = 0.03
-    """Two returns are equal if their relative distance is at most this, or twice the smallest distance."""
+    """Two returns are equal if their relative distance is at most this number, or twice the smallest
+    distance."""
     max_returns_per_period: int = 8
     """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
